@@ -66,11 +66,23 @@ def _picture(data: bytes, width: int) -> str:
     return f'<img alt="" style="max-width:{width}px;width:100%" src="data:image/png;base64,{text}">'
 
 
+def _is_points(value: object) -> bool:
+    """Whether a variable is an array of points that are not all one."""
+    import numpy as np
+
+    array = np.asarray(value) if isinstance(value, np.ndarray) else np.empty(0)
+    if array.ndim < 2 or array.shape[-1] != 3:
+        return False
+    points = array.reshape(-1, 3)
+    return bool((points != points[0]).any())
+
+
 def model_html(model: Model) -> str:
     """A picture, the parameters with their ranges, the objects by kind, and what is wrong."""
     parts = [f"<strong>{escape(repr(model).strip('<>'))}</strong>"]
     try:
-        if any(_drawn(fact) for fact in map(model.facts, model.objects)):
+        shown = any(_drawn(fact) for fact in map(model.facts, model.objects))
+        if shown or any(map(_is_points, model.variables.values())):
             parts.append("<br>" + _picture(model.picture(720, 405), 480))
     except Error as error:
         parts.append(f"<pre>{escape(str(error))}</pre>")

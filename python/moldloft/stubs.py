@@ -107,6 +107,8 @@ _ARGUMENTS = {
     "set": "_Set",
     "mesh": "_Body",
     "list": "Sequence[object] | _Any",
+    "block": "_Array | Sequence[object] | _Any",
+    "record": "_Any",
 }
 
 #: What an argument of several accepts, where that is more than a sequence of single ones.

@@ -31,6 +31,10 @@ Side = tuple[int, int, Sequence[int], Sequence[int]]
 """A part of a face: block, face from 0, first and last place (i, j, k) from 0."""
 
 
+Movement = tuple[Sequence[float], Sequence[float], Sequence[float]]
+"""Of a periodic joint: the centre and the angles of a rotation, in radians, and a translation."""
+
+
 @dataclass(frozen=True)
 class _GridBlock:
     """A block of the language."""
@@ -51,6 +55,7 @@ class _GridBlocks:
     blocks: Sequence[_GridBlock]
     interfaces: Sequence[Interface]
     boundaries: Sequence[Boundary]
+    movements: Sequence[Movement | None]
     unit_of_length: str = ""
 
     @property
@@ -63,7 +68,7 @@ def write_grids(
     title: str,
     names: Sequence[str],
     points: Sequence[NDArray[np.float64]],
-    joints: Sequence[tuple[Side, Side, Sequence[int]]],
+    joints: Sequence[tuple[Side, Side, Sequence[int], Movement | None]],
     boundaries: Sequence[tuple[Side, str, str]],
 ) -> bytes:
     """The file of blocks of points ``(ni, nj, nk, 3)``.
@@ -77,7 +82,8 @@ def write_grids(
     points
         The points of each block.
     joints
-        Where blocks meet: (block, face, begin, end) of both sides, and the transform of CGNS.
+        Where blocks meet: (block, face, begin, end) of both sides, the transform of CGNS,
+        and how the second lies to the first when they are periodic.
     boundaries
         What meets nothing: its place, name and type.
     """
@@ -89,8 +95,9 @@ def write_grids(
     return write(
         _GridBlocks(
             [_GridBlock(name, grid) for name, grid in zip(names, points, strict=True)],
-            [Interface(*place(a), *place(b), (t[0], t[1], t[2])) for a, b, t in joints],
+            [Interface(*place(a), *place(b), (t[0], t[1], t[2])) for a, b, t, _ in joints],
             [Boundary(*place(side), name, kind) for side, name, kind in boundaries],
+            [movement for *_, movement in joints],
         ),
         title,
     )
@@ -164,18 +171,40 @@ def _rising(joint: Interface) -> tuple[list[int], list[int], list[int], list[int
 
 
 def _joints(zone: Any, blocks: Blocks | _GridBlocks, zones: Sequence[str], number: int) -> None:
-    seen = [joint for joint in blocks.interfaces if joint.block == number]
-    seen += [joint.reversed() for joint in blocks.interfaces if joint.donor == number]
+    movements = (
+        blocks.movements if isinstance(blocks, _GridBlocks) else [None] * len(blocks.interfaces)
+    )
+    every = list(zip(blocks.interfaces, movements, strict=True))
+    seen = [(joint, movement, 1.0) for joint, movement in every if joint.block == number]
+    seen += [
+        (joint.reversed(), movement, -1.0) for joint, movement in every if joint.donor == number
+    ]
     if not seen:
         return
     group = cgns.node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
-    for k, joint in enumerate(seen, 1):
+    for k, (joint, movement, sign) in enumerate(seen, 1):
         one = cgns.node(group, f"join{k}", "GridConnectivity1to1_t", zones[joint.donor])
         begin, end, donor_begin, donor_end = _rising(joint)
         _range(one, "PointRange", begin, end)
         _range(one, "PointRangeDonor", donor_begin, donor_end)
         transform = np.array(joint.transform, dtype=np.int32)
         cgns.node(one, "Transform", '"int[IndexDimension]"', transform)
+        if movement:
+            _periodic(one, movement, sign)
+
+
+def _periodic(joint: Any, movement: Movement, sign: float) -> None:
+    """How the donor lies to the zone's own side (SIDS 8.5)."""
+    centre, angles, translation = movement
+    group = cgns.node(joint, "GridConnectivityProperty", "GridConnectivityProperty_t")
+    periodic = cgns.node(group, "Periodic", "Periodic_t")
+    for name, values, factor in (
+        ("RotationCenter", centre, 1.0),
+        ("RotationAngle", angles, sign),
+        ("Translation", translation, sign),
+    ):
+        numbers = np.array(values, dtype=np.float32) * np.float32(factor) + np.float32(0)
+        cgns.node(periodic, name, "DataArray_t", numbers)
 
 
 def _boundaries(

@@ -229,7 +229,7 @@ AbsRing a_ring(a_snake, 0.5); ZPlane a_plane(1); RPYFrame a_frame(a_point); CosR
         }
         return {n for n in names if words & parents.get(n, {f"{n.capitalize()}Handle"})}
 
-    arrays = ("farray", "curve or surface", "list", "field", "set", "mesh")
+    arrays = ("farray", "curve or surface", "list", "block", "record", "field", "set", "mesh")
     tried = 0
     for class_ in stubs._ARGUMENTS:
         rows = [row for row in reference() if row["is_kind"] and row["fields"]]

@@ -54,6 +54,27 @@ fn row<T: Real>(
     row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
 }
 
+/// The row with a number more in each interval, the others to the bit. Both parts of an interval grow as the intervals
+/// around it do, so that a geometric row stays one.
+pub fn halved<T: Real>(row: &[T]) -> Vec<T> {
+    let count = row.len().saturating_sub(1);
+    let step = |k: usize| row[k + 1] - row[k];
+    let mut all = Vec::with_capacity(2 * count + 1);
+    for k in 0..count {
+        // The growth from an interval to the next.
+        let growth = match k {
+            _ if count == 1 => T::one(),
+            0 => step(1) / step(0),
+            _ if k + 1 == count => step(k) / step(k - 1),
+            _ => (step(k + 1) / step(k - 1)).sqrt(),
+        };
+        all.push(row[k]);
+        all.push(row[k] + step(k) / (T::one() + growth.sqrt()));
+    }
+    all.extend(row.last());
+    all
+}
+
 /// `n` numbers in equal steps from `start` to `end`, both included.
 #[derive(Kind)]
 #[kind(class = Numbers, function, cheap, name = "uniform", example = "farray s = uniform(0, 1, 11);")]

@@ -1,9 +1,10 @@
 //! What curves and surfaces with parameters are at given parameters.
 
-use crate::value::{Farray, Numbers, vectors};
+use crate::value::{Farray, Numbers, Points, vectors};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_registry::{
-    ArrayShape, Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, CallError, Context, CurveRef, FieldId, FromValue, Kind, Scalar, SurfaceRef,
+    Value,
 };
 use moldloft_spline::arclen;
 
@@ -341,7 +342,7 @@ impl<T: Real> Build<T> for Lengthc<T> {
     }
 }
 
-/// The length of a curve; another name of `lengthc`.
+/// The length of a curve: of one with a parameter as `lengthc`, of points the sum of their distances.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -350,13 +351,18 @@ impl<T: Real> Build<T> for Lengthc<T> {
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
                float l = length(c);"
 )]
-pub struct Length<T: Real> {
-    /// The curve.
-    curve: CurveRef<T>,
+pub struct Length<T: Scalar> {
+    /// The curve, or the points of one.
+    curve: Value<T>,
 }
 
-impl<T: Real> Build<T> for Length<T> {
+impl<T: Scalar> Build<T> for Length<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        Ok(whole_length(&self.curve))
+        let place = |fault: CallError| fault.in_field(Self::CURVE);
+        if let Value::Vectors(_) | Value::List(_) = &self.curve {
+            let Points(points) = Points::from_value(&self.curve).map_err(place)?;
+            return Ok(Value::Number(crate::reduce::polyline_length(&points)));
+        }
+        CurveRef::from_value(&self.curve).map_err(place).map(|curve| whole_length(&curve))
     }
 }

@@ -1,6 +1,6 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{GridArg, Points, gathered, surface};
+use crate::value::{BlockArg, GridArg, Points, gathered, surface};
 use moldloft_budget::Budget;
 use moldloft_grid::{
     Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
@@ -83,8 +83,7 @@ fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallErro
 ///
 /// `s` is a surface whose edges are set (what is inside does not matter); or a list of four curves,
 /// s[1,], s[m,], s[,1], s[,n], which must meet in the corners; or a list of six surfaces, the faces
-/// i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is the list of its layers
-/// k = 1 .. nk. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
+/// i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is that block. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
 /// length with cubic blending: blocks join smoothly) or "soni2" (arc lengths averaged rather than
 /// intersected). An edge without length, a pole, takes the spacing of the opposite one.
 #[derive(Kind)]
@@ -120,9 +119,8 @@ impl<T: Scalar> Build<T> for Tfi<T> {
         let Value::List(items) = &self.s else {
             let GridArg(grid) =
                 GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-            return transfinite_until(&grid, blend, &context.budget)
-                .map(surface)
-                .map_err(|error| fault(error, Self::S));
+            let grid = transfinite_until(&grid, blend, &context.budget);
+            return remarked(grid.map_err(|error| fault(error, Self::S))?, context, Self::S);
         };
         let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::S);
         match items.len() {
@@ -143,9 +141,8 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                     }
                 }
                 let grid = framed(&edges).map_err(|error| fault(error, Self::S))?;
-                transfinite_until(&grid, blend, &context.budget)
-                    .map(surface)
-                    .map_err(|error| fault(error, Self::S))
+                let grid = transfinite_until(&grid, blend, &context.budget);
+                remarked(grid.map_err(|error| fault(error, Self::S))?, context, Self::S)
             }
             6 => {
                 let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
@@ -155,11 +152,35 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                 let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6, Self::S))?;
                 let layers = transfinite_block_until(&faces, &context.budget)
                     .map_err(|error| fault(error, Self::S))?;
-                Ok(Value::list(layers.into_iter().map(surface)))
+                Ok(crate::value::block(layers))
             }
             n => Err(fault_of_count(n, Self::S)),
         }
     }
+}
+
+/// A grid as a value, with a remark when cells of it are folded.
+fn remarked<T: Scalar>(
+    grid: SurfaceGrid<T>,
+    context: &Context,
+    field: FieldId,
+) -> Result<Value<T>, CallError> {
+    let folded =
+        folded_cells_until(&grid, &context.budget).map_err(|spent| fault(spent.into(), field))?;
+    if let Some([i, j]) = folded.first() {
+        let cells = grid.m.saturating_sub(1) * grid.n.saturating_sub(1);
+        context.remark(
+            "folded-grid",
+            format!(
+                "{} of {cells} cells are folded, the first [{},{}]",
+                folded.len(),
+                i + 1,
+                j + 1
+            ),
+            "smooth the grid: elliptic(s); or move its edges",
+        );
+    }
+    Ok(surface(grid))
 }
 
 fn fault_of_count(n: usize, field: FieldId) -> CallError {
@@ -211,7 +232,7 @@ pub struct EllipticGrid<T: Scalar> {
     method: Arc<str>,
     /// The surface that the points stay on.
     on: Option<SurfaceRef<T>>,
-    /// Walls, for "sorenson".
+    /// Walls, for the method sorenson: "i1", "im", "j1", "jn".
     walls: Option<Arc<str>>,
     /// Spacing off the walls.
     #[field(min = 0)]
@@ -435,7 +456,7 @@ fn on_surface<T: Scalar>(
 /// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
 /// and Steger 1992): lines leave it at right angles, with the layers at given heights.
 ///
-/// Off a surface, along s_i x s_j: the value is the list of layers, the surface first. Off a curve, to the
+/// Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve, to the
 /// left of its direction as seen against `normal`: the value is the surface whose line g[k,] is layer k; it
 /// lies in the plane of the curve, or on the surface `on` (a collar). The first layer has its height
 /// everywhere, at corners and sharp tails too; heights farther out are means. `sides` says what happens at
@@ -459,7 +480,8 @@ pub struct HyperbolicGrid<T: Scalar> {
     s: Value<T>,
     /// The distances of the layers, the first 0.
     heights: crate::value::Farray<T>,
-    /// Conditions at the edges.
+    /// Conditions at the edges: "i1", "im", "j1", "jn" with "pole", "free", "periodic", "symmetry x", "symmetry y",
+    /// "symmetry z", "constant x", "constant y" or "constant z".
     #[field(default = "")]
     sides: Arc<str>,
     /// How strongly converging lines are smoothed apart; 0 for not at all.
@@ -467,7 +489,7 @@ pub struct HyperbolicGrid<T: Scalar> {
     smoothing: T,
     /// Normal of the plane of a curve, z if not given; with `on`, the side of the surface that is seen.
     normal: Option<Vec3<T>>,
-    /// When the march ends early.
+    /// When the march ends early: "keep", "jacobian 0.1", "skew 0.9", "growth 1.5" or "isotropic".
     #[field(default = "")]
     stop: Arc<str>,
     /// The surface that a grid off a curve stays on.
@@ -534,7 +556,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
         Ok(if is_curve {
             layers.next().expect("one grid off a curve")
         } else {
-            Value::list(layers)
+            Value::block(layers).expect("layers of one shape")
         })
     }
 }
@@ -649,17 +671,18 @@ fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {
                assert min(quality(s, \"sj\")) == 1;"
 )]
 pub struct QualityOf<T: Scalar> {
-    /// The grid, or the layers of a block.
+    /// The grid, or the block.
     s: Value<T>,
-    /// The metric.
+    /// "sj", "skew", "aspect", "edge_ratio", "growth_i", "growth_j", "growth_k", "warp", "turn", "area" or "volume".
     #[field(default = "sj")]
     metric: Arc<str>,
 }
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        if let Value::List(layers) = &self.s {
-            let block = crate::volumes::volume(layers, Self::S)?;
+        if let Value::Block(_) | Value::List(_) = &self.s {
+            let BlockArg(block) =
+                BlockArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let budget = &context.budget;
             return crate::volumes::quality(&block, &self.metric, Self::METRIC, budget);
         }
@@ -678,7 +701,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
     }
 }
 
-/// The number of folded cells of a grid, or of a block given as the list of its layers.
+/// The number of folded cells of a grid or a block.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -688,14 +711,15 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
                assert folds(s) == 0;"
 )]
 pub struct Folds<T: Scalar> {
-    /// The grid, or the layers.
+    /// The grid, or the block.
     s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        if let Value::List(layers) = &self.s {
-            let block = crate::volumes::volume(layers, Self::S)?;
+        if let Value::Block(_) | Value::List(_) = &self.s {
+            let BlockArg(block) =
+                BlockArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let count = crate::volumes::folded(&block, &context.budget)
                 .map_err(|spent| fault(spent.into(), Self::S))?;
             return Ok(Value::Number(T::from(count as f64)));
@@ -709,8 +733,7 @@ impl<T: Scalar> Build<T> for Folds<T> {
 }
 
 /// A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-/// value and the cell that is worst; of a block, given as the list of its layers, the figures of
-/// OpenFOAM's checkMesh and the least scaled Jacobian.
+/// value and the cell that is worst; of a block the figures of OpenFOAM's checkMesh and the least scaled Jacobian.
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -720,15 +743,16 @@ impl<T: Scalar> Build<T> for Folds<T> {
                print report(s);"
 )]
 pub struct Report<T: Scalar> {
-    /// The grid, or the layers.
+    /// The grid, or the block.
     s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         use std::fmt::Write;
-        if let Value::List(layers) = &self.s {
-            let block = crate::volumes::volume(layers, Self::S)?;
+        if let Value::Block(_) | Value::List(_) = &self.s {
+            let BlockArg(block) =
+                BlockArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let text = crate::volumes::report(&block, &context.budget)
                 .map_err(|spent| fault(spent.into(), Self::S))?;
             return Ok(Value::text(&text));

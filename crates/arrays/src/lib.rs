@@ -27,9 +27,11 @@ mod section_grids;
 mod shape;
 mod spacing;
 mod spline;
+mod texts;
 mod value;
 mod volumes;
 
+pub use distribution::halved;
 pub use value::{MORE_MEMORY, gathered, type_name, within_share};
 
 use moldloft_registry::Row;
@@ -98,6 +100,14 @@ pub fn rows() -> Vec<Row> {
         masks::CumSum,
         masks::Diff,
         masks::Interp,
+        texts::CutText,
+        texts::NumberOf,
+        texts::Replace,
+        texts::SplitText,
+        texts::TrimText,
+        texts::Lower,
+        texts::Upper,
+        texts::Append,
         shape::List,
         shape::PointsOf,
         shape::Concatenation,

@@ -9,6 +9,7 @@ use moldloft_num::Vec3;
 use moldloft_registry::{
     ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
 };
+use std::sync::Arc;
 
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
@@ -187,22 +188,41 @@ impl<T: Scalar> Build<T> for All<T> {
     }
 }
 
-/// The positions, from 1, at which a mask of a row holds; none when it holds nowhere.
+/// The positions, from 1, at which a mask of a row holds; none when it holds nowhere. Of a text the position of the
+/// first occurrence of a part, 0 where there is none.
 #[derive(Kind)]
 #[kind(
-    class = Numbers,
+    class = Any,
     function,
     name = "find",
-    example = "farray k = find(list(5, 1, 7) > 4); assert k[1] == 1 and k[2] == 3;"
+    example = "farray k = find(list(5, 1, 7) > 4); assert k[1] == 1 and k[2] == 3; \
+               assert find(\"wing.dat\", \".\") == 5;"
 )]
 pub struct Find<T: Scalar> {
-    /// The mask.
-    mask: Farray<T>,
+    /// The mask, or the text.
+    a: Value<T>,
+    /// What is looked for in a text.
+    part: Option<Arc<str>>,
 }
 
 impl<T: Scalar> Build<T> for Find<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let mask = self.mask.row().map_err(|fault| fault.in_field(Self::MASK))?;
+        let place = |fault: CallError| fault.in_field(Self::A);
+        match (&self.a, &self.part) {
+            (Value::Text(text), Some(part)) => return Ok(crate::texts::place_in(text, part)),
+            (Value::Text(_), None) => {
+                return Err(CallError::new("missing-argument", "nothing is looked for")
+                    .expected("find(text, part)")
+                    .in_field(Self::PART));
+            }
+            (_, Some(_)) => {
+                return Err(CallError::new("unused-argument", "a part goes with a text")
+                    .expected("a text, or a mask alone")
+                    .in_field(Self::PART));
+            }
+            (_, None) => {}
+        }
+        let mask = Farray::from_value(&self.a).and_then(|a| a.row()).map_err(place)?;
         let held = mask.iter().enumerate().filter(|(_, x)| x.re() != 0.0);
         Ok(farray(held.map(|(k, _)| T::from((k + 1) as f64)).collect()))
     }

@@ -129,29 +129,51 @@ impl<T: Scalar> Build<T> for Norm<T> {
     }
 }
 
-/// The length of a curve of points: the sum of its steps.
+/// The number of items: elements of a row, lines of a grid, layers of a block, items of a list, characters of a text.
 ///
-/// Of curves with a parameter there is `lengthc`.
+/// The length of a curve is `length`.
 #[derive(Kind)]
 #[kind(
     class = Number,
     function,
     cheap,
     name = "len",
-    example = "assert len(points({0, 0, 0}, {3, 4, 0}, {3, 4, 1})) == 6;"
+    example = "assert len(list(5, 6)) == 2 and len(\"wing\") == 4;"
 )]
 pub struct Len<T: Scalar> {
-    /// The points.
-    curve: Points<T>,
+    /// The array, list or text.
+    a: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Len<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        Ok(Value::Number(steps(&self.curve.0).fold(T::zero(), |sum, s| sum + s)))
+        let first = |shape: ArrayShape| match shape {
+            ArrayShape::Row(n) | ArrayShape::Grid(n, _) => n,
+        };
+        let count = match &self.a {
+            Value::Text(text) => text.chars().count(),
+            Value::Vector(_) => 3,
+            Value::Numbers(a) => first(a.shape),
+            Value::Vectors(a) => first(a.shape),
+            Value::List(items) | Value::Block(items) => items.len(),
+            other => {
+                let found = other.class().with_article();
+                return Err(CallError::new("wrong-class", format!("{found} has no items"))
+                    .expected("an array, a list or a text")
+                    .found(found)
+                    .in_field(Self::A));
+            }
+        };
+        Ok(Value::Number(T::from(count as f64)))
     }
 }
 
-/// The length of a curve of points up to each of them, from 0 to `len`.
+/// The length of a curve of points: the sum of its steps.
+pub fn polyline_length<T: Real>(points: &[Vec3<T>]) -> T {
+    steps(points).fold(T::zero(), |sum, s| sum + s)
+}
+
+/// The length of a curve of points up to each of them, from 0 to `length`.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

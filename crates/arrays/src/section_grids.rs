@@ -174,8 +174,7 @@ impl<T: Scalar> Build<T> for CGrid<T> {
 
 /// An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
 /// section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
-/// last height below the lower and above the upper end of the section. With as many points above as below they are a
-/// block of two layers.
+/// last height below the lower and above the upper end of the section.
 ///
 /// The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
 /// greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the

@@ -245,28 +245,35 @@ impl<T: Scalar> Build<T> for PointsOf<T> {
     }
 }
 
-/// The surface whose lines s[1,], s[2,], ... are these curves, all equally long.
+/// The surface whose lines s[1,], s[2,], ... are these curves, all equally long; of surfaces of one shape the block
+/// whose layers b[,,1], b[,,2], ... they are.
 #[derive(Kind)]
 #[kind(
-    class = Vectors,
+    class = Any,
     function,
     cheap,
     name = "stack",
     example = "surface s = stack(points({0, 0, 0}, {1, 0, 0}), points({0, 1, 0}, {1, 1, 0})); \
-               assert s[2,1].y == 1;"
+               assert s[2,1].y == 1; block b = stack(s, s + {0, 0, 1}); assert b.d3 == 2;"
 )]
 pub struct Stack<T: Scalar> {
-    /// The curves.
+    /// The curves or surfaces.
     #[field(variadic, min_items = 1)]
-    curves: Vec<Value<T>>,
+    parts: Vec<Value<T>>,
 }
 
 impl<T: Scalar> Build<T> for Stack<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (mut all, mut n) = (Vec::new(), None);
-        let m = self.curves.len();
-        for (k, part) in self.curves.iter().enumerate() {
-            let place = |fault: CallError| fault.in_item(k).in_field(Self::CURVES);
+        let m = self.parts.len();
+        let gathered: Vec<Value<T>> =
+            self.parts.iter().map(|part| gathered(part).into_owned()).collect();
+        let grid = |v: &Value<T>| matches!(v, Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)));
+        if gathered.iter().all(grid) {
+            return layered(gathered, Self::PARTS);
+        }
+        for (k, part) in self.parts.iter().enumerate() {
+            let place = |fault: CallError| fault.in_item(k).in_field(Self::PARTS);
             let Points(row) = Points::from_value(part).map_err(place)?;
             let expected = *n.get_or_insert(row.len());
             if row.len() != expected {
@@ -281,6 +288,24 @@ impl<T: Scalar> Build<T> for Stack<T> {
         }
         Ok(vectors(ArrayShape::Grid(m, n.unwrap_or(0)), all))
     }
+}
+
+/// The block of these surfaces.
+fn layered<T: Scalar>(layers: Vec<Value<T>>, field: FieldId) -> Result<Value<T>, CallError> {
+    let shapes: Vec<ArrayShape> = layers
+        .iter()
+        .filter_map(|layer| if let Value::Vectors(a) = layer { Some(a.shape) } else { None })
+        .collect();
+    if let Some(k) = shapes.iter().position(|shape| *shape != shapes[0]) {
+        let message = format!("layers 1 and {} differ in shape", k + 1);
+        return Err(CallError::new("shapes-differ", message)
+            .expected(format!("surface{}", shapes[0]))
+            .found(format!("surface{}", shapes[k]))
+            .in_item(k)
+            .in_field(field));
+    }
+    let fault = || CallError::new("wrong-class", "a block has layers").in_field(field);
+    Value::block(layers).ok_or_else(fault)
 }
 
 fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, CallError> {

@@ -159,10 +159,10 @@ fn basis(word: &str, field: FieldId) -> Result<SplineParametrization, CallError>
 pub struct Makecc<T: Scalar> {
     /// The points, two or more.
     curve: Points<T>,
-    /// End conditions.
+    /// End conditions: "natural", "quadratic", "specified", "notaknot", "bessel" or "periodic".
     #[field(default = "quadratic")]
     ends: Arc<str>,
-    /// The parameter.
+    /// The parameter: "arc", "index", "centripetal", "arclen", "arclen+breaks" or "arc+breaks".
     #[field(default = "arc")]
     basis: Arc<str>,
     /// Tangent at the start, where it is "specified".
@@ -433,13 +433,15 @@ fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> Cal
 pub struct Makecs<T: Scalar> {
     /// The points.
     surface: VectorGrid<T>,
-    /// End conditions of the lines along the first index.
+    /// End conditions of the lines along the first index: "natural", "quadratic", "specified", "notaknot", "bessel" or
+    /// "periodic".
     #[field(default = "quadratic")]
     ends: Arc<str>,
-    /// The parameters.
+    /// The parameters: "arc", "index" or "centripetal".
     #[field(default = "arc")]
     basis: Arc<str>,
-    /// End conditions of the lines along the second index; those of the first, if not given.
+    /// End conditions of the lines along the second index, those of the first if not given: "natural", "quadratic",
+    /// "specified", "notaknot", "bessel" or "periodic".
     ends_v: Option<Arc<str>>,
 }
 

@@ -1,11 +1,12 @@
 //! Arrays in and out: the one place that knows how a value holds its numbers and vectors.
 
-use moldloft_grid::SurfaceGrid;
+use moldloft_grid::{SurfaceGrid, VolumeGrid};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, CallError, Class, FromValue, Scalar, Value, Vectors as Planes,
 };
 use std::borrow::Cow;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// A row or grid of numbers.
@@ -410,6 +411,56 @@ impl<T: Scalar> FromValue<T> for GridArg<T> {
             other => wrong("a surface", other),
         }
     }
+}
+
+/// A text.
+pub struct TextArg<T> {
+    /// Its characters.
+    pub text: Arc<str>,
+    marker: PhantomData<T>,
+}
+
+impl<T: Scalar> FromValue<T> for TextArg<T> {
+    const CLASS: Class = Class::Text;
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
+        Ok(Self { text: FromValue::<T>::from_value(value)?, marker: PhantomData })
+    }
+}
+
+/// A block, as the grid that functions of blocks work on: it has cells.
+pub struct BlockArg<T>(pub VolumeGrid<T>);
+
+impl<T: Scalar> FromValue<T> for BlockArg<T> {
+    const CLASS: Class = Class::Block;
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
+        let (Value::Block(layers) | Value::List(layers)) = value else {
+            return wrong("a block", value);
+        };
+        let mut grids: Vec<SurfaceGrid<T>> = Vec::with_capacity(layers.len());
+        for (k, layer) in layers.iter().enumerate() {
+            grids.push(GridArg::from_value(layer).map_err(|fault| fault.in_item(k))?.0);
+        }
+        let grid = VolumeGrid::from_layers(&grids).map_err(|error| {
+            CallError::new("no-grid", error.to_string()).expected("surfaces of one shape")
+        })?;
+        if grid.size.iter().any(|n| *n < 2) {
+            let [ni, nj, nk] = grid.size;
+            return Err(CallError::new(
+                "too-few-items",
+                format!("a block [{ni},{nj},{nk}] has no cells"),
+            )
+            .expected("at least 2 points along each index"));
+        }
+        Ok(Self(grid))
+    }
+}
+
+/// The layers of a grid as a block.
+///
+/// # Panics
+/// When there are none, or they differ in shape.
+pub fn block<T: Real>(layers: impl IntoIterator<Item = SurfaceGrid<T>>) -> Value<T> {
+    Value::block(layers.into_iter().map(surface)).expect("layers of one shape")
 }
 
 /// A grid as a value.

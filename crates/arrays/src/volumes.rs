@@ -1,37 +1,15 @@
-//! Blocks of the language, lists of layers: smoothed and measured.
+//! Blocks of the language: smoothed and measured.
 
 use crate::grids::fault;
-use crate::value::{GridArg, surface};
+use crate::value::{BlockArg, block};
 use moldloft_budget::{Budget, Spent};
 use moldloft_grid::{
-    BlockMetric, EllipticVolume, FaceWall, GridFace, HexMesh, SurfaceGrid, VolumeGrid,
-    block_quality_until, elliptic_volume_until,
+    BlockMetric, EllipticVolume, FaceWall, GridFace, HexMesh, VolumeGrid, block_quality_until,
+    elliptic_volume_until,
 };
-use moldloft_registry::{
-    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
-};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 use std::fmt::Write;
 use std::sync::Arc;
-
-/// The block whose layers a list holds.
-pub fn volume<T: Scalar>(layers: &[Value<T>], field: FieldId) -> Result<VolumeGrid<T>, CallError> {
-    let mut grids: Vec<SurfaceGrid<T>> = Vec::with_capacity(layers.len());
-    for (k, layer) in layers.iter().enumerate() {
-        let grid = GridArg::from_value(layer).map_err(|fault| fault.in_item(k).in_field(field))?;
-        grids.push(grid.0);
-    }
-    let grid = VolumeGrid::from_layers(&grids).map_err(|error| fault(error, field))?;
-    if grid.size.iter().any(|n| *n < 2) {
-        let [ni, nj, nk] = grid.size;
-        return Err(CallError::new(
-            "too-few-items",
-            format!("a block [{ni},{nj},{nk}] has no cells"),
-        )
-        .expected("at least 2 points along each index")
-        .in_field(field));
-    }
-    Ok(grid)
-}
 
 /// The number of cells of a block that are turned over at a corner.
 ///
@@ -73,7 +51,7 @@ pub fn quality<T: Scalar>(
         let values = (0..ci * cj).map(|cell| values[cell * ck + k]).collect();
         crate::value::numbers(ArrayShape::Grid(ci, cj), values)
     };
-    Ok(Value::list((0..ck).map(layer)))
+    Ok(Value::block((0..ck).map(layer)).expect("layers of one shape"))
 }
 
 /// The figures of a block, by the rules of OpenFOAM's checkMesh and beyond them.
@@ -108,8 +86,7 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
     Ok(text)
 }
 
-/// A block, given as the list of its layers, smoothed by the elliptic equations; its faces stay. The value is the
-/// list of layers.
+/// A block smoothed by the elliptic equations; its faces stay.
 ///
 /// `method`: "laplace" evens lines out, "middlecoff" carries the spacing of the edges inward. `walls` names faces,
 /// "i1", "in", "j1", "jn", "k1", "kn", blank-separated, off which lines leave at right angles with the first cell
@@ -117,15 +94,15 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
 /// enough; folded cells are refused.
 #[derive(Kind)]
 #[kind(
-    class = List,
+    class = Block,
     function,
     name = "elliptic_block",
     example = "surface b[4,4]; for (i = 1:4) for (j = 1:4) b[i,j] = {i, j, 0}; \
                print report(elliptic_block(hyperbolic(b, list(0, 1, 2, 3))));"
 )]
 pub struct EllipticBlock<T: Scalar> {
-    /// The layers.
-    layers: Vec<Value<T>>,
+    /// The block.
+    b: BlockArg<T>,
     /// The most sweeps.
     #[field(default = 2000, min = 0, max = 1e6)]
     n: usize,
@@ -135,7 +112,7 @@ pub struct EllipticBlock<T: Scalar> {
     /// "laplace" or "middlecoff".
     #[field(default = "middlecoff")]
     method: Arc<str>,
-    /// Walls.
+    /// Walls: "i1", "in", "j1", "jn", "k1", "kn".
     #[field(default = "")]
     walls: Arc<str>,
     /// The first cell off the walls.
@@ -148,7 +125,7 @@ pub struct EllipticBlock<T: Scalar> {
 
 impl<T: Scalar> Build<T> for EllipticBlock<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let grid = volume(&self.layers, Self::LAYERS)?;
+        let BlockArg(grid) = self.b;
         let keep_spacing = match &*self.method {
             "laplace" => false,
             "middlecoff" => true,
@@ -184,9 +161,9 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
             omega: self.omega.re(),
             walls,
         };
-        crate::grids::extended(&grid.planes, Self::LAYERS)?;
+        crate::grids::extended(&grid.planes, Self::B)?;
         let done = elliptic_volume_until(&grid, &options, &context.budget)
-            .map_err(|error| fault(error, Self::LAYERS))?;
+            .map_err(|error| fault(error, Self::B))?;
         if !done.converged && self.n > 0 {
             let change = done.history.last().copied().unwrap_or(f64::INFINITY);
             let mut text = format!(
@@ -203,14 +180,14 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
             }
             context.remark("not-converged", text, "allow more sweeps, or a wider tolerance");
         }
-        let turned = folded(&done.grid, &context.budget)
-            .map_err(|spent| fault(spent.into(), Self::LAYERS))?;
+        let turned =
+            folded(&done.grid, &context.budget).map_err(|spent| fault(spent.into(), Self::B))?;
         if turned > 0 {
             return Err(CallError::new("folded-grid", format!("{turned} cells are folded"))
                 .expected("cells that are not turned over")
                 .found(format!("{turned} folded cells"))
-                .in_field(Self::LAYERS));
+                .in_field(Self::B));
         }
-        Ok(Value::list(done.grid.layers().into_iter().map(surface)))
+        Ok(block(done.grid.layers()))
     }
 }

@@ -320,25 +320,27 @@ impl<T: Real> Tape<T> {
         (first < self.checked.len()).then_some(first)
     }
 
-    /// A whole power, by the same multiplications as [`Real::powi`], which must be finite when there is a
+    /// A whole power, by the same multiplications as [`Real::powi`], a negative one as the reciprocal of the positive one, which must be finite when there is a
     /// shape.
     pub fn powi(&mut self, a: Src, exponent: i32, checked: Option<ArrayShape>) -> Src {
         let one = self.constant(T::one(), Origin::FIXED);
-        let mut base = if exponent < 0 { self.op(Code::Div, one, a, checked) } else { a };
+        // What is too large has the reciprocal 0.
+        let whole = if exponent < 0 { None } else { checked };
+        let mut base = a;
         let mut left = exponent.unsigned_abs();
         let mut power = one;
         while left > 0 {
             if left & 1 == 1 {
                 // 1 * x is x for plain numbers; a derivative of minus zero would lose its sign.
                 let skip = power == one && T::PARTS == 1;
-                power = if skip { base } else { self.op(Code::Mul, power, base, checked) };
+                power = if skip { base } else { self.op(Code::Mul, power, base, whole) };
             }
             left >>= 1;
             if left > 0 {
-                base = self.op(Code::Mul, base, base, checked);
+                base = self.op(Code::Mul, base, base, whole);
             }
         }
-        power
+        if exponent < 0 { self.op(Code::Div, one, power, checked) } else { power }
     }
 
     /// Writes the values of the roots, elements of that shape each, into rows of so many.

@@ -4,7 +4,9 @@ use crate::export::lines_and_points;
 use crate::lines_drawing::points;
 use moldloft_diag::Diagnostic;
 use moldloft_document::{ContourSection, Document};
-use moldloft_picture::{Options, StyledPolyline, render};
+use moldloft_lang::functions::plots::{DrawnArrays, arrays_of_program};
+use moldloft_picture::{Camera, Options, PictureError, StyledPolyline, render};
+use moldloft_registry::Value;
 
 /// Contours on pictures: dark grey, so that they show on every patch.
 const CONTOUR_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
@@ -16,10 +18,11 @@ const CONTOUR_WIDTH: f32 = 1.5;
 const WIRE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
 const WIRE_WIDTH: f32 = 3.0;
 
-/// A picture of the model's panels, its contours as lines, and its mirror images.
+/// A picture of the model's panels, its contours as lines, and its mirror images; of a program that has none of them of
+/// the arrays of points among its variables.
 ///
 /// # Errors
-/// An impossible size.
+/// An impossible size; nothing to see.
 pub fn picture(
     document: &mut Document,
     width: usize,
@@ -35,10 +38,24 @@ pub fn picture(
     }));
     let symmetry = document.symmetry();
     let mirrors = ['x', 'y', 'z'].map(|axis| symmetry.contains(axis));
+    let failed = |error: PictureError| vec![Diagnostic::error("no-picture", error.to_string())];
     let panelled = document.panelled().map_err(|d| vec![d])?;
     let options = Options { width, height, mirrors, ..Options::default() };
-    render(&panelled.mesh, &lines, &options)
-        .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
+    if !(panelled.mesh.faces().is_empty() && lines.is_empty()) {
+        return render(&panelled.mesh, &lines, &options).map_err(failed);
+    }
+    let variables: Vec<(String, Value<f64>)> =
+        document.variables().into_iter().map(|(name, _, value)| (name, value)).collect();
+    let arrays = arrays_of_program(&variables, &document.budget()).map_err(|d| vec![d])?;
+    let Some(DrawnArrays { mesh, curves, view: [azimuth_deg, elevation_deg] }) = arrays else {
+        return Err(vec![
+            Diagnostic::error("no-picture", "there is nothing to see")
+                .expected("surfaces or bodies that are shown, contours, or arrays of points")
+                .help("points that were never set are all at {0, 0, 0}"),
+        ]);
+    };
+    let camera = Camera { azimuth_deg, elevation_deg, ..Camera::default() };
+    render(&mesh, &curves, &Options { camera, ..options }).map_err(failed)
 }
 
 fn drawn(section: &ContourSection) -> Vec<StyledPolyline> {

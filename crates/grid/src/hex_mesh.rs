@@ -261,7 +261,8 @@ fn hex_measure(p: &[Vec3; 8]) -> (Vec3, f64) {
 pub struct MeshCheck {
     /// Cells, faces between two of them, faces of the boundary.
     pub counts: [usize; 3],
-    /// Largest and mean angle between the line of two cell centres and the normal of their face, in degrees.
+    /// Angles between the line of two cell centres and the normal of their face, in degrees: the largest, and the one
+    /// whose cosine is the mean of the cosines, which checkMesh calls the average.
     pub non_orthogonality: [f64; 2],
     /// Largest skewness: how far the line of two centres misses the face centre, over the face's size.
     pub skewness: f64,
@@ -387,7 +388,8 @@ impl HexMesh {
         }
         let inner = check.counts[1] as f64;
         if inner > 0.0 {
-            check.non_orthogonality[1] /= inner;
+            let mean = (check.non_orthogonality[1] / inner).clamp(-1.0, 1.0);
+            check.non_orthogonality[1] = libm::acos(mean).to_degrees();
         }
         Ok(check)
     }
@@ -406,7 +408,7 @@ impl HexMesh {
         let angle = libm::acos(cosine).to_degrees();
         check.counts[1] += 1;
         check.non_orthogonality[0] = check.non_orthogonality[0].max(angle);
-        check.non_orthogonality[1] += angle;
+        check.non_orthogonality[1] += cosine;
         let (a, b) = (area.dot(middle - p).abs(), area.dot(n - middle).abs());
         check.weight = check.weight.min(a.min(b) / (a + b));
         check.volume_ratio = check.volume_ratio.min(own.min(their) / own.max(their));

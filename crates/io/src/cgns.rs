@@ -55,7 +55,8 @@ fn data(file: &Hdf5File<'_>, node: StoredObject) -> Result<Option<StoredNumbers>
 /// [`ReadError`] for other files (those in the old ADF among them), unstructured zones, zones without Cartesian
 /// coordinates, coordinates in other files or compressed.
 pub fn read(bytes: &[u8]) -> Result<Vec<CgnsZone>, ReadError> {
-    if bytes.starts_with(b"@(#)ADF") {
+    // The four bytes before it are "@(#)", in most files with the highest bit of each set.
+    if bytes.get(4..).is_some_and(|rest| rest.starts_with(b"ADF Database")) {
         return Err(fault(0, "CGNS in HDF5", "CGNS in ADF (`adf2hdf` converts it)"));
     }
     let file = Hdf5File::open(bytes)?;

@@ -2,7 +2,7 @@
 
 use crate::WriteError;
 use moldloft_grid::{HexMesh, PoleCell};
-use moldloft_num::Vec3;
+use moldloft_num::{Real, Vec3};
 use std::fmt::Write;
 
 /// The cells as what they are at poles.
@@ -136,11 +136,78 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
     Ok(out.into_bytes())
 }
 
+/// Points of one plane are this near to it, as a share of their extent: what blockMesh takes for one.
+const PLANE: f64 = 1e-6;
+
+/// True of faces that lie in one plane.
+pub fn is_plane(points: &[Vec3], faces: &[[usize; 4]]) -> bool {
+    let mut normal = Vec3::zero();
+    let (mut centre, mut count, mut size) = (Vec3::zero(), 0.0, 0.0f64);
+    for face in faces {
+        let [a, b, c, d] = face.map(|n| points[n]);
+        let mut area = (c - a).cross(d - b);
+        // Faces of both sides of a plane count alike.
+        if area.dot(normal) < 0.0 {
+            area = -area;
+        }
+        normal += area;
+        for p in [a, b, c, d] {
+            centre += p;
+            count += 1.0;
+        }
+    }
+    let length = normal.norm();
+    if !(length > 0.0) {
+        return false;
+    }
+    let (normal, centre) = (normal / length, centre / count);
+    let all = || faces.iter().flatten().map(|n| points[*n] - centre);
+    all().for_each(|p| size = size.max(p.norm()));
+    all().all(|p| p.dot(normal).abs() <= PLANE * size)
+}
+
+/// How the points of one periodic boundary lie to those of the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Periodicity {
+    /// Moved by a vector.
+    Translation(Vec3),
+    /// Turned about the axis 0, 1 or 2 through the origin, by an angle in radians.
+    Rotation(usize, f64),
+}
+
+impl Periodicity {
+    /// The point of the other boundary that belongs to one of this.
+    pub fn moved(self, p: Vec3) -> Vec3 {
+        match self {
+            Periodicity::Translation(d) => p + d,
+            Periodicity::Rotation(axis, angle) => {
+                let (sine, cosine) = (Real::sin(angle), Real::cos(angle));
+                let [a, b] = [[1, 2], [2, 0], [0, 1]][axis];
+                let mut q = p.to_array();
+                let (x, y) = (q[a], q[b]);
+                (q[a], q[b]) = (cosine * x - sine * y, sine * x + cosine * y);
+                q.into()
+            }
+        }
+    }
+}
+
+/// The other boundary of a periodic one, and how its points lie to those of this one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeriodicPartner {
+    /// The boundary.
+    pub name: String,
+    /// Its partner.
+    pub partner: String,
+    /// From the boundary to its partner.
+    pub how: Periodicity,
+}
+
 /// A blockMeshDict of OpenFOAM: a block for each cell, so that its points are those of the grid.
-pub fn block_mesh(mesh: &HexMesh) -> Vec<u8> {
+pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
     let mut out = String::from(
         "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class dictionary;\n    object blockMeshDict;\n}\n\
-         convertToMeters 1;\nvertices\n(\n",
+         scale 1;\ndefaultPatch { name defaultFaces; type patch; }\nvertices\n(\n",
     );
     for p in &mesh.points {
         let _ = writeln!(out, "({})", spaced(*p));
@@ -155,12 +222,35 @@ pub fn block_mesh(mesh: &HexMesh) -> Vec<u8> {
         if patch.name == "defaultFaces" {
             continue;
         }
+        let partner = periodic.iter().find(|own| own.name == patch.name);
         let kind = match &*patch.kind {
             "wall" => "wall",
-            "symmetry" => "symmetryPlane",
+            "symmetry" if is_plane(&mesh.points, &patch.faces) => "symmetryPlane",
+            "symmetry" => "symmetry",
+            "empty" => "empty",
+            "wedge" => "wedge",
+            "periodic" if partner.is_some() => "cyclic",
             _ => "patch",
         };
-        let _ = writeln!(out, "{}\n{{\n    type {kind};\n    faces\n    (", patch.name);
+        let _ = writeln!(out, "{}\n{{\n    type {kind};", patch.name);
+        if let Some(own) = partner {
+            let _ = writeln!(out, "    neighbourPatch {};", own.partner);
+            let _ = match own.how {
+                Periodicity::Translation(d) => writeln!(
+                    out,
+                    "    transform translational;\n    separationVector ({});",
+                    spaced(d)
+                ),
+                Periodicity::Rotation(axis, _) => {
+                    let unit = ["1 0 0", "0 1 0", "0 0 1"][axis];
+                    writeln!(
+                        out,
+                        "    transform rotational;\n    rotationAxis ({unit});\n    rotationCentre (0 0 0);"
+                    )
+                }
+            };
+        }
+        out.push_str("    faces\n    (\n");
         for face in &patch.faces {
             let _ = writeln!(out, "    ({})", nodes(face, 0));
         }

@@ -62,6 +62,7 @@ pub mod off;
 pub mod plot3d;
 pub mod ply;
 pub mod points;
+pub mod quadrilaterals;
 pub mod section;
 pub mod step;
 pub mod stl;

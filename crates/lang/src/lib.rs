@@ -18,7 +18,7 @@ pub mod run;
 pub mod source;
 pub mod value;
 
-pub use functions::block_files::{CgnsBlocks, FacePart};
+pub use functions::block_files::{BlockJoint, CgnsBlocks, FacePart};
 pub use functions::builtins::{BUILTINS, Builtin, MOST_REFINED};
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};

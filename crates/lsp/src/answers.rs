@@ -169,7 +169,9 @@ pub fn of_document(
             let at = lines.offset(position_of(params)?);
             let mut items: Vec<CompletionItem> =
                 document.completions(at).into_iter().map(completion).collect();
-            items.extend(files(asked, at));
+            if document.names_file(asked.text, at) {
+                items.extend(files(asked, at));
+            }
             Ok(json!({"isIncomplete": false, "items": items}))
         }
         ask::SignatureHelpRequest::METHOD => {

@@ -112,7 +112,8 @@ fn count<T: Scalar>(value: &Value<T>) -> usize {
     match value {
         Value::Numbers(a) => a.items.len() * T::PARTS,
         Value::Vectors(a) => a.shape.count() * 3 * T::PARTS,
-        Value::List(items) => items.iter().map(count).sum(),
+        Value::List(items) | Value::Block(items) => items.iter().map(count).sum(),
+        Value::Record(record) => record.values.iter().map(count).sum(),
         _ => 1,
     }
 }
@@ -135,7 +136,11 @@ fn hash<T: Scalar>(value: &Value<T>, h: &mut DefaultHasher) {
         Value::Vector(v) => vector(*v, h),
         Value::Numbers(a) => a.items.iter().for_each(|&x| number(x, h)),
         Value::Vectors(a) => a.planes.iter().flatten().for_each(|&x| number(x, h)),
-        Value::List(items) => items.iter().for_each(|item| hash(item, h)),
+        Value::List(items) | Value::Block(items) => items.iter().for_each(|item| hash(item, h)),
+        Value::Record(record) => {
+            record.of.hash(h);
+            record.values.iter().for_each(|item| hash(item, h));
+        }
         Value::Object(key) => key.hash(h),
         Value::Point(p) => vector(p.xyz, h),
         Value::Field(f) => f.fingerprint().hash(h),

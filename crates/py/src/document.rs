@@ -16,7 +16,7 @@ use moldloft::document::{
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft::host::FileWorld;
-use moldloft::lang::{CgnsBlocks, FacePart};
+use moldloft::lang::{BlockJoint, CgnsBlocks, FacePart};
 use moldloft::model::Object;
 use moldloft::num::{Order, Vec3};
 use moldloft::rows::{CurveRef, SurfaceRef, Value};
@@ -53,8 +53,7 @@ pub struct PyDocument {
 type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
 
 /// A file of blocks, their names, joints and boundaries.
-type WrittenBlocks =
-    (String, Vec<String>, Vec<(FacePart, FacePart, [i32; 3])>, Vec<(FacePart, String, String)>);
+type WrittenBlocks = (String, Vec<String>, Vec<BlockJoint>, Vec<(FacePart, String, String)>);
 
 type Outcome<R> = Result<R, Vec<moldloft::diag::Diagnostic>>;
 

@@ -183,6 +183,18 @@ fn encode<T: ScalarParts>(value: &Value<T>) -> Option<Encoded> {
             shape.push(3);
             (None, shape, a.iter().flat_map(|v| vector(&v)).collect())
         }
+        Value::Block(layers) => {
+            let layers: Option<Vec<_>> = layers
+                .iter()
+                .map(|layer| if let Value::Vectors(a) = layer { Some(a) } else { None })
+                .collect();
+            let layers = layers?;
+            let mut shape = extents(layers.first()?.shape);
+            shape.extend([layers.len(), 3]);
+            let columns = 0..layers.first()?.len();
+            let points = columns.flat_map(|at| layers.iter().map(move |layer| layer.at(at)));
+            (None, shape, points.flat_map(|v| vector(&v)).collect())
+        }
         _ => return None,
     })
 }
@@ -197,6 +209,12 @@ fn decode<T: ScalarParts>(shape: &[usize], numbers: &[Vec<f64>]) -> Option<Value
         [_, 3] => Value::Vectors(Arc::new(Vectors::row(vectors()))),
         [m, n] => Value::Numbers(Arc::new(Array::grid(m, n, all))),
         [m, n, 3] => Value::Vectors(Arc::new(Vectors::grid(m, n, vectors()))),
+        [ni, nj, nk, 3] => {
+            let points = vectors();
+            let layer = |k: usize| (0..ni * nj).map(|at| points[at * nk + k]).collect();
+            let layers = (0..nk).map(|k| Value::Vectors(Arc::new(Vectors::grid(ni, nj, layer(k)))));
+            Value::block(layers)?
+        }
         _ => return None,
     })
 }

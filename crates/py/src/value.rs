@@ -41,6 +41,14 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             let items: PyResult<Vec<_>> = items.iter().map(|item| to_python(py, item)).collect();
             PyList::new(py, items?)?.into_any()
         }
+        Value::Block(layers) => block(py, layers)?,
+        Value::Record(record) => {
+            let dict = pyo3::types::PyDict::new(py);
+            for (name, value) in record.names.iter().zip(&record.values) {
+                dict.set_item(&**name, to_python(py, value)?)?;
+            }
+            dict.into_any()
+        }
         Value::Body(mesh) => {
             let dict = pyo3::types::PyDict::new(py);
             let fill = |out: &mut [Vec3]| out.copy_from_slice(&mesh.points);
@@ -65,6 +73,33 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
         },
         other => Bound::new(py, Shape { class: other.class() })?.into_any(),
     })
+}
+
+/// A block as an array (ni, nj, nk, 3), or of numbers (ni, nj, nk).
+fn block<'py>(py: Python<'py>, layers: &[Value<f64>]) -> PyResult<Bound<'py, PyAny>> {
+    let nk = layers.len();
+    match &layers[0] {
+        Value::Vectors(first) => {
+            let ArrayShape::Grid(ni, nj) = first.shape else { return Ok(py.None().into_bound(py)) };
+            let fill = |out: &mut [Vec3]| {
+                for (k, layer) in layers.iter().enumerate() {
+                    let Value::Vectors(a) = layer else { continue };
+                    a.iter().enumerate().for_each(|(at, v)| out[at * nk + k] = v);
+                }
+            };
+            Ok(arrays::filled(py, [ni, nj, nk, 3], fill).0.into_any())
+        }
+        Value::Numbers(first) => {
+            let ArrayShape::Grid(ni, nj) = first.shape else { return Ok(py.None().into_bound(py)) };
+            let mut all = vec![0.0; ni * nj * nk];
+            for (k, layer) in layers.iter().enumerate() {
+                let Value::Numbers(a) = layer else { continue };
+                a.items.iter().enumerate().for_each(|(at, x)| all[at * nk + k] = *x);
+            }
+            Ok(PyArray::from_vec(py, all).reshape([ni, nj, nk])?.into_any())
+        }
+        _ => Ok(py.None().into_bound(py)),
+    }
 }
 
 /// A piece of a body: what it is called, and its triangles.

@@ -65,11 +65,15 @@ pub enum Class {
     Mesh,
     /// A list.
     List,
+    /// A grid of three dimensions: layers of surfaces.
+    Block,
+    /// Members by name.
+    Record,
 }
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 29] = [
+    pub const ALL: [Class; 31] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -99,6 +103,8 @@ impl Class {
         Class::Set,
         Class::Mesh,
         Class::List,
+        Class::Block,
+        Class::Record,
     ];
 
     /// The class's name, as in the reference.
@@ -133,6 +139,8 @@ impl Class {
             Class::Set => "set",
             Class::Mesh => "mesh",
             Class::List => "list",
+            Class::Block => "block",
+            Class::Record => "record",
         }
     }
 
@@ -168,6 +176,8 @@ impl Class {
             Class::Set => "a set",
             Class::Mesh => "a mesh",
             Class::List => "a list",
+            Class::Block => "a block (layers of surfaces)",
+            Class::Record => "a record",
         }
     }
 
@@ -201,7 +211,7 @@ impl Class {
                     | Vector
                     | Field
             ),
-            Vectors => found == List,
+            Vectors | Block => found == List,
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),
             Plane => found == Text,

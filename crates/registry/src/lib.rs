@@ -49,7 +49,7 @@ pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
 pub use triangle_body::{
     Border, BorderCurve, Flaw, Group, SheetMeasures, TriangleBody, TriangulatedBorder,
 };
-pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
+pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Record, Value, Vectors};
 
 /// What the derive macro's output refers to.
 #[doc(hidden)]

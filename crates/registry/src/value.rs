@@ -271,6 +271,10 @@ pub enum Value<T: Real> {
     Vectors(Arc<Vectors<T>>),
     /// A list.
     List(Arc<[Value<T>]>),
+    /// A grid `[l, m, n]` of numbers or vectors, as its layers k: grids of one shape and class, at least one.
+    Block(Arc<[Value<T>]>),
+    /// Members by name.
+    Record(Arc<Record<T>>),
     /// A declared object, not read yet.
     Object(Key),
     /// A point, bead, magnet or ring.
@@ -299,6 +303,24 @@ pub enum Value<T: Real> {
     Locus(LocusRef<T>),
 }
 
+/// Members by name, of a type that a program declares.
+#[derive(Clone, Debug)]
+pub struct Record<T: Real> {
+    /// The name of the type.
+    pub of: Arc<str>,
+    /// The names of the members, in the order of their declaration.
+    pub names: Arc<[Arc<str>]>,
+    /// The members' values, in the same order.
+    pub values: Vec<Value<T>>,
+}
+
+impl<T: Real> Record<T> {
+    /// The place of the member of that name.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|own| **own == *name)
+    }
+}
+
 impl<T: Real> Value<T> {
     /// A text.
     pub fn text(text: &str) -> Self {
@@ -308,6 +330,19 @@ impl<T: Real> Value<T> {
     /// A list.
     pub fn list(items: impl IntoIterator<Item = Value<T>>) -> Self {
         Value::List(items.into_iter().collect())
+    }
+
+    /// The block of these layers; `None` unless they are grids of one shape, all of numbers or all of vectors.
+    pub fn block(layers: impl IntoIterator<Item = Value<T>>) -> Option<Self> {
+        let layers: Arc<[Value<T>]> = layers.into_iter().collect();
+        let of = |layer: &Value<T>| match layer {
+            Value::Vectors(a) => Some((true, a.shape)),
+            Value::Numbers(a) => Some((false, a.shape)),
+            _ => None,
+        };
+        let first =
+            of(layers.first()?).filter(|(_, shape)| matches!(shape, ArrayShape::Grid(..)))?;
+        layers.iter().all(|layer| of(layer) == Some(first)).then_some(Value::Block(layers))
     }
 
     /// The class of the value; of an object that was not read yet, `Any`.
@@ -320,6 +355,8 @@ impl<T: Real> Value<T> {
             Value::Numbers(_) => Class::Numbers,
             Value::Vectors(_) => Class::Vectors,
             Value::List(_) => Class::List,
+            Value::Block(_) => Class::Block,
+            Value::Record(_) => Class::Record,
             Value::Point(p) => match (&p.on_curve, &p.on_surface) {
                 (Some(_), Some(_)) => Class::Ring,
                 (Some(_), None) => Class::Bead,
@@ -357,8 +394,11 @@ impl<T: Real> Value<T> {
                 let bits = |(x, y): (&Vec<T>, &Vec<T>)| x.iter().zip(y).all(|(x, y)| x.bits_eq(*y));
                 Arc::ptr_eq(a, b) || a.shape == b.shape && a.planes.iter().zip(&b.planes).all(bits)
             }
-            (Value::List(a), Value::List(b)) => {
+            (Value::List(a), Value::List(b)) | (Value::Block(a), Value::Block(b)) => {
                 a.len() == b.len() && a.iter().zip(b.iter()).all(|(x, y)| x.same(y))
+            }
+            (Value::Record(a), Value::Record(b)) => {
+                a.of == b.of && a.values.iter().zip(&b.values).all(|(x, y)| x.same(y))
             }
             (Value::Object(a), Value::Object(b)) => a == b,
             (Value::Point(a), Value::Point(b)) => a.same(b),
@@ -405,6 +445,7 @@ impl<T: Real> Value<T> {
             Value::Relabel(r) => r.depth,
             Value::Solid(s) => s.depth,
             Value::List(items) => items.iter().map(Value::depth).max().unwrap_or(0),
+            Value::Record(record) => record.values.iter().map(Value::depth).max().unwrap_or(0),
             _ => 0,
         }
     }
@@ -468,7 +509,10 @@ impl<T: Real> Value<T> {
             Value::Vector(v) => vector(v),
             Value::Numbers(a) => a.items.iter().map(of).fold(0.0, f64::max),
             Value::Vectors(a) => a.planes.iter().flatten().map(of).fold(0.0, f64::max),
-            Value::List(items) => items.iter().map(Value::largest).fold(0.0, f64::max),
+            Value::List(items) | Value::Block(items) => {
+                items.iter().map(Value::largest).fold(0.0, f64::max)
+            }
+            Value::Record(record) => record.values.iter().map(Value::largest).fold(0.0, f64::max),
             Value::Point(p) => vector(&p.xyz),
             Value::Plane(p) => vector(&p.point),
             Value::Frame(f) => vector(&f.origin),
@@ -483,7 +527,8 @@ impl<T: Real> Value<T> {
             Value::Vector(v) => v.is_finite(),
             Value::Numbers(a) => a.items.iter().all(|x| x.is_finite()),
             Value::Vectors(a) => a.planes.iter().flatten().all(|x| x.is_finite()),
-            Value::List(items) => items.iter().all(Value::is_finite),
+            Value::List(items) | Value::Block(items) => items.iter().all(Value::is_finite),
+            Value::Record(record) => record.values.iter().all(Value::is_finite),
             Value::Point(p) => p.xyz.is_finite(),
             Value::Plane(p) => p.point.is_finite() && p.normal.is_finite(),
             Value::Frame(f) => f.origin.is_finite() && f.axes.iter().all(|a| a.is_finite()),

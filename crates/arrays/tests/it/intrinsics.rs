@@ -22,7 +22,12 @@ fn reductions() {
     assert_eq!(one("dot", &[a.clone(), a.clone()]), 43.0);
     close(call("norm"), 43f64.sqrt(), 1e-15);
     let c = curve(&[[0.0; 3], [3.0, 4.0, 0.0], [3.0, 4.0, 1.0]]);
-    assert_eq!(one("len", std::slice::from_ref(&c)), 6.0);
+    assert_eq!(one("length", std::slice::from_ref(&c)), 6.0);
+    assert_eq!(one("len", std::slice::from_ref(&c)), 3.0);
+    assert_eq!(
+        [one("len", &[text("wing")]), one("len", &[Value::list([number(1.0)])])],
+        [4.0, 1.0]
+    );
     assert_eq!(numbers(&ok("cumlen", std::slice::from_ref(&c))), [0.0, 5.0, 6.0]);
     assert_eq!(numbers(&ok("bbox_max", std::slice::from_ref(&c))), [3.0, 4.0, 1.0]);
     let l = points(&ok("centroid", &[c]))[0];
@@ -31,7 +36,49 @@ fn reductions() {
     assert!(points(&ok("centroid", &[s]))[0].distance(Vec3::of(1.5, 0.5, 0.0)) < 1e-15);
     assert_eq!(refused("argmin", &[farray(&[])]).0, "empty");
     assert_eq!(refused("dot", &[a.clone(), farray(&[1.0])]), ("shapes-differ", Some(1), None));
-    assert_eq!(refused("len", &[a]).0, "wrong-class");
+    assert_eq!(one("len", &[a]), 5.0);
+    assert_eq!(refused("len", &[number(1.0)]).0, "wrong-class");
+}
+
+#[test]
+fn texts() {
+    let said = |name: &str, args: &[&str]| {
+        let args: Vec<Value<f64>> = args.iter().map(|word| text(word)).collect();
+        ok(name, &args)
+    };
+    let is = |value: Value<f64>, wanted: &str| assert!(value.same(&text(wanted)), "{value:?}");
+    is(ok("cut", &[text("wing.dat"), number(6.0)]), "dat");
+    is(ok("cut", &[text("äbc"), number(2.0), number(2.0)]), "b");
+    is(ok("cut", &[text("abc"), number(4.0)]), "");
+    is(said("replace", &["a-b-c", "-", "+"]), "a+b+c");
+    is(said("trim", &["  a b "]), "a b");
+    is(said("upper", &["naca"]), "NACA");
+    is(said("lower", &["NACA"]), "naca");
+    let Value::List(parts) = said("split", &["a,b,,c", ","]) else { panic!() };
+    assert_eq!(parts.len(), 4);
+    let Value::List(words) = said("split", &["  a  b "]) else { panic!() };
+    assert_eq!(words.len(), 2);
+    assert_eq!(one("find", &[text("äb.c"), text(".")]), 3.0);
+    assert_eq!(one("find", &[text("abc"), text("x")]), 0.0);
+    for (word, x) in [("-2.5e3", -2500.0), (" 7 ", 7.0), ("1.5D2", 150.0), (".5", 0.5)] {
+        assert_eq!(one("number", &[text(word)]), x);
+    }
+    for word in ["", "x", "inf", "nan", "1e999", "1 2"] {
+        assert_eq!(refused("number", &[text(word)]).0, "not-a-number", "{word}");
+    }
+    assert_eq!(refused("cut", &[text("abc"), number(5.0)]), ("outside", Some(1), None));
+    assert_eq!(refused("replace", &[text("abc"), text(""), text("x")]).0, "empty");
+}
+
+#[test]
+fn layers_stacked_are_a_block() {
+    let s = surface(3, 2, |i, j| [i as f64, j as f64, 0.0]);
+    let up = surface(3, 2, |i, j| [i as f64, j as f64, 1.0]);
+    let block = ok("stack", &[s.clone(), up]);
+    assert!(matches!(&block, Value::Block(layers) if layers.len() == 2));
+    assert_eq!(one("folds", std::slice::from_ref(&block)), 0.0);
+    let other = surface(2, 2, |i, j| [i as f64, j as f64, 0.0]);
+    assert_eq!(refused("stack", &[s, other]), ("shapes-differ", Some(0), Some(1)));
 }
 
 #[test]
@@ -314,7 +361,7 @@ fn grids_of_the_language() {
         face(2, 3, &|i, j| [i, j, 0.0]),
         face(2, 3, &|i, j| [i, j, 3.0]),
     ];
-    let Value::List(layers) = ok("tfi", &[Value::list(faces)]) else { panic!() };
+    let Value::Block(layers) = ok("tfi", &[Value::list(faces)]) else { panic!() };
     assert_eq!(layers.len(), 4);
     assert!(points(&layers[2]).iter().all(|p| p.z == 2.0));
     // Smoothing.
@@ -430,7 +477,7 @@ fn marched_grids() {
     let line = curve(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]]);
     let grid = points(&ok("hyperbolic", &[line.clone(), farray(&[0.0, 0.5, 1.5])]));
     assert!(grid[8..].iter().all(|p| (p.y - 1.5).abs() < 1e-12 && p.z.abs() < 1e-12));
-    let Value::List(layers) =
+    let Value::Block(layers) =
         ok("hyperbolic", &[hill(6, 5), farray(&[0.0, 0.05]), text("j1 symmetry y, jn symmetry y")])
     else {
         panic!()

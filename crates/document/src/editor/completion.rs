@@ -10,6 +10,7 @@ use moldloft_lang::source::scope::Binding;
 use moldloft_lang::value::variables::shape_text;
 use moldloft_registry::FieldSpec;
 use moldloft_syntax::sdl::{self, OpenCall, RoutineId};
+use std::sync::Arc;
 
 /// What may stand at a place of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,13 +75,13 @@ impl Document {
             }
             let names = match self.eval(&operand) {
                 Ok(value) => moldloft_lang::value::member::names(&value),
-                Err(_) => vec!["x", "y", "z", "d1", "d2"],
+                Err(_) => ["x", "y", "z", "d1", "d2"].map(Arc::from).to_vec(),
             };
             let kind = CompletionKind::Member;
             return names
                 .into_iter()
                 .filter(|name| name.starts_with(prefix))
-                .map(|name| Completion { word: name.into(), kind, detail: String::new() })
+                .map(|name| Completion { word: name.to_string(), kind, detail: String::new() })
                 .collect();
         }
         let mut found: Vec<Completion> = Vec::new();
@@ -145,8 +146,37 @@ impl Document {
         found
     }
 
+    /// True inside of a text that names a file: of `load`, of a component, of what reads and writes files.
+    pub fn names_file(&self, text: &str, offset: u32) -> bool {
+        let Some(before) = text.get(..offset as usize) else { return false };
+        if sdl::text_around(before, offset).is_none() {
+            return false;
+        }
+        let Some(call) = sdl::call_around(before, offset) else { return true };
+        if let Some(builtin) = BUILTINS.iter().find(|b| b.name == call.callee) {
+            return builtin.names_file(call.argument);
+        }
+        if INSERTED_FILES.iter().any(|row| row.name == call.callee) {
+            return call.argument == 0;
+        }
+        self.field(&call).is_some_and(|field| field.help.to_lowercase().contains("file"))
+    }
+
     /// The words that the documentation of a text argument names.
     fn quoted_words(&self, call: Option<&OpenCall>, prefix: &str) -> Vec<Completion> {
+        let builtin =
+            call.and_then(|call| Some((BUILTINS.iter().find(|b| b.name == call.callee)?, call)));
+        if let Some((builtin, call)) = builtin {
+            return builtin
+                .words(call.argument)
+                .filter(|word| word.starts_with(prefix))
+                .map(|word| Completion {
+                    word: word.into(),
+                    kind: CompletionKind::Word,
+                    detail: builtin.signature.into(),
+                })
+                .collect();
+        }
         let help = call.and_then(|call| self.field(call)).map_or("", |f| f.help);
         let mut found: Vec<Completion> = Vec::new();
         // Every second part of a text that is divided at its quotation marks is quoted.

@@ -4,8 +4,8 @@
 
 use moldloft_diag::Span;
 use moldloft_syntax::sdl::{
-    Arg, ChainItem, ExprId, ExprKind, Ident, NodeList, Program, RoutineId, StmtId, StmtKind,
-    Subscript, Symbol, TextId,
+    Arg, ChainItem, Declarator, ExprId, ExprKind, Ident, ItemType, ListLength, NodeList, Program,
+    RoutineId, StmtId, StmtKind, Subscript, Symbol, TextId, Type,
 };
 use std::collections::HashSet;
 
@@ -43,8 +43,8 @@ pub(crate) struct Mentions {
     pub names: Vec<Mention>,
     pub members: Vec<MemberMention>,
     pub calls: Vec<CallMention>,
-    /// The files that it loads.
-    pub loads: Vec<TextId>,
+    /// The files that it loads, and the statements that do.
+    pub loads: Vec<(TextId, Span)>,
 }
 
 /// Collects the names of a file.
@@ -129,13 +129,21 @@ impl Walk<'_> {
         let m = self.m;
         match m[id].kind {
             StmtKind::Block(list) => self.stmts(list),
-            StmtKind::Load(file) => self.found.loads.push(file),
+            StmtKind::Load(file) => self.found.loads.push((file, m[id].span)),
             StmtKind::Break | StmtKind::Continue | StmtKind::Error => {}
             StmtKind::Routine(at) => self.routine(at),
-            StmtKind::Declare { items, .. } => {
+            StmtKind::Record { name, members } => {
+                self.ident(name, true);
+                // Its members are no names of the file.
+                for &stmt in &m[members] {
+                    let StmtKind::Declare { items, .. } = m[stmt].kind else { continue };
+                    m[items].iter().for_each(|item| self.declarator(item));
+                }
+            }
+            StmtKind::Declare { ty, items, .. } => {
+                self.type_word(ty);
                 for item in &m[items] {
-                    self.exprs(item.dims);
-                    item.value.into_iter().for_each(|e| self.expr(e));
+                    self.declarator(item);
                     self.ident(item.name, true);
                 }
             }
@@ -192,8 +200,25 @@ impl Walk<'_> {
         }
     }
 
+    /// The expressions of a declared variable.
+    fn declarator(&mut self, item: &Declarator) {
+        if let Some(ListLength::Of(length)) = item.list {
+            self.expr(length);
+        }
+        self.exprs(item.dims);
+        item.value.into_iter().for_each(|e| self.expr(e));
+    }
+
+    /// The name of a record where a type stands.
+    fn type_word(&mut self, (ty, span): (Type, Span)) {
+        if let Type::Other(symbol) | Type::List(ItemType::Other(symbol)) = ty {
+            self.name(symbol, span, false);
+        }
+    }
+
     fn routine(&mut self, at: RoutineId) {
         let routine = self.m[at];
+        routine.result.into_iter().for_each(|ty| self.type_word(ty));
         self.ident(routine.name, true);
         let mut inner = Locals { m: self.m, found: HashSet::new() };
         for formal in &self.m[routine.formals] {
@@ -203,7 +228,9 @@ impl Walk<'_> {
         let outer = (std::mem::replace(&mut self.locals, inner.found), self.routine);
         self.routine = Some(at);
         for formal in &self.m[routine.formals] {
+            self.type_word(formal.ty);
             self.ident(formal.name, true);
+            formal.default.into_iter().for_each(|e| self.expr(e));
         }
         self.stmts(routine.body);
         (self.locals, self.routine) = outer;

@@ -8,7 +8,7 @@
 use super::mentions::{Mentions, mentions};
 use moldloft_diag::{FileId, Span};
 use moldloft_lang::run::inserted::INSERTED_FILES;
-use moldloft_syntax::sdl::{self, ExprKind, Program};
+use moldloft_syntax::sdl::{self, ExprKind, Program, TextId};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The files of a workspace by name, as far as their names go.
@@ -23,7 +23,8 @@ struct WorkspaceFile {
     uses: Vec<Use>,
     /// The uses of each name, by their numbers.
     by_name: HashMap<Box<str>, Vec<u32>>,
-    loads: Vec<String>,
+    /// The files that it loads, each with the statement that does.
+    loads: Vec<WorkspacePlace>,
     /// The files that its components insert.
     inserts: Vec<String>,
 }
@@ -68,7 +69,9 @@ impl Workspace {
     /// The files that a file loads or inserts.
     pub fn loads(&self, file: &str) -> impl Iterator<Item = &str> {
         let names = self.files.get(file);
-        let loads = names.into_iter().flat_map(|names| names.loads.iter().chain(&names.inserts));
+        let loads = names
+            .into_iter()
+            .flat_map(|names| names.loads.iter().map(|(file, ..)| file).chain(&names.inserts));
         loads.map(String::as_str)
     }
 
@@ -99,7 +102,10 @@ impl Workspace {
         for (k, used) in uses.iter().enumerate() {
             by_name.entry(used.name.clone()).or_default().push(k as u32);
         }
-        let loads = found.loads.iter().filter_map(|&path| resolve(&program[path])).collect();
+        let load = |&(path, span): &(TextId, Span)| {
+            resolve(&program[path]).map(|file| (file, span.start, span.end))
+        };
+        let loads: Vec<WorkspacePlace> = found.loads.iter().filter_map(load).collect();
         let inserts: BTreeSet<String> = uses
             .iter()
             .filter_map(|u| match &u.owner {
@@ -122,8 +128,12 @@ impl Workspace {
         self.places(&file, &used).into_iter().map(|(file, u)| (file, u.start, u.end)).collect()
     }
 
-    /// The place that declares the name at a place.
+    /// The place that declares the name at a place; the beginning of the file that a `load` there names.
     pub fn definition(&self, file: &str, offset: u32) -> Option<WorkspacePlace> {
+        let mut loads = self.files.get(file).into_iter().flat_map(|names| &names.loads);
+        if let Some((loaded, ..)) = loads.find(|(_, start, end)| (*start..*end).contains(&offset)) {
+            return Some((loaded.clone(), 0, 0));
+        }
         let (file, used) = self.used_at(file, offset)?;
         let all = self.places(&file, &used);
         let first = all.iter().filter(|(_, u)| u.declares);
@@ -257,7 +267,7 @@ impl Workspace {
         let mut roots = BTreeSet::from([file.to_string()]);
         loop {
             let above = self.files.iter().filter(|(name, names)| {
-                !roots.contains(*name) && names.loads.iter().any(|l| roots.contains(l))
+                !roots.contains(*name) && names.loads.iter().any(|(l, ..)| roots.contains(l))
             });
             let above: Vec<String> = above.map(|(name, _)| name.clone()).collect();
             if above.is_empty() {
@@ -268,7 +278,7 @@ impl Workspace {
         let mut open: Vec<String> = roots.iter().cloned().collect();
         let mut all = roots;
         while let Some(name) = open.pop() {
-            for load in self.files.get(&name).into_iter().flat_map(|names| &names.loads) {
+            for (load, ..) in self.files.get(&name).into_iter().flat_map(|names| &names.loads) {
                 if all.insert(load.clone()) {
                     open.push(load.clone());
                 }

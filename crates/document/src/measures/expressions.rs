@@ -274,6 +274,10 @@ fn derivative_part(value: &Value<Dual4>, k: usize) -> Option<Value<f64>> {
             let parts: Option<Vec<_>> = items.iter().map(|v| derivative_part(v, k)).collect();
             Value::list(parts?)
         }
+        Value::Block(layers) => {
+            let parts: Option<Vec<_>> = layers.iter().map(|v| derivative_part(v, k)).collect();
+            Value::block(parts?)?
+        }
         _ => return None,
     })
 }

@@ -119,11 +119,11 @@ fn mark_at(bytes: &[u8], at: usize, big_endian: bool, mark: usize) -> Option<i64
 }
 
 /// A record: the stretches of the file that hold it (more than one beyond 2 GiB).
-struct Record {
+struct FortranRecord {
     parts: Vec<std::ops::Range<usize>>,
 }
 
-impl Record {
+impl FortranRecord {
     fn len(&self) -> usize {
         self.parts.iter().map(|p| p.len()).sum()
     }
@@ -134,8 +134,12 @@ impl Record {
 }
 
 /// The records of the file; an empty error when it does not begin with one.
-fn records(bytes: &[u8], big_endian: bool, mark: usize) -> Result<Vec<Record>, Option<Complaint>> {
-    let mut all: Vec<Record> = Vec::new();
+fn records(
+    bytes: &[u8],
+    big_endian: bool,
+    mark: usize,
+) -> Result<Vec<FortranRecord>, Option<Complaint>> {
+    let mut all: Vec<FortranRecord> = Vec::new();
     let mut at = 0;
     while at < bytes.len() {
         let mut parts = Vec::new();
@@ -171,7 +175,7 @@ fn records(bytes: &[u8], big_endian: bool, mark: usize) -> Result<Vec<Record>, O
                 break;
             }
         }
-        all.push(Record { parts });
+        all.push(FortranRecord { parts });
         if all.len() == 1 && !matches!(all[0].len(), 4 | 8 | 12) {
             return Err(None);
         }
@@ -180,7 +184,7 @@ fn records(bytes: &[u8], big_endian: bool, mark: usize) -> Result<Vec<Record>, O
 }
 
 /// Bytes of a record in order.
-fn joined<'a>(bytes: &'a [u8], record: &Record) -> std::borrow::Cow<'a, [u8]> {
+fn joined<'a>(bytes: &'a [u8], record: &FortranRecord) -> std::borrow::Cow<'a, [u8]> {
     match &record.parts[..] {
         [one] => bytes[one.clone()].into(),
         many => many.iter().flat_map(|p| &bytes[p.clone()]).copied().collect::<Vec<u8>>().into(),
@@ -204,12 +208,12 @@ pub(super) fn sizes(words: &[i64], axes: usize) -> Option<Vec<[usize; 3]>> {
 
 fn of_records(
     bytes: &[u8],
-    records: &[Record],
+    records: &[FortranRecord],
     big_endian: bool,
     mark: usize,
     complaints: &mut Vec<Complaint>,
 ) -> Option<(Vec<StructuredGrid>, Variant)> {
-    let words = |record: &Record| -> Vec<i64> {
+    let words = |record: &FortranRecord| -> Vec<i64> {
         let data = joined(bytes, record);
         (0..data.len() / 4).filter_map(|k| integer(&data, 4 * k, big_endian)).collect()
     };

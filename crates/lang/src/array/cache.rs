@@ -225,7 +225,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let (_, target) = self.arrays.assigning.filter(|(of, _)| *of == key)?;
         let symbol = m.program.as_name(target)?;
         let place = self.env.scope.place_of(m.names[symbol.0 as usize])?;
-        let whole = place.section.is_none() && place.component.is_none();
+        let whole = place.is_whole();
         let outside = place.frame.is_none() && self.run.extent() == Extent::Edit;
         // Not what could still stop the run, either.
         if !whole || outside || !self.has_room(lanes.shape.count()) {

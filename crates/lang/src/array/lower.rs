@@ -145,7 +145,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some((read, value)) if read == id => (value?, false),
             _ => {
                 let value = self.expr(m, id)?;
-                let object = matches!(value, Value::Object(_) | Value::List(_));
+                let object = matches!(value, Value::Object(_) | Value::List(_) | Value::Block(_));
                 (if read { self.read(value, m.program[id].span)? } else { value }, object)
             }
         };

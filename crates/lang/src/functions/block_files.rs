@@ -1,11 +1,14 @@
-//! Blocks as one mesh with named boundaries, and what CGNS is to know of them.
+//! Blocks as one mesh with named boundaries: how they meet, which boundaries are periodic, what CGNS is to know.
 
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
+use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
 use moldloft_io::{StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, HexBlock};
+use moldloft_num::{Real, Vec3};
 
 /// A block that is written, and the names of its faces.
+#[derive(Clone)]
 pub(crate) struct NamedBlock {
     pub grid: StructuredGrid,
     pub name: String,
@@ -13,24 +16,40 @@ pub(crate) struct NamedBlock {
 }
 
 /// What boundaries are.
-const KINDS: [&str; 6] = ["wall", "symmetry", "farfield", "inflow", "outflow", "patch"];
+pub(crate) const BOUNDARY_KINDS: [&str; 9] =
+    ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
 
 /// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last place (i, j, k) from 0.
 pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
+
+/// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
+pub type PeriodicJoint = ([f64; 3], [f64; 3], [f64; 3]);
+
+/// Both sides of a joint, for each axis of the first that of the second, from 1, negative if against, and how the
+/// second lies to the first when they are periodic.
+pub type BlockJoint = (FacePart, FacePart, [i32; 3], Option<PeriodicJoint>);
 
 /// What a CGNS file holds besides points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CgnsBlocks {
     /// Names of the blocks.
     pub names: Vec<String>,
-    /// Where blocks meet: both sides, and for each axis of the first that of the second, from 1, negative if against.
-    pub joints: Vec<(FacePart, FacePart, [i32; 3])>,
+    /// Where blocks meet.
+    pub joints: Vec<BlockJoint>,
     /// What is boundary: its place, name and type.
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
-/// The names of faces: "k1 = hull wall, i1 in = plane symmetry".
-pub(crate) fn face_names(words: &str) -> Result<FaceNames, Diagnostic> {
+/// How blocks meet.
+pub(crate) struct Connected {
+    pub content: CgnsBlocks,
+    pub partners: Vec<PeriodicPartner>,
+    /// The parts of faces that meet nothing and have no name.
+    pub nameless: Vec<FacePart>,
+}
+
+/// The names of faces: "k1 = hull wall, i1 in = plane symmetry"; a surface has no faces k.
+pub(crate) fn face_names(words: &str, flat: bool) -> Result<FaceNames, Diagnostic> {
     let mut faces = FaceNames::default();
     for entry in words.split([',', ';']).filter(|entry| !entry.trim().is_empty()) {
         let wrong = |message: String| {
@@ -50,15 +69,24 @@ pub(crate) fn face_names(words: &str) -> Result<FaceNames, Diagnostic> {
             return Err(wrong(format!("\"{name}\" is not a boundary name")));
         }
         let kind = meaning.next().unwrap_or("patch");
-        if !KINDS.contains(&kind) || meaning.next().is_some() {
+        if !BOUNDARY_KINDS.contains(&kind) || meaning.next().is_some() {
             return Err(wrong(format!("there is no boundary \"{kind}\""))
-                .expected(KINDS.join(", "))
-                .suggest(kind, KINDS));
+                .expected(BOUNDARY_KINDS.join(", "))
+                .suggest(kind, BOUNDARY_KINDS));
         }
         for word in of.split_whitespace() {
-            let Some(face) = GridFace::ALL.iter().position(|face| face.word() == word) else {
-                return Err(wrong(format!("there is no face \"{word}\""))
-                    .expected("\"i1\", \"in\", \"j1\", \"jn\", \"k1\" or \"kn\""));
+            // A surface [m,n] ends at im, a block [ni,nj,nk] at in.
+            let spelled = |face: &GridFace| match (flat, face.word()) {
+                (true, "in") => word == "im",
+                (true, "k1" | "kn") => false,
+                (_, own) => own == word,
+            };
+            let Some(face) = GridFace::ALL.iter().position(spelled) else {
+                let expected = match flat {
+                    true => "\"i1\", \"im\", \"j1\" or \"jn\" of a surface",
+                    false => "\"i1\", \"in\", \"j1\", \"jn\", \"k1\" or \"kn\" of a block",
+                };
+                return Err(wrong(format!("there is no face \"{word}\"")).expected(expected));
             };
             faces[face] = Some((name.to_string(), kind.to_string()));
         }
@@ -66,7 +94,7 @@ pub(crate) fn face_names(words: &str) -> Result<FaceNames, Diagnostic> {
     Ok(faces)
 }
 
-fn volumes(blocks: &[NamedBlock]) -> Vec<VolumeGrid<f64>> {
+pub(crate) fn volumes(blocks: &[NamedBlock]) -> Vec<VolumeGrid<f64>> {
     blocks
         .iter()
         .map(|block| VolumeGrid::from_fn(block.grid.size, |i, j, k| block.grid.at([i, j, k])))
@@ -93,8 +121,67 @@ pub(crate) fn whole(
     })
 }
 
-/// Joints and boundaries of the blocks, by the places where their points coincide.
-pub(crate) fn joined(blocks: &[NamedBlock]) -> Result<CgnsBlocks, Diagnostic> {
+/// The plane of plane grids: the two coordinates in it, and its normal, about which they are right-handed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlaneAxes {
+    pub axes: [usize; 2],
+    pub normal: Vec3,
+}
+
+/// Coordinates that differ by less than this share of the size are constant.
+const FLAT: f64 = 1e-9;
+
+/// Surfaces in a plane of constant z, y or x as blocks of one layer of cells, whose sides are called `sides`.
+///
+/// # Errors
+/// Other surfaces.
+pub(crate) fn extruded(
+    blocks: &[NamedBlock],
+    sides: &str,
+) -> Result<(Vec<NamedBlock>, PlaneAxes), Diagnostic> {
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for block in blocks {
+        for (bound, plane) in bounds.iter_mut().zip(&block.grid.planes) {
+            for x in plane {
+                *bound = [bound[0].min(*x), bound[1].max(*x)];
+            }
+        }
+    }
+    let extents = bounds.map(|[low, high]| high - low);
+    let size = extents.into_iter().fold(0.0, f64::max);
+    let Some(axis) = [2, 1, 0].into_iter().find(|axis| extents[*axis] <= FLAT * size) else {
+        let names: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
+        let message = format!("`{}` is neither plane nor a block of cells", names.join(", "));
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("surfaces in one plane of constant x, y or z, or blocks")
+            .found(format!("extents {} x {} x {}", extents[0], extents[1], extents[2])));
+    };
+    // About y it is z that turns to x.
+    let (axes, sign) = [([1, 2], 1.0), ([0, 2], -1.0), ([0, 1], 1.0)][axis];
+    let mut normal = [0.0; 3];
+    normal[axis] = sign;
+    let cells: usize =
+        blocks.iter().map(|block| (block.grid.size[0] - 1) * (block.grid.size[1] - 1)).sum();
+    let thickness = size / (cells as f64).sqrt().max(1.0);
+    let layers = blocks.iter().map(|block| {
+        let [m, n, _] = block.grid.size;
+        let mut planes = block.grid.planes.clone();
+        for (k, plane) in planes.iter_mut().enumerate() {
+            let above = if k == axis { sign * thickness } else { 0.0 };
+            let upper: Vec<f64> = plane.iter().map(|x| x + above).collect();
+            plane.extend(upper);
+        }
+        let grid = StructuredGrid { size: [m, n, 2], planes, iblank: None };
+        let mut faces = block.faces.clone();
+        let side = || Some((sides.to_string(), "empty".to_string()));
+        (faces[4], faces[5]) = (side(), side());
+        NamedBlock { grid, name: block.name.clone(), faces }
+    });
+    Ok((layers.collect(), PlaneAxes { axes, normal: normal.into() }))
+}
+
+/// Joints and boundaries of the blocks, by the places where their points coincide, and the periodic ones.
+pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
     let hexahedra = blocks
         .iter()
@@ -115,20 +202,198 @@ pub(crate) fn joined(blocks: &[NamedBlock]) -> Result<CgnsBlocks, Diagnostic> {
             let number = axis as i32 + 1;
             if against { -number } else { number }
         });
-        (side(0), side(1), transform)
+        (side(0), side(1), transform, None)
     });
-    let boundaries = free.iter().map(|part| {
+    let mut joints: Vec<BlockJoint> = joints.collect();
+    let (mut boundaries, mut nameless, mut periodic) = (Vec::new(), Vec::new(), Vec::new());
+    for part in &free {
+        let place: FacePart = (part.block, part.face, part.from, part.to);
         let block = &blocks[part.block];
-        let own = || {
-            let word = GridFace::ALL[part.face].word();
-            (format!("{}-{word}", block.name), "patch".to_string())
+        match &block.faces[part.face] {
+            Some((name, kind)) if kind == "periodic" => periodic.push((place, name.clone())),
+            Some((name, kind)) => boundaries.push((place, name.clone(), kind.clone())),
+            None => {
+                nameless.push(place);
+                let name = format!("{}-{}", block.name, GridFace::ALL[part.face].word());
+                boundaries.push((place, name, "patch".to_string()));
+            }
+        }
+    }
+    let (of_pairs, partners) = paired(blocks, periodic)?;
+    joints.extend(of_pairs);
+    let names = blocks.iter().map(|block| block.name.clone()).collect();
+    let content = CgnsBlocks { names, joints, boundaries };
+    Ok(Connected { content, partners, nameless })
+}
+
+/// Points of two periodic faces are this near, as a share of the size.
+const SAME_PERIODIC: f64 = 1e-8;
+
+/// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
+fn face_points(blocks: &[NamedBlock], part: &FacePart) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
+    let (block, face, from, to) = part;
+    let axis = GridFace::ALL[*face].axis;
+    let [a, b] = [[1, 2], [0, 2], [0, 1]][axis];
+    let range = |k: usize| (from[k].min(to[k]), from[k].max(to[k]));
+    let ((a0, a1), (b0, b1)) = (range(a), range(b));
+    let mut points = Vec::new();
+    for i in a0..=a1 {
+        for j in b0..=b1 {
+            let mut at = *from;
+            (at[a], at[b]) = (i, j);
+            points.push(blocks[*block].grid.at(at));
+        }
+    }
+    (points, [a, b], [a1 - a0 + 1, b1 - b0 + 1])
+}
+
+fn mean(points: &[Vec3]) -> Vec3 {
+    points.iter().fold(Vec3::zero(), |sum, p| sum + *p) / points.len() as f64
+}
+
+/// The movements that may lead from one face to another: by their means.
+fn candidates(a: &[Vec3], b: &[Vec3]) -> Vec<Periodicity> {
+    let (from, to) = (mean(a), mean(b));
+    let mut all = vec![Periodicity::Translation(to - from)];
+    for axis in 0..3 {
+        let [u, v] = [[1, 2], [2, 0], [0, 1]][axis];
+        let angle = |p: Vec3| Real::atan2(p.to_array()[v], p.to_array()[u]);
+        let radius = |p: Vec3| p.to_array()[u].abs().max(p.to_array()[v].abs());
+        if radius(from) > 0.0 && radius(to) > 0.0 {
+            let mut turn = angle(to) - angle(from);
+            let whole = 2.0 * std::f64::consts::PI;
+            if turn > std::f64::consts::PI {
+                turn -= whole;
+            } else if turn <= -std::f64::consts::PI {
+                turn += whole;
+            }
+            all.push(Periodicity::Rotation(axis, turn));
+        }
+    }
+    all
+}
+
+/// How the indices of a face run on another with the same points, moved: whether they are exchanged, and reversed.
+fn laid(
+    a: &(Vec<Vec3>, [usize; 2], [usize; 2]),
+    b: &(Vec<Vec3>, [usize; 2], [usize; 2]),
+    how: &Periodicity,
+    tolerance: f64,
+) -> Option<(bool, [bool; 2])> {
+    let [m, n] = a.2;
+    for swapped in [false, true] {
+        let [p, q] = if swapped { [n, m] } else { [m, n] };
+        if b.2 != [p, q] {
+            continue;
+        }
+        for against in [[false, false], [true, false], [false, true], [true, true]] {
+            let other = |i: usize, j: usize| {
+                let i = if against[0] { m - 1 - i } else { i };
+                let j = if against[1] { n - 1 - j } else { j };
+                if swapped { b.0[j * q + i] } else { b.0[i * q + j] }
+            };
+            let near = |k: usize| how.moved(a.0[k]).distance(other(k / n, k % n)) <= tolerance;
+            if (0..m * n).all(near) {
+                return Some((swapped, against));
+            }
+        }
+    }
+    None
+}
+
+/// The joints of periodic faces, and the partners of their names.
+fn paired(
+    blocks: &[NamedBlock],
+    mut periodic: Vec<(FacePart, String)>,
+) -> Result<(Vec<BlockJoint>, Vec<PeriodicPartner>), Diagnostic> {
+    let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let (mut joints, mut partners): (Vec<BlockJoint>, Vec<PeriodicPartner>) =
+        (Vec::new(), Vec::new());
+    while let Some((part, name)) = periodic.pop() {
+        let own = face_points(blocks, &part);
+        let mut found = None;
+        'search: for (k, (other, other_name)) in periodic.iter().enumerate() {
+            if *other_name == name {
+                continue;
+            }
+            let theirs = face_points(blocks, other);
+            for how in candidates(&own.0, &theirs.0) {
+                if let Some(laid) = laid(&own, &theirs, &how, SAME_PERIODIC * size) {
+                    found = Some((k, how, theirs.1, laid));
+                    break 'search;
+                }
+            }
+        }
+        let Some((k, how, [p, q], (swapped, against))) = found else {
+            let message = format!("the periodic boundary `{name}` has no partner");
+            return Err(Diagnostic::error("cannot-write", message)
+                .expected(
+                    "another periodic boundary with the same points, moved or turned about an axis",
+                )
+                .help("name both: \"k1 = low periodic, kn = high periodic\""));
         };
-        let (name, kind) = block.faces[part.face].clone().unwrap_or_else(own);
-        ((part.block, part.face, part.from, part.to), name, kind)
-    });
-    Ok(CgnsBlocks {
-        names: blocks.iter().map(|block| block.name.clone()).collect(),
-        joints: joints.collect(),
-        boundaries: boundaries.collect(),
-    })
+        let (other, other_name) = periodic.swap_remove(k);
+        let inverse = match how {
+            Periodicity::Translation(d) => Periodicity::Translation(-d),
+            Periodicity::Rotation(axis, angle) => Periodicity::Rotation(axis, -angle),
+        };
+        for (name, partner, how) in [(&name, &other_name, how), (&other_name, &name, inverse)] {
+            match partners.iter().find(|known| known.name == *name) {
+                Some(known) if known.partner != *partner => {
+                    let message = format!("the periodic boundary `{name}` has two partners");
+                    return Err(Diagnostic::error("cannot-write", message)
+                        .expected("pairs of names, one for each side")
+                        .found(format!("`{}` and `{partner}`", known.partner)));
+                }
+                Some(_) => {}
+                None => partners.push(PeriodicPartner {
+                    name: name.clone(),
+                    partner: partner.clone(),
+                    how,
+                }),
+            }
+        }
+        joints.push(periodic_joint(part, other, (own.1, [p, q]), (swapped, against), how));
+    }
+    Ok((joints, partners))
+}
+
+/// The joint of CGNS that a pair of periodic faces is.
+fn periodic_joint(
+    part: FacePart,
+    other: FacePart,
+    ([a, b], [p, q]): ([usize; 2], [usize; 2]),
+    (swapped, against): (bool, [bool; 2]),
+    how: Periodicity,
+) -> BlockJoint {
+    let [face, their] = [part.1, other.1].map(|face| GridFace::ALL[face]);
+    // Out of one block and into the other: against each other when both are first faces, or both last.
+    let mut transform = [0i32; 3];
+    let signed = |axis: usize, against: bool| {
+        let number = axis as i32 + 1;
+        if against { -number } else { number }
+    };
+    transform[face.axis] = signed(their.axis, face.last == their.last);
+    let [to_a, to_b] = if swapped { [q, p] } else { [p, q] };
+    transform[a] = signed(to_a, against[0]);
+    transform[b] = signed(to_b, against[1]);
+    let (mut from, mut to) = (other.2, other.3);
+    for (axis, against) in [(to_a, against[0]), (to_b, against[1])] {
+        let (low, high) = (from[axis].min(to[axis]), from[axis].max(to[axis]));
+        (from[axis], to[axis]) = if against { (high, low) } else { (low, high) };
+    }
+    let sorted = |part: FacePart| {
+        let low: [usize; 3] = std::array::from_fn(|k| part.2[k].min(part.3[k]));
+        let high: [usize; 3] = std::array::from_fn(|k| part.2[k].max(part.3[k]));
+        (part.0, part.1, low, high)
+    };
+    let movement = match how {
+        Periodicity::Translation(d) => ([0.0; 3], [0.0; 3], d.to_array()),
+        Periodicity::Rotation(axis, angle) => {
+            let mut angles = [0.0; 3];
+            angles[axis] = angle;
+            ([0.0; 3], angles, [0.0; 3])
+        }
+    };
+    (sorted(part), (other.0, other.1, from, to), transform, Some(movement))
 }

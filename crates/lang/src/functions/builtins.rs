@@ -1,5 +1,8 @@
 //! The built-in functions that need the interpreter: names, arguments and examples. What they do is in `context`.
 
+use crate::functions::block_files::BOUNDARY_KINDS;
+use crate::functions::grid_formats::{self, GridFormat};
+
 /// The finest grids: intervals halved that many times.
 pub const MOST_REFINED: u32 = 8;
 
@@ -8,8 +11,6 @@ pub const MOST_REFINED: u32 = 8;
 pub struct Builtin {
     /// Its name.
     pub name: &'static str,
-    /// How many arguments it takes, at least and at most.
-    pub(crate) arguments: (usize, usize),
     /// What a call does.
     pub(crate) action: Action,
     /// Its arguments.
@@ -24,8 +25,38 @@ pub struct Builtin {
     pub example: &'static str,
 }
 
+impl Builtin {
+    /// How many arguments it takes, at least and at most.
+    pub fn arity(&self) -> (usize, usize) {
+        let least = self.help.iter().filter(|(name, ..)| !name.ends_with('?')).count();
+        let several = self.help.iter().any(|(_, class, _)| class.ends_with('…'));
+        (least, if several { usize::MAX } else { self.help.len() })
+    }
+
+    /// The names of its arguments.
+    pub fn argument_names(&self) -> impl Iterator<Item = &'static str> {
+        self.help.iter().map(|(name, ..)| name.trim_end_matches('?'))
+    }
+
+    /// The words that a text in the place of an argument may hold.
+    pub fn words(&self, argument: usize) -> impl Iterator<Item = &'static str> {
+        let words: &[&str] = match (self.action, argument) {
+            (Action::WriteGrids(format), 1..) if format.joins => &BOUNDARY_KINDS,
+            (Action::WriteGrids(format), 1) => format.words,
+            (Action::Open, 1..) => &["r", "w", "a"],
+            _ => &[],
+        };
+        words.iter().copied()
+    }
+
+    /// True of the argument that names a file.
+    pub fn names_file(&self, argument: usize) -> bool {
+        argument == 0 && self.help.first().is_some_and(|(name, ..)| *name == "name")
+    }
+}
+
 /// What the call of a built-in function does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Action {
     Format,
     Open,
@@ -42,8 +73,9 @@ pub(crate) enum Action {
     Refined,
     RefinedStep,
     Refinement,
-    WriteGrids(GridFormat),
+    WriteGrids(&'static GridFormat),
     ReadPlot3d,
+    BlankingPlot3d,
     CountPlot3d,
     ReadCgns,
     CountCgns,
@@ -54,19 +86,22 @@ pub(crate) enum Action {
 /// What writers of meshes of blocks take.
 const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
     ("name", "text", "Name of the file, beside the program."),
-    ("b", "block …", "What is written."),
+    (
+        "b",
+        "block or surface …",
+        "What is written: blocks, or surfaces in one plane; lists count as their members.",
+    ),
     (
         "faces?",
         "text",
-        "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+        "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\" (of a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic, empty, wedge, patch.",
     ),
 ];
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 31] = [
+pub const BUILTINS: [Builtin; 32] = [
     Builtin {
         name: "format",
-        arguments: (1, usize::MAX),
         action: Action::Format,
         signature: "format(pattern, ...)",
         doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
@@ -77,26 +112,25 @@ pub const BUILTINS: [Builtin; 31] = [
                 "text",
                 "Text with directives as in C: %d %i %f %e %g %s, with flags and widths.",
             ),
-            ("values", "value …", "Numbers, texts and points for the directives."),
+            ("values?", "value …", "Numbers, texts and points for the directives."),
         ],
         example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
     },
     Builtin {
         name: "open",
-        arguments: (1, 3),
         action: Action::Open,
-        signature: "open(name, mode)",
+        signature: "open(name, mode, unit)",
         doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
         returns: "file",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
             ("mode?", "text", "\"r\", \"w\" or \"a\"; \"r\" by default."),
+            ("unit?", "integer", "Number of the unit; it may stand first, as in open(7, name)."),
         ],
         example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
     },
     Builtin {
         name: "close",
-        arguments: (1, 1),
         action: Action::Close,
         signature: "close(f)",
         doc: "Closes a file.",
@@ -106,20 +140,18 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "write",
-        arguments: (1, usize::MAX),
         action: Action::Write,
         signature: "write(f, ...)",
         doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
         returns: "nothing",
         help: &[
             ("f", "file", "The file, its unit, or `stdout`."),
-            ("values", "value …", "Texts, numbers, points and arrays, each from a new line."),
+            ("values?", "value …", "Texts, numbers, points and arrays, each from a new line."),
         ],
         example: "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});",
     },
     Builtin {
         name: "read",
-        arguments: (1, usize::MAX),
         action: Action::Read,
         signature: "read(f, ...)",
         doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
@@ -136,7 +168,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "more",
-        arguments: (1, 1),
         action: Action::More,
         signature: "more(c)",
         doc: "Reports whether a multiple argument, or a file, has unread items.",
@@ -146,7 +177,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "next",
-        arguments: (1, 1),
         action: Action::Next,
         signature: "next(c)",
         doc: "The next item of a multiple argument.",
@@ -156,7 +186,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "rewind",
-        arguments: (1, 1),
         action: Action::Rewind,
         signature: "rewind(c)",
         doc: "Returns to the first item of a multiple argument, or to the start of a file.",
@@ -166,7 +195,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "count",
-        arguments: (1, 1),
         action: Action::Count,
         signature: "count(c)",
         doc: "The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.",
@@ -176,7 +204,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "isset",
-        arguments: (1, 1),
         action: Action::IsSet,
         signature: "isset(a[i])",
         doc: "Reports whether a variable, or every element of a section, has a value.",
@@ -186,7 +213,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "ieee",
-        arguments: (0, 1),
         action: Action::Ieee,
         signature: "ieee(on)",
         doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
@@ -196,7 +222,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "check_edges",
-        arguments: (1, 1),
         action: Action::CheckEdges,
         signature: "check_edges(s)",
         doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
@@ -206,7 +231,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "refined",
-        arguments: (1, 1),
         action: Action::Refined,
         signature: "refined(n)",
         doc: "`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.",
@@ -216,17 +240,15 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "refined_step",
-        arguments: (1, 1),
         action: Action::RefinedStep,
         signature: "refined_step(ds)",
-        doc: "A step per index consistent with refined(n): halved at each refinement.",
+        doc: "A step per index consistent with refined(n): halved at each refinement; of d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.",
         returns: "number",
         help: &[("ds", "number", "The step of the coarse run.")],
         example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
     },
     Builtin {
         name: "refinement",
-        arguments: (0, 0),
         action: Action::Refinement,
         signature: "refinement()",
         doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
@@ -236,8 +258,7 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "write_p3d",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Plot3d),
+        action: Action::WriteGrids(&grid_formats::PLOT3D),
         signature: "write_p3d(name, words, s1, s2, ...)",
         doc: "Writes curves, surfaces or blocks as a Plot3D file.",
         returns: "nothing",
@@ -258,8 +279,7 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "write_vts",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Vts),
+        action: Action::WriteGrids(&grid_formats::VTS),
         signature: "write_vts(name, s1, s2, ...)",
         doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
         returns: "nothing",
@@ -275,8 +295,7 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "plot",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Plot),
+        action: Action::WriteGrids(&grid_formats::PICTURE),
         signature: "plot(name, s1, s2, ...)",
         doc: "Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from \"x\", \"-y\", \"z\", \"iso\" ...",
         returns: "nothing",
@@ -293,8 +312,7 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "write_stl",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Stl),
+        action: Action::WriteGrids(&grid_formats::STL),
         signature: "write_stl(name, words, s1, s2, ...)",
         doc: "Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; \"flip\" reverses the normals.",
         returns: "nothing",
@@ -311,8 +329,7 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "write_cgns",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Cgns),
+        action: Action::WriteGrids(&grid_formats::CGNS),
         signature: "write_cgns(name, s1, s2, ...), write_cgns(name, b1, \"k1 = hull wall\", b2, ...)",
         doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.",
         returns: "nothing",
@@ -326,45 +343,41 @@ pub const BUILTINS: [Builtin; 31] = [
             (
                 "faces?",
                 "text",
-                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic, patch.",
             ),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);",
     },
     Builtin {
         name: "write_su2",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Su2),
+        action: Action::WriteGrids(&grid_formats::SU2),
         signature: "write_su2(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
-        doc: "Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
+        doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2(\"b.su2\", b, \"k1 = floor wall\");",
     },
     Builtin {
         name: "write_gmsh",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Gmsh),
+        action: Action::WriteGrids(&grid_formats::GMSH),
         signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
-        doc: "Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.",
+        doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, of surfaces one physical curve.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall\");",
     },
     Builtin {
         name: "write_blockmesh",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::BlockMesh),
+        action: Action::WriteGrids(&grid_formats::BLOCK_MESH),
         signature: "write_blockmesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
-        doc: "Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
+        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall\");",
     },
     Builtin {
         name: "write_csv",
-        arguments: (2, usize::MAX),
-        action: Action::WriteGrids(GridFormat::Csv),
+        action: Action::WriteGrids(&grid_formats::CSV),
         signature: "write_csv(name, c1, c2, ...)",
         doc: "Writes points as lines of x,y,z under a heading, with all digits.",
         returns: "nothing",
@@ -376,7 +389,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "read_p3d",
-        arguments: (1, 2),
         action: Action::ReadPlot3d,
         signature: "read_p3d(name, block)",
         doc: "A surface or block of a Plot3D file of any variant.",
@@ -388,8 +400,19 @@ pub const BUILTINS: [Builtin; 31] = [
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
     },
     Builtin {
+        name: "iblank_p3d",
+        action: Action::BlankingPlot3d,
+        signature: "iblank_p3d(name, block)",
+        doc: "The blanking of a surface or block of a Plot3D file, a whole number for each point.",
+        returns: "farray or block",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("block?", "integer", "Number of the block in the file; 1 by default."),
+        ],
+        example: "surface s[2,2] = {1, 2, 3}; farray hole[2,2] = 1; hole[1,1] = 0; write_p3d(\"s.x\", s, hole); assert iblank_p3d(\"s.x\")[1,1] == 0;",
+    },
+    Builtin {
         name: "count_p3d",
-        arguments: (1, 1),
         action: Action::CountPlot3d,
         signature: "count_p3d(name)",
         doc: "The number of surfaces and blocks of a Plot3D file.",
@@ -399,7 +422,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "read_cgns",
-        arguments: (1, 2),
         action: Action::ReadCgns,
         signature: "read_cgns(name, zone)",
         doc: "A structured zone of a CGNS file (HDF5) as a surface or block.",
@@ -412,7 +434,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "count_cgns",
-        arguments: (1, 1),
         action: Action::CountCgns,
         signature: "count_cgns(name)",
         doc: "The number of zones of a CGNS file.",
@@ -422,7 +443,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "names_cgns",
-        arguments: (1, 1),
         action: Action::NamesCgns,
         signature: "names_cgns(name)",
         doc: "The names of the zones of a CGNS file, in their order.",
@@ -432,7 +452,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "read_points",
-        arguments: (1, 1),
         action: Action::ReadRows(RowFormat::Points),
         signature: "read_points(name)",
         doc: "The points of a text with two or three numbers to a line, as a curve.",
@@ -442,7 +461,6 @@ pub const BUILTINS: [Builtin; 31] = [
     },
     Builtin {
         name: "read_aerofoil",
-        arguments: (1, 1),
         action: Action::ReadRows(RowFormat::Aerofoil),
         signature: "read_aerofoil(name)",
         doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
@@ -451,28 +469,6 @@ pub const BUILTINS: [Builtin; 31] = [
         example: "file f = open(\"a.dat\", \"w\"); write(f, \"a wedge\"); for (x = 1:0:-.25) write(f, format(\"%g %g\", x, .1*x)); for (x = .25:1:.25) write(f, format(\"%g %g\", x, -.1*x)); close(f); assert read_aerofoil(\"a.dat\").d1 == 9;",
     },
 ];
-
-/// What `write_...` writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum GridFormat {
-    Plot3d,
-    Vts,
-    Stl,
-    Cgns,
-    Csv,
-    Su2,
-    Gmsh,
-    BlockMesh,
-    /// A picture.
-    Plot,
-}
-
-impl GridFormat {
-    /// True for formats of blocks, whose boundaries have names.
-    pub(crate) fn names_faces(self) -> bool {
-        matches!(self, Self::Cgns | Self::Su2 | Self::Gmsh | Self::BlockMesh)
-    }
-}
 
 /// What `read_...` reads as a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

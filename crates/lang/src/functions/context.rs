@@ -8,7 +8,7 @@ use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed};
 use crate::value::subarray::{ArraySection, Place};
-use crate::value::variables::Called as _;
+use crate::value::variables::{self, Called as _};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
@@ -19,6 +19,39 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+/// The arguments of a call in the order of the function's: positional ones, then those by name.
+fn in_order(m: &Module, builtin: &Builtin, args: NodeList<Arg>) -> Result<Vec<ExprId>, Diagnostic> {
+    let mut given: Vec<ExprId> = Vec::new();
+    let names: Vec<&str> = builtin.argument_names().collect();
+    for arg in &m.program[args] {
+        let Some(ident) = arg.name else {
+            given.push(arg.value);
+            continue;
+        };
+        let word = m.program.name(ident.symbol);
+        let fault = |id: &'static str, message: String| {
+            Diagnostic::error(id, message).at(ident.span).expected(builtin.signature)
+        };
+        match names.iter().position(|name| *name == word) {
+            Some(at) if at == given.len() => given.push(arg.value),
+            Some(at) if at < given.len() => {
+                let message = format!("`{word}` of {} is given twice", builtin.name);
+                return Err(fault("argument-twice", message));
+            }
+            Some(_) => {
+                let before = names[given.len()];
+                let message = format!("{} needs `{before}` before `{word}`", builtin.name);
+                return Err(fault("missing-argument", message));
+            }
+            None => {
+                let message = format!("{} has no argument `{word}`", builtin.name);
+                return Err(fault("unknown-argument", message).suggest(word, names));
+            }
+        }
+    }
+    Ok(given)
+}
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The row of a function called with so many arguments; that of `makecc` for its misprint of 1992.
@@ -69,14 +102,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         args: NodeList<Arg>,
         span: Span,
     ) -> Evaluated<T> {
-        if let Some(named) = m.program[args].iter().find_map(|a| a.name) {
-            let message = format!("{} takes no named arguments", builtin.name);
-            return Err(Diagnostic::error("unknown-argument", message)
-                .at(named.span)
-                .expected(builtin.signature));
-        }
-        let given: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
-        let (least, most) = builtin.arguments;
+        let given = in_order(m, builtin, args)?;
+        let (least, most) = builtin.arity();
         if !(least..=most).contains(&given.len()) {
             let id = if given.len() < least { "missing-argument" } else { "too-many-arguments" };
             let message = format!("invalid arguments of {}", builtin.name);
@@ -133,10 +160,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let place = self.place(m, given[0])?;
                 let (_, value, known) = self.known(&place)?;
                 let set = match shape_of(value) {
-                    Some(shape) => {
+                    Some(shape) if place.path.is_empty() => {
                         known.has(shape, place.section.unwrap_or(ArraySection::whole(shape)))
                     }
-                    None => !matches!(value, Value::Unset),
+                    _ => !matches!(value, Value::Unset),
                 };
                 Ok(Value::Number(T::from(f64::from(u8::from(set)))))
             }
@@ -155,17 +182,25 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Action::Refined => {
                 let n = self.whole(m, given[0])?;
                 let fine = (n - 1.0) * self.parts() + 1.0;
+                if self.parts() > 1.0 {
+                    self.refined.counts.insert(fine.to_bits(), n);
+                }
                 Ok(Value::Number(T::from(fine)))
             }
             Action::RefinedStep => {
                 let step = self.number(m, given[0])?;
-                Ok(Value::Number(step / self.parts()))
+                let fine = step / self.parts();
+                if self.parts() > 1.0 {
+                    self.refined.steps.insert(fine.re().to_bits(), step);
+                }
+                Ok(Value::Number(fine))
             }
             Action::Refinement => Ok(Value::Number(T::from(self.parts()))),
             Action::WriteGrids(format) => {
                 self.write_grids(m, (builtin.name, format), &given).map(|()| Value::Unset)
             }
             Action::ReadPlot3d => self.read_p3d(m, &given),
+            Action::BlankingPlot3d => self.iblank_p3d(m, &given),
             Action::CountPlot3d => self.count_p3d(m, given[0]),
             Action::ReadCgns => self.read_cgns(m, &given),
             Action::CountCgns => self.count_cgns(m, given[0]),
@@ -217,7 +252,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let first = self.operand(m, given[0])?;
         let (unit, rest) = match first {
             Value::Number(_) => (Some(self.unit(m, given[0])?), &given[1..]),
-            _ => (None, given),
+            _ => match given {
+                &[_, _, unit] => (Some(self.unit(m, unit)?), &given[..2]),
+                _ => (None, given),
+            },
         };
         let (Some(&name), true) = (rest.first(), rest.len() <= 2) else {
             return Err(Diagnostic::error("missing-argument", "open needs the name of a file")
@@ -255,7 +293,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         place: &Place,
     ) -> Result<(Type, &Value<T>, &crate::value::initialised::Known), Diagnostic> {
         match self.env.scope.root(place).map(|b| &b.what) {
-            Some(Binding::Variable { ty, value, known, .. }) => Ok((*ty, value, known)),
+            Some(Binding::Variable { ty, value, known, .. }) => {
+                let within = variables::inside(value, &place.path).ok_or_else(silent)?;
+                let ty = if place.path.is_empty() { *ty } else { variables::type_of(within) };
+                Ok((ty, within, known))
+            }
             Some(Binding::Poisoned) | None => Err(silent()),
             _ => Err(Diagnostic::error("not-assignable", "this is not a variable")
                 .expected("a variable, or a part of one")
@@ -323,7 +365,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         });
         let flag = |holds: bool| Value::Number(T::from(f64::from(u8::from(holds))));
         let Some((name, all, read)) = multiple else {
-            if builtin.action == Action::Count {
+            if matches!(builtin.action, Action::Count) {
                 let value = self.operand(m, arg)?;
                 match &*moldloft_arrays::gathered(&value) {
                     Value::Numbers(a) => {
@@ -467,7 +509,7 @@ fn flatten<T: Real>(value: &Value<T>, out: &mut Vec<FormatArgument>) -> Result<(
         Value::Point(p) => out.extend(p.xyz.to_array().map(number)),
         Value::Numbers(a) => out.extend(a.items.iter().map(|&x| number(x))),
         Value::Vectors(a) => out.extend(a.iter().flat_map(|v| v.to_array().map(number))),
-        Value::List(items) => {
+        Value::List(items) | Value::Block(items) => {
             for item in items.iter() {
                 flatten(item, out)?;
             }
@@ -505,7 +547,7 @@ fn lines<T: Real>(value: &Value<T>, out: &mut String) -> Result<(), Diagnostic> 
             }
         }
         Value::Vectors(a) => order(a.shape).into_iter().for_each(|k| point(a.at(k), out)),
-        Value::List(items) => {
+        Value::List(items) | Value::Block(items) => {
             for item in items.iter() {
                 lines(item, out)?;
             }

@@ -2,7 +2,7 @@
 
 use crate::value::blocks;
 use crate::value::variables::Called as _;
-use moldloft_num::{Real, log10, modulo, whole_quotient};
+use moldloft_num::{Real, Vec3, log10, modulo, whole_quotient};
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
     Array, ArrayShape, CallError, Class, Context, DefaultValue, FieldSpec, Implementation, Row,
@@ -146,6 +146,7 @@ fn reduced<T: Real>(
         let [x, y, z] = a.planes.each_ref().map(|plane| plane.iter().copied().reduce(f));
         return match (x, y, z) {
             (Some(x), Some(y), Some(z)) => Ok(Value::Vector([x, y, z].into())),
+            _ if name == "sum" => Ok(Value::Vector(Vec3::zero())),
             _ => Err(CallError::new("empty", "an empty row has no such vector")),
         };
     }
@@ -159,6 +160,7 @@ fn reduced<T: Real>(
         return numbers
             .into_iter()
             .reduce(f)
+            .or_else(|| (name == "sum").then(T::zero))
             .map(Value::Number)
             .ok_or_else(|| CallError::new("empty", "an empty row has no such number"));
     }
@@ -398,7 +400,7 @@ elementary! {
     }
     binary {
         "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "assert abs(atan2(1, -1) - 3*PI/4) < 1e-15;", "y", "x", T::atan2;
-        "hypot", "Length of (a, b).", "assert hypot(3, 4) == 5;", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
+        "hypot", "Length of (a, b).", "assert hypot(3, 4) == 5;", "a", "b", hypotenuse;
         "mod", "Remainder of a / b, with the sign of b; exact.", "assert mod(-1, 3) == 2;", "a", "b", |a: T, b: T| {
             match small_remainder(a.re(), b.re()) {
                 Some(exact) if T::PARTS == 1 => T::from(exact),
@@ -409,6 +411,22 @@ elementary! {
             T::from(whole_quotient(a.re(), b.re()))
         };
     }
+}
+
+/// Squares of numbers beyond this, or of both below its reciprocal, leave the range of floating-point numbers.
+const LARGE_TO_SQUARE: f64 = 1e150;
+
+/// The length of (a, b), at any size.
+fn hypotenuse<T: Real>(a: T, b: T) -> T {
+    let size = a.re().abs().max(b.re().abs());
+    let squared = |a: T, b: T| (a * a + b * b).sqrt();
+    if size == 0.0 || !size.is_finite() || (1.0 / LARGE_TO_SQUARE..LARGE_TO_SQUARE).contains(&size)
+    {
+        return squared(a, b);
+    }
+    // A power of two, so that scaling is exact.
+    let scale = if size > 1.0 { (-600f64).exp2() } else { 600f64.exp2() };
+    squared(a * scale, b * scale) / scale
 }
 
 fn optional(name: &'static str) -> FieldSpec {

@@ -7,6 +7,7 @@ use moldloft_io::StructuredGrid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use moldloft_picture::{Camera, Options, PALETTE, PictureError, StyledPolyline, render_while};
+use moldloft_registry::Value;
 use std::fmt::Write as _;
 
 /// Picture points across and down.
@@ -158,12 +159,91 @@ pub(crate) fn plot(
     }
 }
 
+/// Arrays of points as a picture shows them.
+pub struct DrawnArrays {
+    /// Surfaces, and the faces of blocks.
+    pub mesh: Mesh,
+    /// Curves.
+    pub curves: Vec<StyledPolyline>,
+    /// From where they are seen: degrees about z and above the horizon.
+    pub view: [f64; 2],
+}
+
+/// The arrays of points among the variables of a program, records and lists by their members; `None` where none has an
+/// extent.
+///
+/// # Errors
+/// A budget that is spent.
+pub fn arrays_of_program(
+    variables: &[(String, Value<f64>)],
+    budget: &Budget,
+) -> Result<Option<DrawnArrays>, Diagnostic> {
+    let (mut grids, mut names) = (Vec::new(), Vec::new());
+    for (name, value) in variables {
+        gather(name, value, &mut grids, &mut names);
+    }
+    if grids.is_empty() {
+        return Ok(None);
+    }
+    let points = grids.iter().flat_map(StructuredGrid::points);
+    let bounds = Box3::around(points);
+    let [azimuth, elevation] = view(usual(bounds.low, bounds.high)).unwrap_or([-130.0, 25.0]);
+    let (mesh, curves) = drawn(&grids, &names, budget)?;
+    Ok(Some(DrawnArrays { mesh, curves, view: [azimuth, elevation] }))
+}
+
+/// Adds the grids that a value holds and that have an extent.
+fn gather(
+    name: &str,
+    value: &Value<f64>,
+    grids: &mut Vec<StructuredGrid>,
+    names: &mut Vec<String>,
+) {
+    match value {
+        Value::List(items) => {
+            for (k, item) in items.iter().enumerate() {
+                gather(&format!("{name}[{}]", k + 1), item, grids, names);
+            }
+        }
+        Value::Record(record) => {
+            for (member, value) in record.names.iter().zip(&record.values) {
+                gather(&format!("{name}.{member}"), value, grids, names);
+            }
+        }
+        value => {
+            let Ok(grid) = crate::functions::grid_files::grid_of(value, name) else { return };
+            let bounds = Box3::around(grid.points());
+            if (bounds.high - bounds.low).norm().is_normal() {
+                grids.push(grid);
+                names.push(name.to_string());
+            }
+        }
+    }
+}
+
 fn png(
     grids: &[StructuredGrid],
     names: &[String],
     [azimuth_deg, elevation_deg]: [f64; 2],
     budget: &Budget,
 ) -> Result<Vec<u8>, Diagnostic> {
+    let (mesh, curves) = drawn(grids, names, budget)?;
+    let camera = Camera { azimuth_deg, elevation_deg, view_angle_deg: None };
+    let options = Options { width: WIDTH, height: HEIGHT, camera, ..Options::default() };
+    render_while(&mesh, &curves, &options, &|| !budget.is_spent()).map_err(|e| {
+        match budget.poll() {
+            Err(reason) if e == PictureError::Ended => spent(reason),
+            _ => Diagnostic::error("no-picture", e.to_string()),
+        }
+    })
+}
+
+/// Surfaces and blocks as one mesh, curves as lines.
+fn drawn(
+    grids: &[StructuredGrid],
+    names: &[String],
+    budget: &Budget,
+) -> Result<(Mesh, Vec<StyledPolyline>), Diagnostic> {
     let failed = |why: String| Diagnostic::error("no-picture", why);
     let mut builder = TopologyBuilder::new();
     let mut positions = Vec::new();
@@ -187,14 +267,7 @@ fn png(
         builder.add_faces(patch, faces).map_err(|e| failed(e.to_string()))?;
     }
     let mesh = Mesh::new(builder.build().into(), positions).map_err(|e| failed(e.to_string()))?;
-    let camera = Camera { azimuth_deg, elevation_deg, view_angle_deg: None };
-    let options = Options { width: WIDTH, height: HEIGHT, camera, ..Options::default() };
-    render_while(&mesh, &curves, &options, &|| !budget.is_spent()).map_err(|e| {
-        match budget.poll() {
-            Err(reason) if e == PictureError::Ended => spent(reason),
-            _ => failed(e.to_string()),
-        }
-    })
+    Ok((mesh, curves))
 }
 
 /// Lines at true proportions, the names of what is drawn below, the extents beside the axes; nothing where the

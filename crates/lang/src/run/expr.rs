@@ -3,9 +3,8 @@
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::SolveUnknown;
 use crate::source::fault_location;
-use crate::source::module::Module;
+use crate::source::module::{Module, RoutineAt};
 use crate::source::scope::{Binding, Passed, ScopedBinding};
-use crate::value::blocks;
 use crate::value::ops;
 use crate::value::variables;
 use crate::value::variables::Called as _;
@@ -60,7 +59,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
                 let first = self.operand(m, left)?;
-                if let Value::Number(x) = first {
+                // Numbers decide at once, but never what kind of value it is: a mask stays one.
+                if let Value::Number(x) = first
+                    && !self.gives_array(m, right)
+                {
                     let first = x.re() != 0.0;
                     if first == (op == BinaryOp::Or) {
                         return Ok(Value::Number(T::from(f64::from(u8::from(first)))));
@@ -68,7 +70,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 // Masks are combined element by element.
                 let second = self.operand(m, right)?;
-                if [&first, &second].iter().any(|value| matches!(value, Value::Numbers(_))) {
+                if [&first, &second].iter().any(|value| ops::is_array(value)) {
                     return ops::logical(op, &first, &second).map_err(|d| d.or_at(span));
                 }
                 let truth = |value: &Value<T>, id: ExprId| match value {
@@ -438,10 +440,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return member;
         }
         let known = crate::value::member::names(&value);
+        let habit = match &*word {
+            "shape" | "size" | "dim" | "dims" | "length" | "len" if ops::is_array(&value) => {
+                Some("the extents of an array are .d1 .d2 .d3; `length(c)` is that of a curve")
+            }
+            "T" if ops::is_array(&value) => Some("the transposed grid is `swap(s)`"),
+            _ => None,
+        };
         Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.called()))
             .at(m.program.member_span(id))
+            .maybe_help(habit)
             .expected(known.join(", "))
-            .suggest(&word, known.iter().copied()))
+            .suggest(&word, known.iter().map(|name| &**name)))
     }
 
     fn member_of_object(
@@ -507,7 +517,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return self.call_value(m, value, args, m.program[callee].span);
         };
         let name = m.names[symbol.0 as usize];
-        let routine = self.routine_named(name);
+        // A subroutine is called as a statement, a function of its name in expressions.
+        let valued = |at: &RoutineAt| {
+            let known = m.rows[symbol.0 as usize].as_ref().is_some_and(|row| !row.kind);
+            !known || self.modules.get(at.module).program[at.routine].result.is_some()
+        };
+        let routine = self.routine_named(name).filter(valued);
         match self.env.scope.lookup(name).map(|bound| &bound.what) {
             Some(Binding::Routine(_)) | None => {}
             Some(Binding::Function(row)) => {
@@ -538,6 +553,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 )
             });
         }
+        if let Some(&record) = self.env.scope.records.get(&name) {
+            return self.new_record(m, record, args, span);
+        }
         if let Some(value) = self.builtin(m, symbol, args, span) {
             return value;
         }
@@ -565,8 +583,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         // A block is moved layer by layer.
         if matches!(&*row.name, "translate" | "scale" | "mirror" | "rotate")
-            && let Some(Value::List(layers)) =
-                given.positional.first().filter(|value| blocks::size(value).is_some()).cloned()
+            && let Some(Value::Block(layers)) = given.positional.first().cloned()
         {
             let mut moved = Vec::with_capacity(layers.len());
             for layer in layers.iter() {
@@ -574,7 +591,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 given.positional[0] = layer.clone();
                 moved.push(self.call_given(m, &row, given, args, span)?);
             }
-            return Ok(Value::list(moved));
+            return Ok(Value::Block(moved.into()));
         }
         // Of numbers and points it is their mean, of a surface alone the mean curvature.
         if &*row.name == "mean"
@@ -616,7 +633,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let (filled, _) = bind_arguments(row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;
         // What is as quick to compute as to look up is not remembered.
-        let value = if crate::functions::elementary::is_quick(row) {
+        let value = if let Some(nested) = self.nested_row(row, &filled, span) {
+            nested
+        } else if crate::functions::elementary::is_quick(row) {
             T::call(row, &filled, &self.run.graph().context())
         } else {
             self.charge_call();

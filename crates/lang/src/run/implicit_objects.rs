@@ -42,7 +42,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// True when a declaration names an object: of a field or set at file level, once and for all.
     pub fn makes_object(&mut self, m: &Module, ty: Type, item: &Declarator) -> bool {
-        if row_of(ty).is_none() || item.value.is_none() || self.is_assigned(m, item.name.symbol) {
+        let single = item.list.is_none() && item.dims.is_empty();
+        if row_of(ty).is_none()
+            || item.value.is_none()
+            || !single
+            || self.is_assigned(m, item.name.symbol)
+        {
             return false;
         }
         let frame = self.env.scope.frame();

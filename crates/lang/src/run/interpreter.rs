@@ -2,7 +2,9 @@
 
 use crate::array::machine::ArrayMachine;
 use crate::array::recipe::ExprKey;
+use crate::functions::builtins::BUILTINS;
 use crate::run::compiled::kept::ScalarCode;
+use crate::run::families::RefinedNumbers;
 use crate::run::read_log::ReadLog;
 use crate::run::semantics::{self, Executed, Semantics};
 use crate::run::usage::{self, Usage};
@@ -10,7 +12,6 @@ use crate::source::env::{Environment, Param, Seed};
 use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
 use crate::source::scope::{Binding, ScopedBinding};
 use crate::value::chosen::Chosen;
-use crate::value::initialised::Known;
 use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, Taken};
@@ -22,7 +23,7 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
-    AssignOp, Declarator, ExprId, ExprKind, Ident, NodeList, StmtId, StmtKind, Symbol, Type,
+    AssignOp, ExprId, ExprKind, Ident, NodeList, StmtId, StmtKind, Symbol, Type,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -116,6 +117,8 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
     pub arrays: ArrayMachine<T>,
+    /// What a refined run has refined.
+    pub(crate) refined: RefinedNumbers<T>,
     /// Numbers of the whole model that were read last.
     pub(crate) measured: Option<(usize, String, Vec<(&'static str, Value<T>)>)>,
     /// True once the note on the misprint of 1992 was given.
@@ -160,6 +163,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             assigned: HashMap::new(),
             current: 0,
             arrays: ArrayMachine { plain_operators, ..ArrayMachine::default() },
+            refined: RefinedNumbers::default(),
             measured: None,
             misprint_told: false,
             abandoned: false,
@@ -177,6 +181,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         module.faults.iter().for_each(|fault| self.report(fault.clone()));
         self.env.scope.make_room(self.modules.name_count());
         self.declare_routines(&module, at);
+        self.declare_records(&module, at);
         let outer = std::mem::replace(&mut self.current, at);
         let flow = self.statements(&module, module.program.body());
         self.current = outer;
@@ -201,8 +206,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
         let open = !scope.sketches_done.is_empty() || !scope.given.is_empty();
         let (modules, registry) = (&*self.modules, self.loader.registry);
-        let semantics =
-            Semantics::new(modules, registry, run, &scope.routines, &self.executed, open);
+        let semantics = Semantics::new(
+            modules,
+            registry,
+            run,
+            (&scope.routines, &scope.records),
+            &self.executed,
+            open,
+        );
         for diagnostic in semantics.judged() {
             self.report(diagnostic);
         }
@@ -257,6 +268,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
             Value::List(items) => 4 * items.len(),
+            Value::Block(layers) => layers
+                .iter()
+                .map(|layer| match layer {
+                    Value::Numbers(a) => of_array(a.items.len()),
+                    Value::Vectors(a) => of_array(a.len()),
+                    _ => 0,
+                })
+                .sum(),
             _ => return Ok(()),
         } as u64;
         if self.usage.cost() > self.limits.steps && self.step(span) {
@@ -561,7 +580,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 };
                 return Ok(Flow::Return(value));
             }
-            StmtKind::Routine(_) | StmtKind::Error => {}
+            StmtKind::Routine(_) | StmtKind::Record { .. } | StmtKind::Error => {}
         }
         Ok(Flow::Next)
     }
@@ -622,84 +641,6 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             diagnostic = diagnostic.found(sides.join(" and "));
         }
         Err(diagnostic)
-    }
-
-    pub(super) fn declare(
-        &mut self,
-        m: &Module,
-        id: StmtId,
-        global: bool,
-        (ty, ty_span): (Type, Span),
-        item: &Declarator,
-    ) -> Result<(), Diagnostic> {
-        let object = self.makes_object(m, ty, item);
-        if let Type::Other(symbol) = ty {
-            return Err(self.unknown_type(m.program.name(symbol)).at(ty_span));
-        }
-        let mut dims = Vec::new();
-        for &dim in &m.program[item.dims] {
-            let n = self.number(m, dim)?.re();
-            dims.push(variables::extent(n).map_err(|d| d.or_at(m.program[dim].span))?);
-        }
-        let value = match item.value {
-            Some(expr) => {
-                let span = m.program[expr].span;
-                let value = self.noting(object, |this| {
-                    let value = this.expr(m, expr)?;
-                    this.read(value, span)
-                })?;
-                // A single value fills a dimensioned array.
-                let value = match dims.is_empty() {
-                    true => variables::converted(ty, value).map_err(|d| d.or_at(span))?,
-                    false => value,
-                };
-                Some(crate::value::implicit::called(ty, value, m.program.name(item.name.symbol)))
-            }
-            None => None,
-        };
-        if let (true, Some(value)) = (object, &value) {
-            return self.implicit_object(m, id, ty, item, value.clone());
-        }
-        if !dims.is_empty() {
-            let count = dims.iter().map(|&n| n as f64).product();
-            self.usage.steps += variables::has_room::<T>(ty, count, self.inputs.budget)?;
-        }
-        let known = match (&value, &dims[..]) {
-            (Some(_), _) | (_, [] | [_, _, _]) => Known::default(),
-            _ if ty == Type::String => Known::default(),
-            _ => Known::nothing(dims.iter().product()),
-        };
-        let shape = value.as_ref().map(variables::shape_of);
-        let value = variables::initial(ty, &dims, value).map_err(|d| match item.value {
-            Some(expr) => {
-                let declared =
-                    Span::new(item.name.span.file, item.name.span.start, span_end(m, item));
-                let of = |dims: &[usize]| {
-                    let all: Vec<String> = dims.iter().map(usize::to_string).collect();
-                    format!("{}[{}]", m.program.slice(ty_span), all.join(","))
-                };
-                let found = shape.map_or(String::new(), |s| s.to_string());
-                let span = m.program[expr].span;
-                self.differing(m, d, [declared, span], [&of(&dims), &found]).or_at(span)
-            }
-            None => d,
-        })?;
-        let what = Binding::Variable { ty, value, fixed: !dims.is_empty(), known };
-        let name = m.names[item.name.symbol.0 as usize];
-        self.check_free(name, item.name.span, true)?;
-        if global && !self.env.scope.frame().global {
-            self.env.scope.globals[name.0 as usize] =
-                Some(ScopedBinding { span: item.name.span, what });
-        } else {
-            self.env.scope.bind(name, item.name.span, what);
-        }
-        Ok(())
-    }
-
-    fn unknown_type(&self, word: &str) -> Diagnostic {
-        Diagnostic::error("unknown-type", format!("unknown type `{word}`"))
-            .suggest(word, moldloft_syntax::sdl::declaring_words())
-            .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }
 
     /// Marks the name of a failed declaration, so that its uses stay silent; a name that something
@@ -830,10 +771,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     ) -> Result<(), Diagnostic> {
         let right = match op {
             AssignOp::Set => {
-                self.arrays.assigning = Some((ExprKey::of(m, value), target));
-                let right = self.expr(m, value);
-                self.arrays.assigning = None;
-                self.read(right?, m.program[value].span)?
+                if self.names_list(m, target) {
+                    self.list_operand(m, value)?
+                } else {
+                    self.arrays.assigning = Some((ExprKey::of(m, value), target));
+                    let right = self.expr(m, value);
+                    self.arrays.assigning = None;
+                    self.read(right?, m.program[value].span)?
+                }
             }
             AssignOp::With(op) => self.updated(m, target, op, value)?,
         };
@@ -907,7 +852,17 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let globals = globals.filter(|(_, b)| b.is_some()).map(|(k, _)| Name(k as u32));
         let variables = locals.chain(globals).map(|name| &**self.modules.text(name));
         let functions = self.loader.registry.rows().filter(|r| !r.kind).map(|r| &*r.name);
-        nearest(word, variables.chain(functions)).map(str::to_string)
+        let scope = &self.env.scope;
+        let mut own: Vec<&str> = scope
+            .routines
+            .keys()
+            .chain(scope.records.keys())
+            .map(|&name| &**self.modules.text(name))
+            .collect();
+        own.sort_unstable();
+        let all = variables.chain(own).chain(BUILTINS.iter().map(|b| b.name)).chain(["PI"]);
+        // Of names as near as each other the first is taken.
+        nearest(word, all.chain(functions)).map(str::to_string)
     }
 
     /// Puts a value into elements of a place that masks or index arrays have chosen.
@@ -928,6 +883,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.store(whole, part)?;
         // The other elements are as unset as they were.
         if whole.section.is_none()
+            && whole.path.is_empty()
             && let Some(bound) = self.env.scope.root_mut(&whole)
             && let Binding::Variable { value, known: now, .. } = &mut bound.what
         {
@@ -946,6 +902,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             )
             .expected("an expression that reads the program's variables")
             .help("put the statement into the program"));
+        }
+        if !place.path.is_empty() {
+            return self.store_inside(place, value);
         }
         let Some(bound) = self.env.scope.root_mut(&place) else { return Err(silent()) };
         match &mut bound.what {
@@ -967,15 +926,4 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
         }
     }
-}
-
-/// Where a declarator's name and dimensions end.
-fn span_end(m: &Module, item: &Declarator) -> u32 {
-    let last = m.program[item.dims].last();
-    // The bracket after the last dimension.
-    last.map_or(item.name.span.end, |&dim| {
-        let end = m.program[dim].span.end;
-        let rest = m.program.text().get(end as usize..).unwrap_or("");
-        end + rest.find(']').map_or(0, |k| k as u32 + 1)
-    })
 }

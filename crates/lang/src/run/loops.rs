@@ -130,7 +130,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             other => other,
         };
         let items: Vec<Value<T>> = match &value {
-            Value::List(items) => items.to_vec(),
+            Value::List(items) | Value::Block(items) => items.to_vec(),
             Value::Numbers(a) => a.items.iter().map(|&x| Value::Number(x)).collect(),
             Value::Vectors(a) => a.iter().map(Value::Vector).collect(),
             // Three numbers in braces.

@@ -1,8 +1,11 @@
 //! The interpreter: statements, expressions, objects, loops, calls, components, sketches and solve sets.
 
+mod array_type;
 pub(crate) mod compiled;
 mod component;
+mod declarations;
 pub(crate) mod expr;
+mod families;
 pub(crate) mod forward_reference;
 mod implicit_objects;
 pub mod inserted;
@@ -12,6 +15,7 @@ mod objects;
 mod parts;
 pub mod program;
 mod read_log;
+mod records;
 mod routine;
 mod sections;
 mod semantics;

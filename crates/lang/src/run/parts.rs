@@ -1,7 +1,9 @@
 //! What statements and expressions consist of: the one walk of all that looks at a program without running it.
 
 use crate::source::module::Module;
-use moldloft_syntax::sdl::{ChainItem, ExprId, ExprKind, NodeList, StmtId, StmtKind, Subscript};
+use moldloft_syntax::sdl::{
+    ChainItem, ExprId, ExprKind, ListLength, NodeList, StmtId, StmtKind, Subscript,
+};
 
 /// The expressions of a statement, and the statements in it, each in the order of the text. What is assigned to is an
 /// expression of an assignment; the elements of a block and the body of a loop are statements in it.
@@ -18,6 +20,9 @@ pub(super) fn of_statement(m: &Module, stmt: StmtId) -> StatementParts {
         StmtKind::Block(list) => inner.extend(&m.program[list]),
         StmtKind::Declare { items, .. } => {
             for item in &m.program[items] {
+                if let Some(ListLength::Of(length)) = item.list {
+                    values.push(length);
+                }
                 values.extend(&m.program[item.dims]);
                 values.extend(item.value);
             }
@@ -58,6 +63,7 @@ pub(super) fn of_statement(m: &Module, stmt: StmtId) -> StatementParts {
             values.extend(message);
         }
         StmtKind::Return(value) => values.extend(value),
+        StmtKind::Record { members, .. } => inner.extend(&m.program[members]),
         StmtKind::Load(_)
         | StmtKind::Routine(_)
         | StmtKind::Break

@@ -7,7 +7,7 @@ use crate::value::subarray::Place;
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::sdl::{Arg, ExprId, Formal, NodeList, Type};
+use moldloft_syntax::sdl::{Arg, ExprId, Formal, ItemType, NodeList, Type};
 use std::sync::Arc;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
@@ -34,7 +34,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         frame.called = Some((span, self.current as u32));
         let mut returned: Vec<(Place, Span)> = Vec::new();
+        let mut left_out: Vec<(&Formal, ExprId)> = Vec::new();
         for (formal, exprs) in formals.iter().zip(ordered) {
+            if let (true, Some(default)) = (exprs.is_empty(), formal.default) {
+                left_out.push((formal, default));
+                continue;
+            }
             let local = callee.names[formal.name.symbol.0 as usize];
             let what = if formal.multiple {
                 let mut items = Vec::new();
@@ -48,25 +53,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                             items.push(item);
                         }
                     } else if formal.returned {
-                        let place = self.returned(m, &name, formal, expr)?;
+                        let place = self.returned(m, (&callee, &name), formal, expr)?;
                         returned.push((place, m.program[expr].span));
                         items.push(Passed::Place(place));
                     } else {
-                        items.push(Passed::Value(self.argument(m, formal, expr)?));
+                        items.push(Passed::Value(self.argument(m, &callee, formal, expr)?));
                     }
                 }
                 Binding::Multiple(Box::new(Multiple { ty: formal.ty.0, items, read: 0 }))
             } else if formal.returned {
-                let place = self.returned(m, &name, formal, exprs[0])?;
+                let place = self.returned(m, (&callee, &name), formal, exprs[0])?;
                 returned.push((place, m.program[exprs[0]].span));
                 Binding::Reference(place)
-            } else if formal.ty.0 == Type::Routine {
-                self.routine_argument(m, formal, exprs[0])?
             } else {
-                match self.argument(m, formal, exprs[0])? {
-                    Value::Object(key) => Binding::Object(key),
-                    value => Binding::variable(formal.ty.0, value),
-                }
+                self.passed_by_value(m, &callee, formal, exprs[0])?
             };
             frame.locals.push((local, ScopedBinding { span: formal.name.span, what }));
         }
@@ -87,6 +87,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.usage.steps += 4;
         self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
+        // In the callee's own scope, where the arguments before them are known.
+        for (formal, default) in left_out {
+            match self.passed_by_value(&callee, &callee, formal, default) {
+                Ok(what) => {
+                    let local = callee.names[formal.name.symbol.0 as usize];
+                    self.env.scope.bind(local, formal.name.span, what);
+                }
+                Err(diagnostic) => {
+                    self.current = outer;
+                    self.env.scope.frames.pop();
+                    return Err(diagnostic);
+                }
+            }
+        }
         let flow = self.deeper_call(span, |this| match this.body_by_code(&callee, at.routine) {
             Some(flow) => flow,
             None => this.statements(&callee, routine.body),
@@ -101,15 +115,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         match flow {
             Flow::Return(Some(value)) => match routine.result {
-                Some((ty, asked)) if !matches!(ty, Type::Other(_)) => {
-                    variables::converted(ty, value).map(Some).map_err(|d| {
+                Some((ty, asked)) => {
+                    let value = match self.record_checked(&callee, ty, value) {
+                        Ok(value) if matches!(ty, Type::Other(_)) => Ok(value),
+                        Ok(value) => variables::converted(self.variable_type(&callee, ty), value),
+                        Err(d) => Err(d),
+                    };
+                    value.map(Some).map_err(|d| {
                         let message = format!("{name} returns another value: {}", d.message);
                         let mut d = d.or_at(span).note_at(asked, "declared here");
                         d.message = message;
                         d
                     })
                 }
-                _ => Ok(Some(value)),
+                None => Ok(Some(value)),
             },
             Flow::Return(None) => Ok(None),
             Flow::Stop => Err(silent()),
@@ -130,7 +149,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn returned(
         &mut self,
         m: &Module,
-        name: &str,
+        (callee, name): (&Module, &str),
         formal: &Formal,
         expr: ExprId,
     ) -> Result<Place, Diagnostic> {
@@ -163,15 +182,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         let found = variables::type_at(ty, value, &place);
+        let asked = self.variable_type(callee, formal.ty.0);
         let number = |ty: Type| match ty {
             Type::Int | Type::File => Type::Float,
+            Type::List(ItemType::String) => Type::String,
             other => other,
         };
-        let same = number(found) == number(formal.ty.0) || matches!(formal.ty.0, Type::Other(_));
+        let same = number(found) == number(asked) || matches!(asked, Type::Other(_));
         if same {
             return Ok(place);
         }
-        let (expected, found) = (variables::described(formal.ty.0), variables::described(found));
+        let (expected, found) = (variables::described(asked), variables::described(found));
         Err(Diagnostic::error("wrong-type", format!("expected {expected}, found {found}"))
             .at(span)
             .expected(expected)
@@ -230,7 +251,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ordered[at].push(arg.value);
         }
         for (k, formal) in formals.iter().enumerate() {
-            if ordered[k].is_empty() && !formal.multiple {
+            if ordered[k].is_empty() && !formal.multiple && formal.default.is_none() {
                 return Err(Diagnostic::error(
                     "missing-argument",
                     format!("{name} needs `{}`", spelled[k]),
@@ -277,22 +298,45 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .note_at(formal.ty.1, "requested here"))
     }
 
+    /// What an argument that is passed by value stands for.
+    fn passed_by_value(
+        &mut self,
+        m: &Module,
+        callee: &Module,
+        formal: &Formal,
+        expr: ExprId,
+    ) -> Result<Binding<T>, Diagnostic> {
+        if formal.ty.0 == Type::Routine {
+            return self.routine_argument(m, formal, expr);
+        }
+        Ok(match self.argument(m, callee, formal, expr)? {
+            Value::Object(key) => Binding::Object(key),
+            value => Binding::variable(self.variable_type(callee, formal.ty.0), value),
+        })
+    }
+
     /// The value of an argument of a routine, of the formal's type. An argument of an object class
     /// (`AbsPoint p`, or any other word) takes an object as it is.
     fn argument(
         &mut self,
         m: &Module,
+        callee: &Module,
         formal: &Formal,
         expr: ExprId,
     ) -> Result<Value<T>, Diagnostic> {
         let span = m.program[expr].span;
-        let value = self.expr(m, expr)?;
+        let value = match formal.ty.0 {
+            Type::List(_) => self.list_operand(m, expr)?,
+            _ => self.expr(m, expr)?,
+        };
         let shape = matches!(formal.ty.0, Type::Pcurve | Type::Psurface | Type::Other(_));
         if shape && matches!(value, Value::Object(_)) {
             return Ok(value);
         }
         let value = self.read(value, span)?;
-        variables::converted(formal.ty.0, value)
+        let ty = self.variable_type(callee, formal.ty.0);
+        self.record_checked(callee, formal.ty.0, value)
+            .and_then(|value| variables::converted(ty, value))
             .map_err(|d| d.or_at(span).note_at(formal.ty.1, "requested here"))
     }
 }

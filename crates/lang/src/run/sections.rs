@@ -4,7 +4,7 @@ use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::source::scope::Binding;
 use crate::value::chosen::{Chosen, Selected, along, index_array};
-use crate::value::subarray::{ArraySection, Place, Selection};
+use crate::value::subarray::{ArraySection, PathStep, Place, Selection};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
@@ -35,7 +35,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         // A part of what was passed by reference is read where it stands.
         if let Some(symbol) = m.program.as_name(base)
             && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
-            && place.section.is_some()
+            && (place.section.is_some() || !place.path.is_empty())
         {
             let (place, chosen) = self.indexed(m, place, base, subs)?;
             let Some(Binding::Variable { value, .. }) =
@@ -46,7 +46,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let value = variables::at_place(value, &place)?;
             return match chosen {
                 Some(chosen) => chosen.of(&value),
-                None => Ok(value),
+                None => has_value(m, id, value),
             };
         }
         let value = self.expr(m, base)?;
@@ -67,7 +67,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return variables::part(&value, section);
         }
         match self.section(m, base, &extents, |_| variables::shape_text(&value), subs)? {
-            Subscripted::Section(section) => variables::part(&value, section),
+            Subscripted::Section(section) => has_value(m, id, variables::part(&value, section)?),
             Subscripted::Chosen(chosen) => chosen.of(&value),
         }
     }
@@ -84,6 +84,28 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         else {
             return Err(silent());
         };
+        let value = variables::inside(value, &place.path).ok_or_else(silent)?;
+        if let (Value::List(items), None, [Subscript::At(sub)]) =
+            (value, place.section, &m.program[subs])
+        {
+            let count = items.len();
+            let index = self.operand(m, *sub)?;
+            if let Value::Number(x) = index {
+                let x = x.re();
+                let span = m.program[*sub].span;
+                let shape = |this: &Self| match this.env.scope.root(&place).map(|b| &b.what) {
+                    Some(Binding::Variable { value, .. }) => variables::shape_at(value, &place),
+                    _ => String::new(),
+                };
+                let k = position(x, count, span).map_err(|d| self.of_array(m, base, d, shape))?;
+                return Ok((place.at(PathStep::Item(k as u32))?, None));
+            }
+        }
+        let Some(Binding::Variable { value, .. }) = self.env.scope.root(&place).map(|b| &b.what)
+        else {
+            return Err(silent());
+        };
+        let value = variables::inside(value, &place.path).ok_or_else(silent)?;
         let extents = match place.section {
             Some(section) => {
                 let (extents, count) = section.extents();
@@ -171,22 +193,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let mut parts: SmallVec<[Selected; 3]> = SmallVec::new();
         for (&sub, &extent) in m.program[subs].iter().zip(extents) {
-            let part = self.selection(m, sub, extent).map_err(|d| {
-                // A fault in a subscript of the subscript says already which array it is about.
-                if d.id != "outside" || !d.secondary.is_empty() || !d.notes.is_empty() {
-                    return d;
-                }
-                let name = m.program.as_name(base).and_then(|symbol| {
-                    let bound = self.env.scope.lookup(m.names[symbol.0 as usize])?;
-                    Some((m.program.name(symbol), bound.span))
-                });
-                match name {
-                    Some((name, declared)) => {
-                        d.note_at(declared, format!("`{name}` is declared here: {}", shape(self)))
-                    }
-                    None => d.note(format!("the array is {}", shape(self))),
-                }
-            })?;
+            let part =
+                self.selection(m, sub, extent).map_err(|d| self.of_array(m, base, d, &shape))?;
             parts.push(part);
         }
         let regular: Option<SmallVec<[Selection; 3]>> = parts
@@ -213,6 +221,30 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         })
     }
 
+    /// A fault in a subscript, with the array that it is about.
+    fn of_array(
+        &self,
+        m: &Module,
+        base: ExprId,
+        d: Diagnostic,
+        shape: impl Fn(&Self) -> String,
+    ) -> Diagnostic {
+        // A fault in a subscript of the subscript says already which array it is about.
+        if d.id != "outside" || !d.secondary.is_empty() || !d.notes.is_empty() {
+            return d;
+        }
+        let name = m.program.as_name(base).and_then(|symbol| {
+            let bound = self.env.scope.lookup(m.names[symbol.0 as usize])?;
+            Some((m.program.name(symbol), bound.span))
+        });
+        match name {
+            Some((name, declared)) => {
+                d.note_at(declared, format!("`{name}` is declared here: {}", shape(self)))
+            }
+            None => d.note(format!("the array is {}", shape(self))),
+        }
+    }
+
     fn selection(
         &mut self,
         m: &Module,
@@ -223,22 +255,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
             None => Ok((default, Span::UNKNOWN)),
         };
-        let inside = |(x, span): (f64, Span)| {
-            if x.fract() == 0.0 && x >= 1.0 && x <= extent as f64 {
-                return Ok(x as i64 - 1);
-            }
-            Err(Diagnostic::error("outside", format!("index {x} is outside the array"))
-                .at(span)
-                .expected(format!("a whole number from 1 to {extent}"))
-                .found(x.to_string()))
-        };
+        let inside = |(x, span): (f64, Span)| position(x, extent, span).map(|k| k as i64);
         let (from, to, step) = match sub {
             Subscript::Whole => return Ok(Selected::Regular(Selection::whole(extent))),
             Subscript::At(expr) => {
                 let span = m.program[expr].span;
                 return match self.operand(m, expr)? {
                     Value::Number(x) => {
-                        let at = inside((x.re(), span))? as usize;
+                        let at = position(x.re(), extent, span)?;
                         Ok(Selected::Regular(Selection::at(at)))
                     }
                     other => match index_array(&other) {
@@ -302,6 +326,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Member { base, name, .. } => {
                 let (place, chosen) = self.target(m, base)?;
+                if let (Some(place), None) = (self.member_place(m, id, name, place)?, &chosen) {
+                    return Ok((place, None));
+                }
                 let component = ["x", "y", "z"].iter().position(|c| *c == m.program.name(name));
                 match component {
                     Some(c) if place.component.is_none() => {
@@ -327,6 +354,31 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected("a variable, with subscripts or .x .y .z")),
         }
     }
+}
+
+/// The position, from 0, that an index names.
+fn position(x: f64, extent: usize, span: Span) -> Result<usize, Diagnostic> {
+    if x.fract() == 0.0 && x >= 1.0 && x <= extent as f64 {
+        return Ok(x as usize - 1);
+    }
+    let expected = match extent {
+        0 => "no index: it is empty".to_string(),
+        _ => format!("a whole number from 1 to {extent}"),
+    };
+    Err(Diagnostic::error("outside", format!("index {x} is outside the array"))
+        .at(span)
+        .expected(expected)
+        .found(x.to_string()))
+}
+
+/// The value, if it is one: items of lists may not have been assigned yet.
+fn has_value<T: Scalar>(m: &Module, id: ExprId, value: Value<T>) -> Result<Value<T>, Diagnostic> {
+    if !matches!(value, Value::Unset) {
+        return Ok(value);
+    }
+    let span = m.program[id].span;
+    let text = m.program.slice(span).trim();
+    Err(Diagnostic::error("no-value", format!("`{text}` has no value yet")).at(span))
 }
 
 /// What is said of an assignment to an object or parameter.

@@ -9,8 +9,10 @@
 use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
 use crate::run::parts::{self, StatementParts};
+use crate::run::records::declared_list;
 use crate::run::unused;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
+use crate::source::scope::RecordAt;
 use crate::value::variables::described;
 use moldloft_diag::{Diagnostic, Severity, Span, nearest};
 use moldloft_registry::{Registry, Row};
@@ -74,6 +76,7 @@ pub(crate) struct Semantics<'a> {
     /// The modules that were run, in order.
     pub run: Vec<usize>,
     pub routines: &'a HashMap<Name, RoutineAt>,
+    pub records: &'a HashMap<Name, RecordAt>,
     pub executed: &'a Executed,
     /// True when names come from elsewhere, too: sketches, components.
     pub open: bool,
@@ -95,13 +98,13 @@ impl<'a> Semantics<'a> {
         modules: &'a Modules,
         registry: &'a Registry,
         mut run: Vec<usize>,
-        routines: &'a HashMap<Name, RoutineAt>,
+        (routines, records): (&'a HashMap<Name, RoutineAt>, &'a HashMap<Name, RecordAt>),
         executed: &'a Executed,
         open: bool,
     ) -> Self {
         run.sort_unstable();
         let (globals, found) = (HashMap::new(), Vec::new());
-        Self { modules, registry, run, routines, executed, open, globals, found }
+        Self { modules, registry, run, routines, records, executed, open, globals, found }
     }
 
     /// What is to be said of the program.
@@ -359,8 +362,11 @@ impl<'a> Semantics<'a> {
         if let Some(&routine) = self.routines.get(&name) {
             return self.arity(m, routine, args, span);
         }
+        if self.records.contains_key(&name) {
+            return;
+        }
         if let Some(builtin) = BUILTINS.iter().find(|b| b.name == word) {
-            let (least, most) = builtin.arguments;
+            let (least, most) = builtin.arity();
             if !(least..=most).contains(&args.len()) {
                 let id = if args.len() < least { "missing-argument" } else { "too-many-arguments" };
                 self.say(
@@ -478,7 +484,8 @@ impl<'a> Semantics<'a> {
                 }
             }
         }
-        let missing = (0..formals.len()).find(|&k| !filled[k] && !formals[k].multiple);
+        let needed = |k: &usize| !formals[*k].multiple && formals[*k].default.is_none();
+        let missing = (0..formals.len()).filter(needed).find(|&k| !filled[k]);
         if let Some(k) = missing {
             self.say(
                 Diagnostic::warning("missing-argument", format!("{name} needs `{}`", spelled[k]))
@@ -492,7 +499,13 @@ impl<'a> Semantics<'a> {
 
     fn declaration(&mut self, place: &JudgedScope<'_>, ty: (Type, Span), item: &Declarator) {
         let m = place.m;
+        if declared_list(m, ty.0, item).is_some() {
+            return;
+        }
         if let Type::Other(symbol) = ty.0 {
+            if self.records.contains_key(&m.names[symbol.0 as usize]) {
+                return;
+            }
             let word = m.program.name(symbol);
             let diagnostic = Diagnostic::warning("unknown-type", format!("unknown type `{word}`"))
                 .at(ty.1)
@@ -782,8 +795,9 @@ fn collect(
             match m.program[stmt].kind {
                 StmtKind::Declare { global, ty, items } if global || !global_only => {
                     for item in &m.program[items] {
-                        let known = !matches!(ty.0, Type::Other(_));
-                        let dims = numbers(m, item.dims).filter(|dims| !dims.is_empty());
+                        let list = declared_list(m, ty.0, item).is_some();
+                        let known = !matches!(ty.0, Type::Other(_)) && !list;
+                        let dims = numbers(m, item.dims).filter(|dims| !dims.is_empty() && !list);
                         add(item.name, Some(ty.0).filter(|_| known), dims);
                     }
                 }

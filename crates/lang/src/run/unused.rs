@@ -91,6 +91,8 @@ pub(super) fn mentioned(m: &Module) -> HashSet<Name> {
     uses.list(m, m.program.body());
     for routine in m.program.routines() {
         uses.list(m, routine.body);
+        let defaults = m.program[routine.formals].iter().filter_map(|formal| formal.default);
+        defaults.for_each(|expr| uses.expression(m, expr));
     }
     uses.read.iter().map(|symbol| m.names[symbol.0 as usize]).collect()
 }
@@ -104,6 +106,7 @@ pub(super) fn does_something(m: &Module) -> bool {
                 | StmtKind::Param { .. }
                 | StmtKind::Load(_)
                 | StmtKind::Routine(_)
+                | StmtKind::Record { .. }
                 | StmtKind::Assert { .. }
                 | StmtKind::Error
         )

@@ -6,7 +6,7 @@ use crate::value::subarray::Place;
 use moldloft_diag::Span;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Row, Scalar, Value};
-use moldloft_syntax::sdl::Type;
+use moldloft_syntax::sdl::{StmtId, Type};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -123,6 +123,15 @@ impl<T: Scalar> CallFrame<T> {
     }
 }
 
+/// Where a type of records is declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordAt {
+    /// The module.
+    pub module: usize,
+    /// The statement in it.
+    pub stmt: StmtId,
+}
+
 /// All that a file has of its own while it runs: a component runs in another scope than its user.
 #[derive(Debug)]
 pub struct Scope<T: Scalar> {
@@ -130,6 +139,8 @@ pub struct Scope<T: Scalar> {
     pub globals: Vec<Option<ScopedBinding<T>>>,
     /// Subroutines and functions.
     pub routines: HashMap<Name, RoutineAt>,
+    /// Types of records.
+    pub records: HashMap<Name, RecordAt>,
     /// The calls under way; the first is the file itself.
     pub frames: Vec<CallFrame<T>>,
     /// The modules that were run.
@@ -155,6 +166,7 @@ impl<T: Scalar> Scope<T> {
         Self {
             globals,
             routines: HashMap::new(),
+            records: HashMap::new(),
             frames: vec![CallFrame::new(true, prefix)],
             executed: HashSet::new(),
             sketches_done: HashSet::new(),
@@ -164,8 +176,8 @@ impl<T: Scalar> Scope<T> {
 
     /// Makes ready for statements, or for an expression, that are run at file level: what names mean stays.
     pub fn enter(&mut self, names: usize) {
-        let Self { globals, routines, .. } = std::mem::take(self);
-        *self = Self { globals, routines, ..Self::default() };
+        let Self { globals, routines, records, .. } = std::mem::take(self);
+        *self = Self { globals, routines, records, ..Self::default() };
         self.make_room(names);
     }
 

@@ -1,6 +1,4 @@
-//! Blocks: grids of three dimensions, as lists of their layers k, each a surface, or numbers of its shape.
-//!
-//! A list of surfaces of one shape is a block, whether a variable is declared so or not.
+//! Blocks: grids of three dimensions, as their layers k, each a surface, or numbers of its shape.
 
 use crate::value::subarray::{ArraySection, Selection};
 use crate::value::variables::{self, Called as _};
@@ -11,15 +9,21 @@ use std::sync::Arc;
 
 /// The extents of a block; `None` of what is none.
 pub(crate) fn size<T: Real>(value: &Value<T>) -> Option<[usize; 3]> {
-    let Value::List(layers) = value else { return None };
-    let shape = |layer: &Value<T>| match layer {
-        Value::Vectors(a) => Some((true, a.shape)),
-        Value::Numbers(a) => Some((false, a.shape)),
-        _ => None,
+    let Value::Block(layers) = value else { return None };
+    let shape = match layers.first()? {
+        Value::Vectors(a) => a.shape,
+        Value::Numbers(a) => a.shape,
+        _ => return None,
     };
-    let first = shape(layers.first()?)?;
-    let (_, ArrayShape::Grid(m, n)) = first else { return None };
-    layers.iter().all(|layer| shape(layer) == Some(first)).then_some([m, n, layers.len()])
+    let ArrayShape::Grid(m, n) = shape else { return None };
+    Some([m, n, layers.len()])
+}
+
+/// The block that a list of surfaces of one shape spells where a block is asked; any other value as it is.
+pub(crate) fn spelled_by<T: Real>(value: Value<T>) -> Value<T> {
+    let Value::List(layers) = &value else { return value };
+    let gathered = layers.iter().map(|layer| moldloft_arrays::gathered(layer).into_owned());
+    Value::block(gathered).unwrap_or(value)
 }
 
 /// A block of points at the origin.
@@ -30,7 +34,7 @@ pub(crate) fn zeros<T: Real>([ni, nj, nk]: [usize; 3]) -> Value<T> {
             moldloft_num::Vec3::zero(),
         )))
     };
-    Value::list((0..nk).map(|_| layer()))
+    Value::Block((0..nk).map(|_| layer()).collect())
 }
 
 /// What a function makes of each layer; `None` of another value.
@@ -38,10 +42,9 @@ pub(crate) fn by_layer<T: Real, E>(
     value: &Value<T>,
     f: impl FnMut(&Value<T>) -> Result<Value<T>, E>,
 ) -> Option<Result<Value<T>, E>> {
-    size(value)?;
-    let Value::List(layers) = value else { return None };
-    let layers: Result<Vec<Value<T>>, E> = layers.iter().map(f).collect();
-    Some(layers.map(Value::list))
+    let Value::Block(layers) = value else { return None };
+    let layers: Result<Arc<[Value<T>]>, E> = layers.iter().map(f).collect();
+    Some(layers.map(Value::Block))
 }
 
 /// What an operator makes of two blocks, or of a block and a single value, layer by layer; `None` where none is a
@@ -55,9 +58,10 @@ pub(crate) fn by_layers<T: Real, E>(
     let single = |v: &Value<T>| matches!(v, Value::Number(_) | Value::Vector(_) | Value::Point(_));
     match (size(a), size(b)) {
         (Some(m), Some(n)) if m == n => {
-            let (Value::List(a), Value::List(b)) = (a, b) else { return None };
-            let layers: Result<Vec<_>, E> = a.iter().zip(b.iter()).map(|(a, b)| f(a, b)).collect();
-            Some(layers.map(Value::list))
+            let (Value::Block(a), Value::Block(b)) = (a, b) else { return None };
+            let layers: Result<Arc<[_]>, E> =
+                a.iter().zip(b.iter()).map(|(a, b)| f(a, b)).collect();
+            Some(layers.map(Value::Block))
         }
         (Some(m), Some(n)) => Some(Err(differ(format!("{} and {}", spelled(m), spelled(n))))),
         (Some(_), None) if single(b) => by_layer(a, |a| f(a, b)),
@@ -68,8 +72,7 @@ pub(crate) fn by_layers<T: Real, E>(
 
 /// All numbers, or all points, of a block as one row.
 pub(crate) fn flat<T: Real>(value: &Value<T>) -> Option<Value<T>> {
-    size(value)?;
-    let Value::List(layers) = value else { return None };
+    let Value::Block(layers) = value else { return None };
     let (mut numbers, mut points) = (Vec::new(), Vec::new());
     for layer in layers.iter() {
         match layer {
@@ -104,7 +107,7 @@ pub(crate) fn part<T: Real>(
         parts.push(variables::part(&layers[k], inner)?);
     }
     if a.keeps && b.keeps {
-        return Ok(Value::list(parts));
+        return Ok(Value::Block(parts.into()));
     }
     Ok(match &parts[0] {
         Value::Number(_) => Value::Numbers(Arc::new(Array::row(
@@ -200,7 +203,7 @@ pub(crate) fn fill<T: Real>(
             return Ok(value.clone());
         }
         match value {
-            Value::List(items) => Ok(items[n].clone()),
+            Value::Block(items) => Ok(items[n].clone()),
             grid if count == 2 => {
                 let line = Selection::whole(extents[0]);
                 variables::part(grid, ArraySection::Grid(line, Selection::at(n)))

@@ -35,7 +35,15 @@ fn spelled<T: Real>(value: &Value<T>, between: &str) -> String {
         Value::Point(p) => vector(p.xyz),
         Value::Numbers(a) => shaped(a.shape, a.items.iter().map(|&x| number(x)).collect()),
         Value::Vectors(a) => shaped(a.shape, a.iter().map(vector).collect()),
-        Value::List(items) => list(items.iter().map(|item| spelled(item, between)).collect()),
+        Value::List(items) | Value::Block(items) => {
+            list(items.iter().map(|item| spelled(item, between)).collect())
+        }
+        Value::Record(record) => {
+            let member = |(name, value)| format!("{name} = {}", spelled(value, between));
+            let members: Vec<String> =
+                record.names.iter().zip(&record.values).map(member).collect();
+            format!("{}({})", record.of, members.join(", "))
+        }
         Value::Plane(p) => {
             format!("plane through {} with normal {}", vector(p.point), vector(p.normal))
         }

@@ -9,6 +9,14 @@ use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
 pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
+    if let Value::Record(record) = value {
+        return record.position(name).map(|k| match &record.values[k] {
+            Value::Unset => {
+                Err(Diagnostic::error("no-value", format!("`{name}` has no value yet")))
+            }
+            value => Ok(value.clone()),
+        });
+    }
     if let Some(member) = of_found(value, name) {
         return Some(Ok(member));
     }
@@ -24,7 +32,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             let items = a.planes[c].clone();
             Some(Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items }))))
         }
-        (Value::List(_), Some(c)) => crate::value::variables::component(value, c).map(Ok),
+        (Value::Block(_), Some(c)) => crate::value::variables::component(value, c).map(Ok),
         (Value::Point(p), None) => match (name, &p.on_curve, &p.on_surface) {
             ("t", Some(place), _) => number(place.1),
             ("u", _, Some(place)) => number(place.1[0]),
@@ -52,7 +60,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             }
             number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-12 * rough))
         }
-        (Value::Numbers(_) | Value::Vectors(_) | Value::List(_), None) => {
+        (Value::Numbers(_) | Value::Vectors(_) | Value::List(_) | Value::Block(_), None) => {
             let extents = crate::value::variables::extents(value)?;
             let extent = match name {
                 "d1" => extents.first(),
@@ -112,11 +120,14 @@ const FLAWS: [&str; 3] = ["undecided", "blunt", "touching"];
 const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
 
 /// The names of the members that a value has.
-pub fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+pub fn names<T: Real>(value: &Value<T>) -> Vec<Arc<str>> {
+    if let Value::Record(record) = value {
+        return record.names.to_vec();
+    }
     let mut names = own_names(value);
     names.extend(value.found().iter().flat_map(|_| FOUND));
     names.extend(value.figures().iter().map(|(name, _)| *name));
-    names
+    names.into_iter().map(Arc::from).collect()
 }
 
 fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
@@ -133,6 +144,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         }
         Value::Vectors(_) => vec!["x", "y", "z", "d1"],
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
+        Value::Block(_) => vec!["x", "y", "z", "d1", "d2", "d3"],
         Value::Curve(_) => vec!["length"],
         Value::Surface(_) => {
             let mut names = vec!["area", "centroid", "volume"];

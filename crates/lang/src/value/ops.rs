@@ -130,9 +130,15 @@ pub(crate) fn whole_power<T: Real>(b: T) -> Option<i32> {
     (b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0).then_some(k as i32)
 }
 
+/// A whole power by multiplication; a negative one is the reciprocal of the positive one, which is exact for more bases
+/// than the power of the reciprocal.
+pub(crate) fn power_whole<T: Real>(a: T, k: i32) -> T {
+    if k < 0 { T::one() / a.powi(-k) } else { a.powi(k) }
+}
+
 pub(crate) fn power<T: Real>(a: T, b: T) -> T {
     match whole_power(b) {
-        Some(k) => a.powi(k),
+        Some(k) => power_whole(a, k),
         None => a.powf(b),
     }
 }
@@ -171,6 +177,11 @@ fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
     })
 }
 
+/// True of what `and` and `or` combine element by element.
+pub(crate) fn is_array<T: Real>(value: &Value<T>) -> bool {
+    matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_) | Value::Block(_))
+}
+
 /// `a and b`, `a or b` by element, one of them an array.
 pub(crate) fn logical<T: Real>(
     op: BinaryOp,
@@ -181,6 +192,16 @@ pub(crate) fn logical<T: Real>(
         let (a, b) = (a.re() != 0.0, b.re() != 0.0);
         T::from(f64::from(u8::from(if op == BinaryOp::And { a && b } else { a || b })))
     };
+    let differ = |found: String| {
+        Diagnostic::error("shapes-differ", format!("shapes differ: {found}"))
+            .expected("equal shapes, or a single value on one side")
+            .found(found)
+    };
+    if let Some(layers) = blocks::by_layers(a, b, |a, b| logical(op, a, b), differ) {
+        return layers;
+    }
+    let (a, b) = (&*moldloft_arrays::gathered(a), &*moldloft_arrays::gathered(b));
+    let (a, b) = (&*beside(op, a, b), &*beside(op, b, a));
     Ok(match (elements(a, op.spelling())?, elements(b, op.spelling())?) {
         (Elements::Numbers(a), Elements::Numbers(b)) => numbers(zipped(a, b, f)?),
         (Elements::Numbers(a), Elements::Number(b)) => numbers(mapped(a, |a| f(a, b))),
@@ -455,6 +476,10 @@ pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Result<Value<T>, 
         UnaryOp::Not => match value {
             Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
             Value::Numbers(a) => Ok(not(a)),
+            Value::Block(_) => match blocks::by_layer(value, |layer| unary(op, layer)) {
+                Some(layers) => layers,
+                None => Ok(value.clone()),
+            },
             other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
                 .expected("a comparison or a number")
                 .found(other.called())),

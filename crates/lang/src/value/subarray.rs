@@ -215,12 +215,65 @@ pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: ArraySectio
     });
 }
 
+/// From a value to one inside of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathStep {
+    /// The item of a list, from 0.
+    Item(u32),
+    /// The member of a record, from 0.
+    Member(u32),
+}
+
+/// Lists and records that are assigned to nest at most this deep.
+const MAX_STEPS: usize = 8;
+
+/// The steps through lists and records from a variable to a value inside of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ValuePath {
+    steps: [PathStep; MAX_STEPS],
+    count: u8,
+}
+
+impl Default for ValuePath {
+    fn default() -> Self {
+        Self { steps: [PathStep::Item(0); MAX_STEPS], count: 0 }
+    }
+}
+
+impl ValuePath {
+    /// The steps, outermost first.
+    pub fn steps(&self) -> &[PathStep] {
+        &self.steps[..usize::from(self.count)]
+    }
+
+    /// True when the path leads to the variable itself.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The path with one more step.
+    ///
+    /// # Errors
+    /// When it is too long.
+    pub fn then(mut self, step: PathStep) -> Result<Self, Diagnostic> {
+        let Some(free) = self.steps.get_mut(usize::from(self.count)) else {
+            return Err(Diagnostic::error("nested-too-deep", "lists and records nest too deep")
+                .expected(format!("at most {MAX_STEPS} subscripts of lists and members")));
+        };
+        *free = step;
+        self.count += 1;
+        Ok(self)
+    }
+}
+
 /// A part of a variable that is assigned to, or passed by reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// The frame of the variable; `None` for a global one.
     pub frame: Option<u32>,
     pub name: Name,
+    /// The value inside of it, when it is a list or a record.
+    pub path: ValuePath,
     /// The subscripts, when there are some.
     pub section: Option<ArraySection>,
     /// The component x, y, z as 0, 1, 2.
@@ -230,7 +283,20 @@ pub struct Place {
 impl Place {
     /// A whole variable.
     pub fn whole(frame: Option<u32>, name: Name) -> Self {
-        Self { frame, name, section: None, component: None }
+        Self { frame, name, path: ValuePath::default(), section: None, component: None }
+    }
+
+    /// True of a whole variable.
+    pub fn is_whole(&self) -> bool {
+        self.path.is_empty() && self.section.is_none() && self.component.is_none()
+    }
+
+    /// A value inside of this place.
+    ///
+    /// # Errors
+    /// When it is too deep.
+    pub fn at(self, step: PathStep) -> Result<Self, Diagnostic> {
+        Ok(Self { path: self.path.then(step)?, ..self })
     }
 
     /// A section of this place.
@@ -251,6 +317,13 @@ impl Place {
     /// True when writing to one may change the other.
     pub fn meets(&self, o: &Place) -> bool {
         let same = (self.frame, self.name) == (o.frame, o.name);
+        let mut steps = self.path.steps().iter().zip(o.path.steps());
+        if steps.any(|(a, b)| a != b) {
+            return false;
+        }
+        if self.path != o.path {
+            return same;
+        }
         let components = match (self.component, o.component) {
             (Some(a), Some(b)) => a == b,
             _ => true,

@@ -1,13 +1,13 @@
 //! Variables: types, sections, and assignment.
 
 use crate::value::blocks;
-use crate::value::subarray::{ArraySection, Place, picked, put, put_all};
+use crate::value::subarray::{ArraySection, PathStep, Place, ValuePath, picked, put, put_all};
 use moldloft_arrays::{MORE_MEMORY, within_share};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
-use moldloft_syntax::sdl::Type;
+use moldloft_syntax::sdl::{ItemType, Type};
 use std::sync::Arc;
 
 /// Ints are smaller: from here on neighbours share their digits.
@@ -28,7 +28,17 @@ pub fn type_of<T: Real>(value: &Value<T>) -> Type {
     match value {
         Value::Text(_) => Type::String,
         Value::Vector(_) | Value::Point(_) => Type::Vector,
-        Value::List(_) if blocks::size(value).is_some() => Type::Block,
+        Value::Block(_) => Type::Block,
+        Value::Record(_) => Type::Record,
+        Value::List(items) => {
+            let mut kinds = items.iter().map(type_of);
+            let first = kinds.next().filter(|first| kinds.all(|ty| ty == *first));
+            match first.and_then(Type::list) {
+                Some(Type::List(ItemType::String)) => Type::String,
+                Some(list) => list,
+                None => Type::Float,
+            }
+        }
         Value::Numbers(_) => Type::Farray,
         Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => Type::Surface,
         Value::Vectors(_) => Type::Curve,
@@ -72,6 +82,20 @@ pub fn described(ty: Type) -> &'static str {
         Type::Block => "a block (layers of surfaces)",
         Type::Routine => "the name of a function or subroutine",
         Type::Other(_) => "an object",
+        Type::Record => "a record",
+        Type::List(item) => match item {
+            ItemType::Curve => "a list of curves",
+            ItemType::Surface => "a list of surfaces",
+            ItemType::Block => "a list of blocks",
+            ItemType::Farray => "a list of farrays",
+            ItemType::Pcurve => "a list of parametric curves",
+            ItemType::Psurface => "a list of parametric surfaces",
+            ItemType::Field => "a list of fields",
+            ItemType::Set => "a list of sets",
+            ItemType::String => "a list of texts",
+            ItemType::Other(_) => "a list of objects",
+            ItemType::Record => "a list of records",
+        },
     }
 }
 
@@ -91,6 +115,11 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
             (Type::Psurface, Value::Vectors(_)) => {
                 Some("put a spline through the points: makecs(s, \"quadratic\", \"arc\")")
             }
+            (Type::Block, Value::List(_)) => {
+                Some("the layers of a block are surfaces of one shape")
+            }
+            (Type::List(_), Value::Block(_)) => Some("`foreach (s in b)` walks its layers"),
+            (Type::List(_), _) => Some("a list stands in braces: {a, b}"),
             _ => None,
         };
         Diagnostic::error("wrong-type", format!("expected {}, found {found}", described(ty)))
@@ -114,7 +143,21 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
                     "beyond them not every whole number has its own digits; a float is rounded",
                 ));
         }
-        (Type::Block, value @ Value::List(_)) if blocks::size(&value).is_some() => value,
+        (Type::Block, value @ Value::Block(_)) | (Type::Record, value @ Value::Record(_)) => value,
+        (Type::Block, value @ Value::List(_)) => match blocks::spelled_by(value) {
+            block @ Value::Block(_) => block,
+            other => return Err(wrong(&other)),
+        },
+        (Type::List(item), Value::List(items)) => {
+            let each = |(k, value): (usize, &Value<T>)| match value {
+                Value::Unset => Ok(Value::Unset),
+                value => converted(item.ty(), value.clone()).map_err(|mut d| {
+                    d.message = format!("item {}: {}", k + 1, d.message);
+                    d
+                }),
+            };
+            Value::List(items.iter().enumerate().map(each).collect::<Result<_, _>>()?)
+        }
         (Type::String, Value::List(items))
             if !items.is_empty() && items.iter().all(|v| matches!(v, Value::Text(_))) =>
         {
@@ -267,7 +310,12 @@ pub fn initial<T: Real>(
                 "wrong-dimension",
                 format!("{} does not have {} dimensions", described(ty), dims.len()),
             )
-            .expected("farray a[n], curve c[n], surface s[m,n], block b[l,m,n] or string s[n]"));
+            .expected("farray a[n], curve c[n], surface s[m,n], block b[l,m,n] or string s[n]")
+            .maybe_help(match ty {
+                Type::Int | Type::Float => Some("a row of numbers is an `farray`"),
+                Type::Vector => Some("a row of vectors is a `curve`"),
+                _ => None,
+            }));
         }
     };
     let Some(value) = value else { return Ok(empty) };
@@ -290,7 +338,15 @@ pub fn store<T: Real>(
 ) -> Result<Option<Value<T>>, Diagnostic> {
     let whole = place.section.is_none() && place.component.is_none();
     let array = matches!(taken.ty, Type::Farray | Type::Curve | Type::Surface | Type::Block);
-    if whole && taken.fixed && matches!(old, Value::List(_)) {
+    if let (true, Value::Record(old), Value::Record(new)) = (whole, &*old, &value)
+        && old.of != new.of
+    {
+        return Err(Diagnostic::error("wrong-type", format!("`{}` is a {}", taken.name, old.of))
+            .expected(format!("a {}", old.of))
+            .found(format!("a {}", new.of)));
+    }
+    let texts = taken.ty == Type::String && matches!(old, Value::List(_));
+    if whole && taken.fixed && (texts || matches!(old, Value::Block(_))) {
         fill(old, None, None, value)?;
         return Ok(None);
     }
@@ -314,12 +370,17 @@ pub fn store<T: Real>(
         )
         .help("declare them, or assign a whole array first"));
     }
+    let value = match (taken.ty, &*old, &value) {
+        (list @ Type::List(_), Value::List(_), Value::List(_)) => converted(list, value)?,
+        (Type::List(item), Value::List(_), _) => converted(item.ty(), value)?,
+        _ => value,
+    };
     fill(old, place.section, place.component, value)?;
     Ok(None)
 }
 
 fn is_array<T: Real>(value: &Value<T>) -> bool {
-    matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_))
+    matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_) | Value::Block(_))
 }
 
 /// The section, or the whole; checked against the dimensions.
@@ -362,12 +423,13 @@ pub(crate) fn fill<T: Real>(
             .expected(expected.to_string())
             .found(found)
     };
-    let size = blocks::size(old);
+    if let Some(size) = blocks::size(old)
+        && let Value::Block(layers) = old
+    {
+        return blocks::fill(layers, size, section, component, &blocks::spelled_by(value));
+    }
     if let Value::List(items) = old {
-        return match size {
-            Some(size) => blocks::fill(items, size, section, component, &value),
-            None => fill_texts(items, section, value),
-        };
+        return fill_list(items, section, value);
     }
     let value = match value {
         Value::Point(p) => Value::Vector(p.xyz),
@@ -446,8 +508,8 @@ pub(crate) fn fill<T: Real>(
     Ok(())
 }
 
-/// Writes texts into an array of texts: one for all selected elements, or one for each.
-fn fill_texts<T: Real>(
+/// Writes into a list: one value for all selected items, or one for each.
+fn fill_list<T: Real>(
     items: &mut Arc<[Value<T>]>,
     section: Option<ArraySection>,
     value: Value<T>,
@@ -456,26 +518,24 @@ fn fill_texts<T: Real>(
         None => (0..items.len()).collect(),
         Some(ArraySection::Row(selection)) => selection.positions().collect(),
         Some(_) => {
-            return Err(Diagnostic::error(
-                "wrong-subscripts",
-                "an array of texts has one subscript",
-            ));
+            return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
         }
     };
+    let texts = items.iter().any(|item| matches!(item, Value::Text(_)));
     let values = match value {
-        Value::Text(_) => vec![value; positions.len()],
-        Value::List(from) if from.iter().all(|v| matches!(v, Value::Text(_))) => {
+        Value::List(from) if !texts || from.iter().all(|v| matches!(v, Value::Text(_))) => {
             if from.len() != positions.len() {
                 let (to, from) = (positions.len(), from.len());
                 return Err(Diagnostic::error(
                     "shapes-differ",
                     format!("shapes differ: [{to}] = [{from}]"),
                 )
-                .expected(format!("{to} texts, or a single one"))
-                .found(format!("{from} texts")));
+                .expected(format!("{to} values, or a single one"))
+                .found(format!("{from} values")));
             }
             from.to_vec()
         }
+        value if !texts || matches!(value, Value::Text(_)) => vec![value; positions.len()],
         other => {
             let found = a(&other);
             return Err(Diagnostic::error("wrong-type", format!("expected a text, found {found}"))
@@ -524,9 +584,14 @@ pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>
         Value::List(items) => match section {
             ArraySection::Row(one) if !one.keeps => items[one.start].clone(),
             ArraySection::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
-            ArraySection::Block(a, b, c) => blocks::part(items, [a, b, c])?,
-            ArraySection::Grid(..) => {
+            ArraySection::Grid(..) | ArraySection::Block(..) => {
                 return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
+            }
+        },
+        Value::Block(layers) => match section {
+            ArraySection::Block(a, b, c) => blocks::part(layers, [a, b, c])?,
+            _ => {
+                return Err(Diagnostic::error("wrong-subscripts", "a block has three subscripts"));
             }
         },
         other => {
@@ -548,10 +613,33 @@ pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
         Value::Vectors(a) => {
             Value::Numbers(Arc::new(Array { shape: a.shape, items: a.planes[c].clone() }))
         }
-        Value::List(_) => {
+        Value::Block(_) => {
             return blocks::by_layer(value, |layer| component(layer, c).ok_or(()))?.ok();
         }
         _ => return None,
+    })
+}
+
+/// The value inside of lists and records that a path leads to.
+pub fn inside<'v, T: Real>(root: &'v Value<T>, path: &ValuePath) -> Option<&'v Value<T>> {
+    path.steps().iter().try_fold(root, |value, step| match (value, step) {
+        (Value::List(items), PathStep::Item(k)) => items.get(*k as usize),
+        (Value::Record(record), PathStep::Member(k)) => record.values.get(*k as usize),
+        _ => None,
+    })
+}
+
+/// The same, to change.
+pub fn inside_mut<'v, T: Real>(
+    root: &'v mut Value<T>,
+    path: &ValuePath,
+) -> Option<&'v mut Value<T>> {
+    path.steps().iter().try_fold(root, |value, step| match (value, step) {
+        (Value::List(items), PathStep::Item(k)) => Arc::make_mut(items).get_mut(*k as usize),
+        (Value::Record(record), PathStep::Member(k)) => {
+            Arc::make_mut(record).values.get_mut(*k as usize)
+        }
+        _ => None,
     })
 }
 
@@ -560,9 +648,11 @@ pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
 /// # Errors
 /// When it has no such part.
 pub fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Diagnostic> {
+    let within = inside(root, &place.path)
+        .ok_or_else(|| Diagnostic::error("not-indexable", "there is no such item or member"))?;
     let value = match place.section {
-        Some(section) => part(root, section)?,
-        None => root.clone(),
+        Some(section) => part(within, section)?,
+        None => within.clone(),
     };
     match place.component {
         None => Ok(value),
@@ -574,6 +664,12 @@ pub fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Dia
 
 /// The type of what stands in a place of a variable of type `ty` and value `root`.
 pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
+    let Some(value) = inside(root, &place.path) else { return ty };
+    let ty = match (ty, place.path.steps()) {
+        (ty, []) => ty,
+        (Type::List(item), [PathStep::Item(_)]) => item.ty(),
+        _ => type_of(value),
+    };
     let of =
         |dimensions: usize, vectors: bool| match (vectors && place.component.is_none(), dimensions)
         {
@@ -587,14 +683,11 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
         };
     let dimensions =
         |shape: ArrayShape| place.section.unwrap_or(ArraySection::whole(shape)).extents().1;
-    match root {
+    match value {
         Value::Numbers(a) => of(dimensions(a.shape), false),
         Value::Vectors(a) => of(dimensions(a.shape), true),
         Value::Vector(_) => of(0, true),
-        Value::List(_) => match (blocks::size(root), place.section) {
-            (Some(_), Some(section)) => of(section.extents().1, true),
-            _ => ty,
-        },
+        Value::Block(_) => place.section.map_or(ty, |section| of(section.extents().1, true)),
         _ => ty,
     }
 }
@@ -632,10 +725,10 @@ pub fn shape_of<T: Real>(value: &Value<T>) -> SizedType {
     match value {
         Value::Numbers(a) => SizedType::Numbers(a.shape),
         Value::Vectors(a) => SizedType::Vectors(a.shape),
-        Value::List(items) => match blocks::size(value) {
-            Some(size) => SizedType::Block(size),
-            None => SizedType::List(items.len()),
-        },
+        Value::List(items) => SizedType::List(items.len()),
+        Value::Block(_) => {
+            blocks::size(value).map_or(SizedType::Other(Class::Block), SizedType::Block)
+        }
         other => SizedType::Other(other.class()),
     }
 }
@@ -659,10 +752,8 @@ pub fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
     match value {
         Value::Numbers(a) => Some(of(a.shape)),
         Value::Vectors(a) => Some(of(a.shape)),
-        Value::List(items) => Some(match blocks::size(value) {
-            Some(size) => size.to_vec(),
-            None => vec![items.len()],
-        }),
+        Value::List(items) => Some(vec![items.len()]),
+        Value::Block(_) => blocks::size(value).map(|size| size.to_vec()),
         _ => None,
     }
 }

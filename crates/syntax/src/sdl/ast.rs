@@ -307,11 +307,81 @@ pub enum Type {
     Block,
     /// `function` or `subroutine` before an argument: a routine is passed.
     Routine,
+    /// `T name[]`: a list of values of a type.
+    List(ItemType),
+    /// A record, of the type that its value states.
+    Record,
     /// Any other word: a class of objects, or a misspelled type.
     Other(Symbol),
 }
 
+/// The types whose values form declared lists: those that are no rows of numbers or points already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ItemType {
+    /// Rows of points.
+    Curve,
+    /// Grids of points.
+    Surface,
+    /// Grids of three dimensions.
+    Block,
+    /// Rows of numbers.
+    Farray,
+    /// Parametric curves.
+    Pcurve,
+    /// Parametric surfaces.
+    Psurface,
+    /// Implicit functions.
+    Field,
+    /// Sets of points.
+    Set,
+    /// Texts.
+    String,
+    /// Records of the type of this name.
+    Other(Symbol),
+    /// Records.
+    Record,
+}
+
+impl ItemType {
+    /// The type of an item.
+    pub fn ty(self) -> Type {
+        match self {
+            ItemType::Curve => Type::Curve,
+            ItemType::Surface => Type::Surface,
+            ItemType::Block => Type::Block,
+            ItemType::Farray => Type::Farray,
+            ItemType::Pcurve => Type::Pcurve,
+            ItemType::Psurface => Type::Psurface,
+            ItemType::Field => Type::Field,
+            ItemType::Set => Type::Set,
+            ItemType::String => Type::String,
+            ItemType::Other(symbol) => Type::Other(symbol),
+            ItemType::Record => Type::Record,
+        }
+    }
+}
+
 impl Type {
+    /// The type of lists of such values; `None` for numbers and vectors, whose rows are an farray and a curve.
+    pub fn list(self) -> Option<Type> {
+        Some(Type::List(match self {
+            Type::Curve => ItemType::Curve,
+            Type::Surface => ItemType::Surface,
+            Type::Block => ItemType::Block,
+            Type::Farray => ItemType::Farray,
+            Type::Pcurve => ItemType::Pcurve,
+            Type::Psurface => ItemType::Psurface,
+            Type::Field => ItemType::Field,
+            Type::Set => ItemType::Set,
+            Type::String => ItemType::String,
+            Type::Other(symbol) => ItemType::Other(symbol),
+            Type::Record => ItemType::Record,
+            Type::Int | Type::Float | Type::File | Type::Vector | Type::Routine | Type::List(_) => {
+                return None;
+            }
+        }))
+    }
+
     /// The ten types of the 1992 language, in the order of their reserved words.
     pub(crate) const CLASSIC: [Type; 10] = [
         Type::Int,
@@ -327,12 +397,23 @@ impl Type {
     ];
 }
 
-/// One variable of a declaration: `name[m, n] = value`.
+/// The length of a declared list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListLength {
+    /// `name[]`: that of the values assigned to it.
+    Open,
+    /// `name[n][]`, `name[n][l, m]`.
+    Of(ExprId),
+}
+
+/// One variable of a declaration: `name[m, n] = value`, or a list: `name[] = value`, `name[k][m, n]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Declarator {
     /// The variable.
     pub name: Ident,
-    /// Its dimensions, none to three.
+    /// The length of the list that it is, when its brackets say that it is one.
+    pub list: Option<ListLength>,
+    /// Its dimensions, none to three; of a list those of its items.
     pub dims: NodeList<ExprId>,
     /// Its first value.
     pub value: Option<ExprId>,
@@ -365,6 +446,13 @@ pub enum StmtKind {
     Load(TextId),
     /// A subroutine or function.
     Routine(RoutineId),
+    /// `record name { declarations }`
+    Record {
+        /// The name of the type.
+        name: Ident,
+        /// The declarations of its members, with their first values.
+        members: NodeList<StmtId>,
+    },
     /// `[global] type name…;`
     Declare {
         /// Whether `global` stands before it.
@@ -473,7 +561,7 @@ pub enum StmtKind {
     Error,
 }
 
-/// A formal argument: `[returned] type name[...]`.
+/// A formal argument: `[returned] type name[[]] [= value] [...]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Formal {
     /// Whether it is passed by reference.
@@ -484,6 +572,8 @@ pub struct Formal {
     pub name: Ident,
     /// Whether it takes all remaining arguments.
     pub multiple: bool,
+    /// Its value where the call gives none.
+    pub default: Option<ExprId>,
 }
 
 /// A subroutine, or a function with a result type.

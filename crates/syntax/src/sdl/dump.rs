@@ -34,6 +34,10 @@ impl Program {
             Type::Other(symbol) => {
                 let _ = write!(out, " {}", self.name(symbol));
             }
+            Type::List(item) => {
+                self.dump_type(item.ty(), out);
+                out.push_str("[]");
+            }
             known => {
                 let _ = write!(out, " {known:?}");
             }
@@ -81,12 +85,26 @@ impl Program {
                 for item in &self[items] {
                     out.push_str(" (");
                     out.push_str(self.name(item.name.symbol));
+                    match item.list {
+                        None => {}
+                        Some(ListLength::Open) => out.push_str(" []"),
+                        Some(ListLength::Of(length)) => {
+                            out.push_str(" [");
+                            self.dump_exprs([length], out);
+                            out.push_str(" ]");
+                        }
+                    }
                     out.push_str(" [");
                     self.dump_exprs(self[item.dims].iter().copied(), out);
                     out.push_str(" ]");
                     self.dump_exprs(item.value, out);
                     out.push(')');
                 }
+            }
+            StmtKind::Record { name, members } => {
+                out.push_str("record");
+                self.word(name.symbol, out);
+                self.dump_stmts(members, out);
             }
             StmtKind::Param { ty, name, value, range } => {
                 out.push_str("param");
@@ -195,6 +213,7 @@ impl Program {
             out.push_str(if formal.returned { " (returned" } else { " (" });
             self.dump_type(formal.ty.0, out);
             self.word(formal.name.symbol, out);
+            self.dump_exprs(formal.default, out);
             out.push_str(if formal.multiple { "...)" } else { ")" });
         }
         out.push(')');

@@ -2,7 +2,8 @@
 //!
 //! The formatter changes the blanks between tokens, never the tokens, with three exceptions that keep the meaning:
 //! empty statements are dropped, numbers get a digit on both sides of their point, and parentheses are added where set
-//! operators group otherwise than numbers would. Line breaks inside a statement stay where the author put them.
+//! operators group otherwise than numbers would. Line breaks inside a statement stay where the author put them; longer
+//! lines are broken behind commas.
 
 use super::parser::version::refused;
 use super::parser::{SourceLayout, TokenRole, parse_marked};
@@ -11,6 +12,9 @@ use moldloft_diag::{Diagnostic, FileId};
 use std::sync::Arc;
 
 const INDENT: usize = 4;
+
+/// Lines are broken behind a comma before they are longer than this, in characters.
+const MAX_LINE: usize = 120;
 
 /// The canonical text of a program: one statement a line, blocks indented by four blanks, single blank lines and all
 /// comments kept. Formatting canonical text changes nothing.
@@ -235,9 +239,46 @@ impl<'a> Writer<'a> {
             } else {
                 self.indent(closing);
             }
+        } else if self.is_too_long(at) {
+            self.new_line();
+            self.indent(closing);
         } else if blank_between(self.last, token, role) {
             self.out.push(' ');
         }
+    }
+
+    /// True behind a comma in brackets when the line has no room for what follows, up to the next comma.
+    fn is_too_long(&self, at: usize) -> bool {
+        let comma = self.last.is_some_and(|(last, _)| last.kind == Kind::Comma);
+        if !comma || self.brackets.is_empty() {
+            return false;
+        }
+        let line = self.out.rfind('\n').map_or(0, |k| k + 1);
+        let mut width = self.out[line..].chars().count();
+        let mut depth = 0i32;
+        // Canonical widths, so that canonical text is measured alike.
+        for k in at..self.layout.tokens.len() {
+            let (token, role) = (self.layout.tokens[k], self.layout.roles[k]);
+            if k > at && token.new_line {
+                break;
+            }
+            depth += i32::from(opens(token, role)) - i32::from(closes(token, role));
+            let text = &self.text[token.start as usize..token.end as usize];
+            width += match token.kind {
+                Kind::Number => {
+                    let mut canonical = String::new();
+                    number(text, &mut canonical);
+                    canonical.len()
+                }
+                _ => text.chars().count(),
+            };
+            let last = k.checked_sub(1).map(|k| (self.layout.tokens[k], self.layout.roles[k]));
+            width += usize::from(blank_between(last, token, role));
+            if token.kind == Kind::Semi || (depth <= 0 && token.kind == Kind::Comma) {
+                break;
+            }
+        }
+        width > MAX_LINE
     }
 
     fn token(&mut self, token: Token, role: TokenRole) {
@@ -392,6 +433,19 @@ mod tests {
             formatted("if (a) # c\n{ b = 1; } # d\nelse b = 2;"),
             "if (a)  # c\n{\n    b = 1;\n}  # d\nelse b = 2;\n"
         );
+    }
+
+    #[test]
+    fn long_lines_are_broken_behind_commas() {
+        let point = "{1.25, 2.5, 3.75}";
+        let text = format!("BCurve keel({{{}}}, degree = 3);", [point; 12].join(", "));
+        let once = formatted(&text);
+        assert!(
+            once.lines().count() > 1 && once.lines().all(|line| line.len() <= MAX_LINE),
+            "{once}"
+        );
+        let short = format!("BCurve keel({{{}}});\n", [point; 4].join(", "));
+        assert_eq!(formatted(&short), short);
     }
 
     #[test]

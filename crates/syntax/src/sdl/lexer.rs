@@ -317,6 +317,7 @@ impl Lexer<'_> {
             '×' | '·' => Some("multiply with `*`"),
             '\'' => Some("a string is enclosed in double quotes `\"`"),
             '%' => Some("the rest of a division is `mod(a, b)`"),
+            '?' => Some("a choice between two values is `where(condition, a, b)`, or `if`"),
             c if c.is_alphabetic() => Some("names are made of the letters A to Z, digits and `_`"),
             _ => None,
         };

@@ -83,6 +83,11 @@ impl Program {
         self.exprs.len()
     }
 
+    /// The list of no expressions.
+    pub fn no_expressions(&self) -> NodeList<ExprId> {
+        NodeList::new(0, 0)
+    }
+
     /// The text a span covers.
     pub fn slice(&self, span: Span) -> &str {
         self.text.get(span.range()).unwrap_or("")

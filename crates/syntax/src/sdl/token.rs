@@ -2,7 +2,7 @@
 
 use super::interner::{Interner, Symbol};
 
-/// What a token is. Words that are reserved only in places (`param`, `in`, `assert`, `field`, `set`) are `Ident`.
+/// What a token is. Words that are reserved only in places (`param`, `in`, `assert`, `field`, `set`, `block`, `record`) are `Ident`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     // Words: `Ident`, then the reserved ones in the order of `RESERVED`.
@@ -104,8 +104,8 @@ pub(crate) const RESERVED: [(&str, Kind); 28] = [
 ];
 
 /// Words that are reserved only where they can stand; their symbols follow those of [`RESERVED`].
-const CONTEXTUAL: [&str; 11] =
-    ["param", "in", "assert", "field", "set", "block", "x", "y", "z", "d1", "d2"];
+const CONTEXTUAL: [&str; 12] =
+    ["param", "in", "assert", "field", "set", "block", "record", "x", "y", "z", "d1", "d2"];
 
 /// The words of the language: reserved ones, and those that begin statements or stand between their parts.
 pub fn keywords() -> impl Iterator<Item = &'static str> {
@@ -116,7 +116,7 @@ pub fn keywords() -> impl Iterator<Item = &'static str> {
 /// The words that a declaration may begin with.
 pub fn declaring_words() -> impl Iterator<Item = &'static str> {
     let types = RESERVED.iter().filter(|(_, kind)| *kind == TypeWord).map(|(word, _)| *word);
-    types.chain(["param", "field", "set", "block"])
+    types.chain(["param", "field", "set", "block", "record"])
 }
 
 /// Whether the word has a meaning of its own at some places only.
@@ -130,10 +130,11 @@ pub(crate) const ASSERT: Symbol = Symbol(30);
 pub(crate) const FIELD: Symbol = Symbol(31);
 pub(crate) const SET: Symbol = Symbol(32);
 pub(crate) const BLOCK: Symbol = Symbol(33);
+pub(crate) const RECORD: Symbol = Symbol(34);
 
 /// Whether the name is one of the component suffixes `x y z d1 d2`.
 pub(crate) fn is_component(symbol: Symbol) -> bool {
-    (34..=38).contains(&symbol.0)
+    (35..=39).contains(&symbol.0)
 }
 
 /// An interner that knows the words above.
@@ -199,6 +200,7 @@ mod tests {
             ("field", FIELD),
             ("set", SET),
             ("block", BLOCK),
+            ("record", RECORD),
         ];
         for (word, symbol) in fixed {
             assert_eq!(words.find(word), Some(symbol));

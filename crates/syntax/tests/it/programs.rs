@@ -183,3 +183,59 @@ fn places_of_members_and_statements() {
     let sdl::ExprKind::Member { base, or_dot: false, .. } = program[value].kind else { panic!() };
     assert_eq!(program.slice(program.member_span(base)), "leg");
 }
+
+#[test]
+fn lists_records_and_defaults() {
+    let text = "record rib { float chord = 1; farray y[3]; }\nrecord wing { float span; rib ribs[2], more[]; }\n\
+                curve lines[4][60], other[4][], open[] = {a, b};\nsurface parts[6];\n\
+                function surface[] halves(surface s[], float at = 2*x, wing w = wing(span = 3)) {\n    return s;\n}\n";
+    let (program, faults) = sdl::parse(text, FileId(0));
+    assert!(faults.is_empty(), "{faults:#?}");
+    let dump = program.dump();
+    for part in [
+        "(record rib (declare Float (chord [ ] 1.0i)) (declare Farray (y [ 3.0i ])))",
+        "(declare rib (ribs [ 2.0i ]) (more [] [ ]))",
+        "(lines [ 4.0i ] [ 60.0i ]) (other [ 4.0i ] [ ]) (open [] [ ] (list a b))",
+        "(function Surface[] halves ( ( Surface[] s) ( Float at (* 2.0i x)) ( wing w (call wing span=3.0i)))",
+    ] {
+        assert!(dump.contains(part), "{part}\n{dump}");
+    }
+    assert_eq!(
+        sdl::format(text).unwrap(),
+        text.replace("{ float", "{\n    float")
+            .replace("; farray", ";\n    farray")
+            .replace("; rib", ";\n    rib")
+            .replace("; }", ";\n}")
+            .replace("2*x", "2 * x")
+    );
+    for (text, id) in [
+        ("function float f(float a = 1, float b) { return a; }", "misplaced-default"),
+        ("subroutine f(returned curve c = 1) {}", "misplaced-default"),
+        ("subroutine f(int a[]) {}", "wrong-type"),
+        ("subroutine f(float x) { if (x > 0) { curve x[3]; } }", "duplicate-name"),
+        ("record a { float x; int x; }", "duplicate-name"),
+        ("record a { print 1; }", "misplaced-statement"),
+        ("if (1) { record a { float x; } }", "misplaced-record"),
+    ] {
+        let (_, faults) = sdl::parse(text, FileId(0));
+        assert!(faults.iter().any(|fault| fault.id == id), "{text}: {faults:#?}");
+    }
+}
+
+#[test]
+fn habits_of_other_languages_are_explained() {
+    for (text, help) in [
+        ("x = 1; // one", "begin with `#`"),
+        ("i++;", "`i += 1`"),
+        ("x = a ** 2;", "`a^b`"),
+        ("x = a ? 1 : 2;", "where(condition, a, b)"),
+        ("for (int i = 1; i < 3; i += 1) {}", "`for (i = 1:n)`"),
+        ("if x > 1 { y = 2; }", "parentheses"),
+        ("def f(x) { return x; }", "function float f"),
+        ("if (x) {} elif (y) {}", "else if"),
+    ] {
+        let (_, faults) = sdl::parse(text, FileId(0));
+        let said = format!("{faults:?}");
+        assert!(said.contains(help), "{text}: {said}");
+    }
+}

@@ -652,7 +652,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     None => self.emit(ScalarOp::Leave).map(drop),
                 }
             }
-            StmtKind::Routine(_) => Ok(()),
+            StmtKind::Routine(_) | StmtKind::Record { .. } => Ok(()),
             StmtKind::Load(_) => Err(Unfit::Unit),
             StmtKind::Foreach { variable, list, body } => self.foreach(variable, list, body),
             StmtKind::Object { .. }

@@ -266,7 +266,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 ScalarOp::Power { to, a, b } => finite!(to, ops::power(at!(a), at!(b))),
                 // As `powi` does it.
                 ScalarOp::Square { to, a } => finite!(to, T::one() * (at!(a) * at!(a))),
-                ScalarOp::PowerWhole { to, a, k } => finite!(to, at!(a).powi(i32::from(k))),
+                ScalarOp::PowerWhole { to, a, k } => {
+                    finite!(to, ops::power_whole(at!(a), i32::from(k)))
+                }
                 ScalarOp::Negate { to, a } => at!(to) = -at!(a),
                 ScalarOp::Magnitude { to, a } => at!(to) = at!(a).abs(),
                 ScalarOp::Not { to, a } => {

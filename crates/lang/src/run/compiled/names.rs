@@ -36,6 +36,8 @@ pub(super) fn declared(
             StmtKind::Declare { global, ty, items } => {
                 for item in &m.program[items] {
                     let how = match (ty.0, item.dims.len()) {
+                        (_, 1) if ty.0 == Type::Surface => Declares::Other,
+                        _ if item.list.is_some() => Declares::Other,
                         (Type::Int | Type::Float | Type::Vector, 0) => Declares::Variable(ty.0),
                         (Type::Farray | Type::Curve | Type::Surface, _) => Declares::Array(ty.0),
                         _ => Declares::Other,
@@ -64,6 +66,7 @@ pub(super) fn declared(
             }
             StmtKind::Load(_) => loads = true,
             StmtKind::Routine(_)
+            | StmtKind::Record { .. }
             | StmtKind::Assign { .. }
             | StmtKind::Call(_)
             | StmtKind::Print(_)
@@ -138,7 +141,7 @@ pub(super) fn held<T: Scalar>(scope: &Scope<T>, bound: &ScopedBinding<T>) -> Opt
             _ => None,
         },
         Binding::Param(number) => Some(Captured::Param(*number)),
-        Binding::Reference(place) if place.section.is_none() && place.component.is_none() => {
+        Binding::Reference(place) if place.is_whole() => {
             match (held(scope, scope.root(place)?)?, place.frame) {
                 (Captured::Variable(_) | Captured::Array(_), None) => {
                     Some(Captured::OfFile(place.name))

@@ -345,8 +345,45 @@ impl Parser {
         let found = self.describe(token);
         let message = format!("unexpected {}", without_article(&found));
         let diagnostic = Diagnostic::error("unexpected-token", message).at(self.span(token));
-        self.report(diagnostic.expected(expected).found(found));
+        let habit = self.habit();
+        self.report(diagnostic.expected(expected).found(found).maybe_help(habit));
         Reported
+    }
+
+    /// What a spelling of C, Python or MATLAB is in this language: the current token is not understood.
+    fn habit(&self) -> Option<&'static str> {
+        let token = self.token();
+        let before = self.at.checked_sub(1).map(|at| self.tokens[at]);
+        let pair = |a: Kind, b: Kind| {
+            let follows = |first: Token, second: Token| {
+                first.kind == a && second.kind == b && first.end == second.start
+            };
+            before.is_some_and(|before| follows(before, token)) || follows(token, self.peek(1))
+        };
+        if pair(Kind::Slash, Kind::Slash) {
+            return Some("comments begin with `#`; the whole quotient is `div(a, b)`");
+        }
+        if pair(Kind::Slash, Kind::Star) {
+            return Some("comments begin with `#` and end with the line");
+        }
+        if pair(Kind::Star, Kind::Star) {
+            return Some("a power is written `a^b`");
+        }
+        if pair(Kind::Plus, Kind::Plus) || pair(Kind::Minus, Kind::Minus) {
+            return Some("count with `i += 1` and `i -= 1`");
+        }
+        if token.kind == Kind::TypeWord && before.is_some_and(|t| t.kind == Kind::LParen) {
+            return Some("the variable of a loop has no type: `for (i = 1:n)`");
+        }
+        if before.is_some_and(|t| matches!(t.kind, Kind::If | Kind::While | Kind::For)) {
+            return Some("conditions and loops have parentheses: `if (x > 0)`, `for (i = 1:n)`");
+        }
+        // The nearest such word before it on its line.
+        let line = self.tokens[..=self.at.min(self.tokens.len() - 1)].iter().rev();
+        line.scan(true, |goes_on, token| {
+            std::mem::replace(goes_on, !token.new_line).then_some(*token)
+        })
+        .find_map(|token| foreign_word(self.program.slice(self.span(token))))
     }
 
     /// Goes one level deeper; [`Parser::leave`] must follow if it succeeds.
@@ -420,6 +457,22 @@ impl Parser {
         self.report(diagnostic);
         Err(Reported)
     }
+}
+
+/// What a word of another language is in this one.
+fn foreign_word(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "def" | "fn" | "func" => {
+            "a function is declared with its types: `function float f(float x) { return x; }`"
+        }
+        "elif" | "elseif" | "elsif" => "a further condition is `else if (condition)`",
+        "var" | "let" | "const" | "double" => {
+            "a variable is declared with its type: `float x = 1;`"
+        }
+        "import" | "include" | "from" | "#include" => "a file is loaded by `load \"file.sdl\"`",
+        "struct" | "class" | "typedef" => "members belong together in `record name { float x; }`",
+        _ => return None,
+    })
 }
 
 /// Moves the end of a scratch stack into a table of lists.

@@ -1,7 +1,7 @@
 //! Statements.
 
 use super::super::ast::*;
-use super::super::token::{ASSERT, IN, Kind, PARAM};
+use super::super::token::{ASSERT, IN, Kind, PARAM, RECORD};
 use super::{Parse, Parser, Reported, TokenRole, close_list};
 use moldloft_diag::{Diagnostic, Span};
 
@@ -136,15 +136,18 @@ impl Parser {
                 self.expect_semi("an operator or `;`")?;
                 StmtKind::Return(value)
             }
-            Kind::Ident => return self.named_statement(),
+            Kind::Ident => return self.named_statement(depth),
             _ => return Err(self.unexpected("a statement")),
         };
         Ok(self.push_stmt(kind, self.span_from(start)))
     }
 
     /// A statement that begins with a name.
-    fn named_statement(&mut self) -> Parse<StmtId> {
+    fn named_statement(&mut self, depth: u32) -> Parse<StmtId> {
         let (first, second, third) = (self.token(), self.peek(1), self.peek(2));
+        if first.is_ident(RECORD) && second.kind == Kind::Ident && third.kind == Kind::LBrace {
+            return self.record(depth);
+        }
         if first.is_ident(PARAM) && matches!(second.kind, Kind::Ident | Kind::TypeWord) {
             return self.param();
         }
@@ -334,10 +337,38 @@ impl Parser {
 
     fn declarator(&mut self) -> Parse<Declarator> {
         let name = self.ident("the name of a variable")?;
-        let mut dims = NodeList::new(0, 0);
+        let (mut list, mut dims) = (None, NodeList::new(0, 0));
         if self.kind() == Kind::LBracket {
-            let open = self.next_as(TokenRole::Applied);
-            let base = self.exprs.len();
+            dims = self.dimensions()?;
+            if dims.is_empty() {
+                list = Some(ListLength::Open);
+            }
+        }
+        if self.kind() == Kind::LBracket {
+            match self.program[dims] {
+                [] => {}
+                [length] => list = Some(ListLength::Of(length)),
+                [_, second, ..] => {
+                    let place = self.program[second].span;
+                    let message = "a list has one length";
+                    self.report(Diagnostic::error("too-many-dimensions", message).at(place));
+                }
+            }
+            dims = self.dimensions()?;
+        }
+        let mut value = None;
+        if self.kind() == Kind::Assign {
+            self.next_as(TokenRole::Infix);
+            value = Some(self.expr()?);
+        }
+        Ok(Declarator { name, list, dims, value })
+    }
+
+    /// `[m, n]`, or `[]`.
+    fn dimensions(&mut self) -> Parse<NodeList<ExprId>> {
+        let open = self.next_as(TokenRole::Applied);
+        let base = self.exprs.len();
+        if self.kind() != Kind::RBracket {
             loop {
                 let dim = self.expr()?;
                 self.exprs.push(dim);
@@ -345,20 +376,52 @@ impl Parser {
                     break;
                 }
             }
-            if self.exprs.len() - base > 3 {
-                let place = self.program[self.exprs[base + 3]].span;
-                let message = "an array has one to three dimensions";
-                self.report(Diagnostic::error("too-many-dimensions", message).at(place));
+        }
+        if self.exprs.len() - base > 3 {
+            let place = self.program[self.exprs[base + 3]].span;
+            let message = "an array has one to three dimensions";
+            self.report(Diagnostic::error("too-many-dimensions", message).at(place));
+        }
+        let dims = close_list(&mut self.exprs, base, &mut self.program.expr_lists);
+        self.expect_close(Kind::RBracket, open, "`,` or `]`")?;
+        Ok(dims)
+    }
+
+    /// `record name { declarations }`.
+    fn record(&mut self, depth: u32) -> Parse<StmtId> {
+        let word = self.next();
+        let name = self.ident("the name of the record")?;
+        let members = self.block(depth)?;
+        if self.nesting > 1 || self.in_routine {
+            let message = "records are declared at the top level of a file, not inside blocks";
+            self.report(Diagnostic::error("misplaced-record", message).at(self.span(word)));
+        }
+        let mut known: Vec<Ident> = Vec::new();
+        for &stmt in &self.program[members].to_vec() {
+            let Stmt { kind, span } = self.program[stmt];
+            let StmtKind::Declare { global: false, items, .. } = kind else {
+                if kind != StmtKind::Error {
+                    let message = "a record holds declarations of its members";
+                    self.report(
+                        Diagnostic::error("misplaced-statement", message)
+                            .at(span)
+                            .expected("declarations such as `float span = 3;`"),
+                    );
+                }
+                continue;
+            };
+            for item in self.program[items].to_vec() {
+                if let Some(first) = known.iter().find(|own| own.symbol == item.name.symbol) {
+                    let message = format!("two members `{}`", self.symbol_text(item.name.symbol));
+                    let diagnostic = Diagnostic::error("duplicate-name", message)
+                        .at(item.name.span)
+                        .note_at(first.span, "the other one");
+                    self.report(diagnostic);
+                }
+                known.push(item.name);
             }
-            dims = close_list(&mut self.exprs, base, &mut self.program.expr_lists);
-            self.expect_close(Kind::RBracket, open, "`,` or `]`")?;
         }
-        let mut value = None;
-        if self.kind() == Kind::Assign {
-            self.next_as(TokenRole::Infix);
-            value = Some(self.expr()?);
-        }
-        Ok(Declarator { name, dims, value })
+        Ok(self.push_stmt(StmtKind::Record { name, members }, self.span_from(word.start)))
     }
 
     fn param(&mut self) -> Parse<StmtId> {

@@ -1,0 +1,322 @@
+//! The formats of grid files that programs write: one row each.
+
+use crate::functions::block_files::{CgnsBlocks, Connected, NamedBlock, extruded, one_mesh, whole};
+use crate::functions::plots::plot;
+use crate::run::usage;
+use moldloft_budget::Budget;
+use moldloft_diag::Diagnostic;
+use moldloft_io::plot3d::{self, Laid, Variant};
+use moldloft_io::quadrilaterals::{self, PlaneMesh};
+use moldloft_io::{StructuredGrid, WriteError, hexahedra, points, stl, vtk};
+use moldloft_num::Vec3;
+
+/// What is written, with the words that choose among the variants of the format.
+pub(crate) struct GridFile<'a> {
+    /// Its name, as the program states it.
+    pub path: &'a str,
+    pub words: &'a str,
+    pub blocks: Vec<NamedBlock>,
+    /// How the blocks meet, of formats that join them.
+    pub connected: Option<Connected>,
+    pub budget: &'a Budget,
+}
+
+/// The files that a format makes of a call, and what is known of the blocks of a CGNS file.
+#[derive(Default)]
+pub(crate) struct EncodedFiles {
+    pub files: Vec<(String, Vec<u8>)>,
+    pub cgns: Option<CgnsBlocks>,
+}
+
+/// A format of grid files.
+#[derive(Debug)]
+pub(crate) struct GridFormat {
+    /// Whether blocks are written besides curves and surfaces.
+    pub blocks: bool,
+    /// Whether blocks are joined where their points coincide, and their boundaries have names.
+    pub joins: bool,
+    /// Whether an farray of whole numbers behind a surface is its blanking.
+    pub blanking: bool,
+    /// Whether cells keep the order of the points, right-handed or not.
+    pub keeps_order: bool,
+    /// Whether it looks at the budget itself; the others are watched from outside.
+    pub watches: bool,
+    /// The words that it knows, as completion offers them.
+    pub words: &'static [&'static str],
+    pub encode: fn(GridFile<'_>) -> Result<EncodedFiles, Diagnostic>,
+}
+
+/// Points alone, or pictures of them.
+const PLAIN: GridFormat = GridFormat {
+    blocks: false,
+    joins: false,
+    blanking: false,
+    keeps_order: false,
+    watches: false,
+    words: &[],
+    encode: csv,
+};
+
+/// `write_p3d`.
+pub(crate) static PLOT3D: GridFormat = GridFormat {
+    blocks: true,
+    blanking: true,
+    keeps_order: true,
+    words: &[
+        "stream",
+        "records",
+        "text",
+        "double",
+        "single",
+        "multi",
+        "single-block",
+        "3d",
+        "2d",
+        "whole",
+        "planes",
+        "little",
+        "big",
+        "iblank",
+        "mark8",
+    ],
+    encode: plot3d_file,
+    ..PLAIN
+};
+
+/// `write_vts`.
+pub(crate) static VTS: GridFormat =
+    GridFormat { blocks: true, keeps_order: true, encode: vts, ..PLAIN };
+
+/// `write_stl`.
+pub(crate) static STL: GridFormat =
+    GridFormat { watches: true, words: &["flip"], encode: stl_file, ..PLAIN };
+
+/// `write_csv`.
+pub(crate) static CSV: GridFormat = PLAIN;
+
+/// `write_cgns`.
+pub(crate) static CGNS: GridFormat =
+    GridFormat { blocks: true, joins: true, keeps_order: true, encode: cgns, ..PLAIN };
+
+/// `write_su2`.
+pub(crate) static SU2: GridFormat = GridFormat { blocks: true, joins: true, encode: su2, ..PLAIN };
+
+/// `write_gmsh`.
+pub(crate) static GMSH: GridFormat =
+    GridFormat { blocks: true, joins: true, encode: gmsh, ..PLAIN };
+
+/// `write_blockmesh`.
+pub(crate) static BLOCK_MESH: GridFormat =
+    GridFormat { blocks: true, joins: true, encode: block_mesh, ..PLAIN };
+
+/// `plot`.
+pub(crate) static PICTURE: GridFormat = GridFormat {
+    blocks: true,
+    watches: true,
+    words: &["x", "y", "z", "-x", "-y", "-z", "iso"],
+    encode: picture,
+    ..PLAIN
+};
+
+/// The words that choose a variant of Plot3D, the usual ones first.
+const VARIANTS: &str = "stream, records, text; double, single; multi, single-block; 3d, 2d; whole, planes; little, \
+                        big; iblank; mark8";
+
+/// The variant that words choose.
+fn variant(words: &str) -> Result<Variant, Diagnostic> {
+    let mut v = Variant::default();
+    for word in words.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty()) {
+        match word.to_ascii_lowercase().as_str() {
+            "stream" | "binary" => v.laid = Laid::Stream,
+            "records" | "fortran" | "unformatted" => v.laid = Laid::Unformatted,
+            "text" | "ascii" | "formatted" => v.laid = Laid::Formatted,
+            "double" => v.double = true,
+            "single" => v.double = false,
+            "multi" | "multi-block" => v.multi = true,
+            "single-block" => v.multi = false,
+            "3d" => v.three = true,
+            "2d" => v.three = false,
+            "whole" => v.planes = false,
+            "planes" => v.planes = true,
+            "little" => v.big_endian = false,
+            "big" => v.big_endian = true,
+            "iblank" => v.iblank = true,
+            "mark4" => v.mark = 4,
+            "mark8" => v.mark = 8,
+            _ => {
+                return Err(Diagnostic::error(
+                    "unknown-word",
+                    format!("Plot3D has no variant \"{word}\""),
+                )
+                .expected(VARIANTS)
+                .found(format!("\"{word}\"")));
+            }
+        }
+    }
+    Ok(v)
+}
+
+fn cannot(error: impl std::fmt::Display) -> Diagnostic {
+    let text = error.to_string();
+    Diagnostic::error("cannot-write", text.trim_start_matches("error: ").to_string())
+}
+
+/// The stem of a file's name: "body" of "out/body.vts".
+fn stem(name: &str) -> &str {
+    let last = name.rsplit('/').next().unwrap_or(name);
+    last.rsplit_once('.').map_or(last, |(stem, _)| stem)
+}
+
+fn one(path: &str, bytes: Vec<u8>) -> EncodedFiles {
+    EncodedFiles { files: vec![(path.to_string(), bytes)], cgns: None }
+}
+
+/// True when the only word that there may be is given.
+fn option(file: &GridFile<'_>, known: &str) -> Result<bool, Diagnostic> {
+    match file.words.trim() {
+        "" => Ok(false),
+        word if word == known => Ok(true),
+        word => {
+            let expected = if known.is_empty() { "no words" } else { known };
+            Err(Diagnostic::error("unknown-word", format!("there is no option \"{word}\""))
+                .expected(expected.to_string()))
+        }
+    }
+}
+
+fn grids(blocks: Vec<NamedBlock>) -> (Vec<StructuredGrid>, Vec<String>) {
+    blocks.into_iter().map(|block| (block.grid, block.name)).unzip()
+}
+
+fn plot3d_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let mut v = variant(file.words)?;
+    let (mut blocks, _) = grids(file.blocks);
+    v.iblank |= blocks.iter().any(|b| b.iblank.is_some());
+    if v.iblank {
+        for block in &mut blocks {
+            let all = || vec![1; block.planes[0].len()];
+            block.iblank = Some(block.iblank.take().unwrap_or_else(all));
+        }
+    }
+    Ok(one(file.path, plot3d::write(&blocks, v).map_err(cannot)?))
+}
+
+fn vts(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    let folder = file.path.rfind('/').map_or("", |k| &file.path[..=k]);
+    let (blocks, _) = grids(file.blocks);
+    let written = vtk::grid_files(&blocks, stem(file.path)).map_err(cannot)?;
+    let named = |part: vtk::NamedFile| (format!("{folder}{}", part.name), part.bytes);
+    Ok(EncodedFiles { files: written.into_iter().map(named).collect(), cgns: None })
+}
+
+fn picture(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let (blocks, names) = grids(file.blocks);
+    Ok(one(file.path, plot(file.path, file.words, &blocks, &names, file.budget)?))
+}
+
+fn stl_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let flip = option(&file, "flip")?;
+    let (blocks, _) = grids(file.blocks);
+    let go_on = || !file.budget.is_spent();
+    let bytes = stl::write_grids(&blocks, stem(file.path), flip, &go_on);
+    let bytes = bytes.map_err(|e| match file.budget.poll() {
+        Err(reason) if e == WriteError::Ended => usage::spent(reason),
+        _ => cannot(e),
+    })?;
+    Ok(one(file.path, bytes))
+}
+
+fn csv(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    let (blocks, _) = grids(file.blocks);
+    let rows: Vec<Vec3> = blocks.iter().flat_map(StructuredGrid::points).collect();
+    Ok(one(file.path, points::write_csv(&rows, 3).into_bytes()))
+}
+
+/// True of surfaces, false of blocks; a file has one or the other.
+fn are_flat(blocks: &[NamedBlock]) -> Result<bool, Diagnostic> {
+    let flat = blocks.iter().filter(|b| b.grid.size[2] == 1).count();
+    if flat != 0 && flat != blocks.len() {
+        return Err(Diagnostic::error("cannot-write", "surfaces among blocks")
+            .expected("surfaces, or blocks, in one file"));
+    }
+    let least = if flat == 0 { 3 } else { 2 };
+    let no_cells = |b: &&NamedBlock| b.grid.size[..least].iter().any(|n| *n < 2);
+    if let Some(block) = blocks.iter().find(no_cells) {
+        let message = format!("`{}` has no cells", block.name);
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("at least two points along each index"));
+    }
+    Ok(flat > 0)
+}
+
+fn cgns(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    let flat = are_flat(&file.blocks)?;
+    let refused = ["empty", "wedge"];
+    let faces = file.blocks.iter().flat_map(|block| block.faces.iter().flatten());
+    for (name, kind) in faces {
+        if flat || refused.contains(&kind.as_str()) {
+            let what = if flat { "of surfaces".to_string() } else { format!("\"{kind}\"") };
+            let message = format!("CGNS has no boundary `{name}` {what}");
+            return Err(Diagnostic::error("cannot-write", message).expected(
+                "boundaries of blocks: wall, symmetry, farfield, inflow, outflow, periodic, patch",
+            ));
+        }
+    }
+    let (blocks, names) = grids(file.blocks);
+    let bytes = plot3d::write(&blocks, Variant::default()).map_err(cannot)?;
+    let content = match (flat, file.connected) {
+        (false, Some(connected)) => connected.content,
+        _ => CgnsBlocks { names, ..CgnsBlocks::default() },
+    };
+    Ok(EncodedFiles { cgns: Some(content), ..one(file.path, bytes) })
+}
+
+/// The name of the two sides that a plane grid has as a layer of cells.
+const FRONT_AND_BACK: &str = "frontAndBack";
+
+/// The plane mesh of surfaces.
+fn plane_mesh(blocks: &[NamedBlock]) -> Result<PlaneMesh, Diagnostic> {
+    let (layers, plane) = extruded(blocks, FRONT_AND_BACK)?;
+    Ok(PlaneMesh::under(&one_mesh(&layers), plane.axes, plane.normal, FRONT_AND_BACK))
+}
+
+fn su2(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    if are_flat(&file.blocks)? {
+        return Ok(one(file.path, quadrilaterals::su2(&plane_mesh(&file.blocks)?)));
+    }
+    let mesh = one_mesh(&file.blocks);
+    Ok(one(file.path, whole(hexahedra::su2(&mesh), &mesh, "SU2")?))
+}
+
+fn gmsh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    if are_flat(&file.blocks)? {
+        return Ok(one(file.path, quadrilaterals::gmsh(&plane_mesh(&file.blocks)?)));
+    }
+    let mesh = one_mesh(&file.blocks);
+    Ok(one(file.path, whole(hexahedra::gmsh(&mesh), &mesh, "Gmsh")?))
+}
+
+fn block_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    // OpenFOAM has a plane mesh as one layer of cells between two empty sides.
+    let blocks = match are_flat(&file.blocks)? {
+        true => extruded(&file.blocks, FRONT_AND_BACK)?.0,
+        false => file.blocks,
+    };
+    let mesh = one_mesh(&blocks);
+    for patch in mesh.patches.iter().filter(|patch| patch.kind == "wedge") {
+        if !hexahedra::is_plane(&mesh.points, &patch.faces) {
+            let message = format!("the wedge `{}` is not plane", patch.name);
+            return Err(Diagnostic::error("cannot-write", message)
+                .expected("a plane for each of the two sides of a wedge")
+                .help("give the sides two names: \"k1 = front wedge, kn = back wedge\""));
+        }
+    }
+    let partners = file.connected.map(|connected| connected.partners).unwrap_or_default();
+    Ok(one(file.path, hexahedra::block_mesh(&mesh, &partners)))
+}
