@@ -355,6 +355,6 @@ def test_a_run_beside_a_break_has_a_reason():
     x = np.linspace(0, 1, 20)
     points = np.column_stack([x, 0.2 * np.maximum(x - 0.3, 0) ** 2])
     with pytest.raises(moldloft.Error, match="a run ends at a break, or three points from it"):
-        moldloft.fair(points, 1e-3, shape=[("straight", 0, 4)], breaks=[5])
-    made = moldloft.fair(points, 1e-3, shape=[("straight", 0, 4)], breaks=[4])
+        moldloft.fair(points, 1e-3, shape=["straight=1-5"], breaks=[5])
+    made = moldloft.fair(points, 1e-3, shape=["straight=1-5"], breaks=[4])
     assert made.deviation_data <= 1e-3 * (1 + 1e-9)

@@ -265,7 +265,7 @@ def test_snakes_of_models(name):
     """On a plane square whose parameters are lengths a snake is the curve of its magnets."""
     uv = path()
     text, options = SNAKES[name]
-    options = {"goal": ("near", 0.8), "spacing": "chord", "bends": True, **options}
+    options = {"goal": ("near", 0.8), "spacing": "chord", **options}
     tol = options.pop("tol", 0.01)
     m = moldloft.loads(snake(uv, f'measure = "variation", ends = "position", {text}'))
     place = np.array([m.eval(f"a{k}") for k in range(len(uv))], float)
@@ -358,7 +358,7 @@ CURVES = {
     "bound": ('bound = "curve"', {"bound": "curve"}),
     "bound, centripetal": (
         'bound = "curve", spacing = "centripetal", last_end = "tangent"',
-        {"bound": "curve", "spacing": "centripetal", "ends": ("position", "tangent")},
+        {"bound": "curve", "spacing": "centripetal"},
     ),
     "count": ("count = 9", {"count": 9}),
     "knots": (f"knots = {{{', '.join(map(str, KNOTS))}}}", {"knots": KNOTS}),
@@ -397,7 +397,7 @@ CURVES = {
     ),
     "last end": (
         'last_end = "curvature", goal = "fairest"',
-        {"ends": ("position", "curvature"), "as_": "data", "goal": "fairest"},
+        {"ends": (None, "curvature"), "as_": "data", "goal": "fairest"},
     ),
     "centroid": ('keep = {"centroid"}', {"keep": ["centroid"], "as_": "data"}),
     "ring": (
@@ -420,18 +420,14 @@ def test_curves_of_models(name):
     lists = {"weights": weights, "ring": ring, "each": each}
     for word, values in lists.items():
         text = text.replace(f"{{{word}}}", "{" + ", ".join(map(number, values)) + "}")
-    options = {"as_": "fit", "ends": "position", "measure": "second", **options}
+    options = {"as_": "fit", **options}
     if options["as_"] == "data":
-        options = {**options, "as_": "fit", "bends": True}
-    if options["as_"] == "points":
-        # What ends keep is counted in points.
-        options["ends"] = 1
+        options["as_"] = "fit"
     tol = 3e-3
     if options.get("weights"):
         options["weights"] = weights
     if options.get("knots") is True:
         options["knots"] = ring
-        del options["ends"]
         # What is bounded there is the curve.
         options["bound"] = "curve"
     elif options.get("knots"):
@@ -523,7 +519,7 @@ def test_snakes_have_the_options_of_curves(name):
         options["at"] = at
     data = not {"bound", "count", "mode"} & set(options)
     if data:
-        options = {"goal": ("near", 0.8), "spacing": "chord", "bends": True, **options}
+        options = {"goal": ("near", 0.8), "spacing": "chord", **options}
     if "measure" not in text:
         text += ', measure = "variation"'
     model = snake(uv, f'ends = "position", {text}').replace(

@@ -244,7 +244,7 @@ fn near(n: usize) {
                 let space = |at: &[f64]| InterpolationSpace::new(3, at, &[], false);
                 let layout = space(&chords).expect("parameters rise");
                 let data = Data { limit: limit.clone(), layout, ends, points: points.clone() };
-                let own = curvature_parameters(&data, &points, &limit.radii, &chords, budget);
+                let own = curvature_parameters(&data, &points, &limit.radii, &chords);
                 space(&own.expect("the data are good")).expect("parameters rise")
             });
             let data = Data { limit, layout, ends, points };

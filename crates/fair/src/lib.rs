@@ -90,6 +90,7 @@ mod measure;
 mod net;
 mod optimum;
 mod sparse_rows;
+pub mod words;
 
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};
@@ -97,6 +98,7 @@ pub use curve::corners::{FitWithCorners, interpolate_with_corners};
 pub use curve::data::{
     Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
 };
+pub use curve::demand::Demand;
 pub use curve::exact::{are_exact, is_exact};
 pub use curve::fit::{
     Fit, ParameterSpacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
@@ -111,6 +113,7 @@ pub use curve::knot_removal::{
 pub use curve::layout::InterpolationSpace;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
+pub use curve::request::{CurveRequest, NearCurve, PointSpacing};
 pub use curve::shape_condition::ShapeCondition;
 pub use curve::shaping::{FoundArc, ShapeConstraints};
 pub use curve::space::Space;
@@ -122,7 +125,7 @@ pub use interrogate::lines::line_findings;
 pub use interrogate::outliers::{DataFinding, data_findings, detectable, predicted};
 pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report, numbers, report};
 pub use interrogate::{shape, surface};
-pub use kinds::rows;
+pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
 pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,

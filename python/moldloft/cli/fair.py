@@ -227,8 +227,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--accuracy",
         metavar="SHARE",
         type=float,
-        default=1e-9,
-        help="certified gap of the optimum of a curve, as a share of the measure; default: 1e-9",
+        help="certified gap of the optimum of a curve, as a share of the measure; default: as "
+        "small as rounding allows",
     )
     parser.add_argument(
         "--original",
@@ -269,7 +269,7 @@ def _refuse_curves_only(options: argparse.Namespace) -> None:
         ("--at", options.at),
         ("--period", options.period is not None),
         ("--stop", options.stop),
-        ("--accuracy", options.accuracy != 1e-9),
+        ("--accuracy", options.accuracy is not None),
         ("--original", options.original),
     ):
         if given:
@@ -472,7 +472,7 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         if options.release == "auto"
         else _places(options.release, count, "--release"),
         "bends": options.bends,
-        "shape": _shapes(options.shape, count),
+        "shape": options.shape,
         "count": options.count,
         "steps": steps,
         "log": bool(options.log),
@@ -496,16 +496,6 @@ def _original(options: argparse.Namespace, count: int) -> Any:
             f"--original: {options.original} has {len(file.points)} points, the file {count}"
         )
     return file.points
-
-
-def _shapes(texts: list[str], count: int) -> list[Any]:
-    """Shapes as :func:`moldloft.fair` takes them."""
-    from moldloft.fairing.shapes import read_shape
-
-    try:
-        return [read_shape(text, count) for text in texts]
-    except FairingError as error:
-        raise Error(f"--shape: {error}") from None
 
 
 def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:
@@ -563,8 +553,7 @@ class _Points(_Source):
             self.said.append("the last point repeats the first and is not counted twice")
             points = points[:-1]
             self.closing = True
-        data = options.mode == "optimum" and options.bound in (None, "data")
-        role = options.role or ("fit" if data else "control")
+        role = options.role or ("fit" if options.mode == "optimum" else "control")
         chosen = _curve_options(options, len(points), role)
         try:
             result = fair(points, options.tol, as_=role, **chosen)
@@ -887,7 +876,7 @@ class _Object(_Source):
         if not options.breaks and made.breaks:
             chosen["breaks"] = made.breaks
         if made.role == "fit" and not made.breaks:
-            chosen["spacing"] = "uniform"
+            chosen["spacing"] = "index"
         if (options.role or made.role) == "fit" and options.mode == "optimum":
             # The object itself is what the tolerance is about, between its points too.
             chosen["bound"] = options.bound or "curve"

@@ -42,20 +42,13 @@ def stop(text: str) -> tuple[str, float | bool]:
 
 
 def spacing(text: str) -> Any:
-    """How points get their parameters."""
-    if text in ("auto", "curvature", "chord", "centripetal", "index", "uniform", "x", "y", "z"):
-        return text
-    return tuple(vector(text))
+    """How points get their parameters: a word, or a direction."""
+    return tuple(vector(text)) if "," in text else text
 
 
 def goal(text: str) -> Any:
-    """Which of the curves within the tolerance."""
+    """Which of the curves within the tolerance: a word, and its share."""
     word, equals, share = text.partition("=")
-    if word not in ("near", "fairest", "budget", "nearest", "energy", "closest"):
-        raise argparse.ArgumentTypeError(
-            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE, "
-            "energy=MOST, closest"
-        )
     try:
         return (word, float(share)) if equals else word
     except ValueError:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from moldloft.fairing.spline import Spline
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["join_conditions", "linear_conditions", "shape_conditions"]
+__all__ = ["join_conditions", "linear_conditions"]
 
 Condition = tuple[str, float, tuple[float, float, float], tuple[float, float, float]]
 
@@ -46,10 +46,7 @@ def linear_conditions(
             out.append((word, float(t), v, none))
             labels.append(f"{word} at {t:g}")
     for word in keep:
-        if word not in ("area", "centroid", "volume"):
-            raise FairingError(f"`{word}` cannot be kept; what can: area, centroid, volume")
-        axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
-        out.append((word, 0.0, axis, none))
+        out.append((word, 0.0, none, none))
         labels.append(f"keep {word}")
     return out, labels
 
@@ -78,61 +75,3 @@ def join_conditions(joins: Sequence[Spline], spline: Spline) -> list[Condition]:
         first = ends.first[b] * (-1.0 if a == b else 1.0)
         out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
     return list(out.values())
-
-
-RANGES = ("convex", "concave", "one-way", "straight", "arc")
-
-Shape = tuple[str, int, int, tuple[float, float, float] | None, float]
-
-
-def shape_conditions(shape: Iterable[Any], count: int) -> tuple[list[Shape], list[str]]:
-    """The shapes as the core takes them, and what they are called in refusals."""
-    out: list[Shape] = []
-    labels = []
-    for given in [(s,) if isinstance(s, str) else tuple(s) for s in shape]:
-        word, *rest = given
-        known = (*RANGES, "pieces", "within", "side")
-        if word not in known:
-            raise FairingError(f"unknown shape `{word}`; there are: {', '.join(known)}")
-        way = None
-        number = 0.0
-        first, last = 0, count - 1
-        expected = {
-            "straight": "nothing, two points, or two points and a direction",
-            "pieces": "a number of pieces from 1",
-            "within": "a direction and a number",
-            "side": "a direction",
-        }.get(word, "nothing or two points")
-        try:
-            if word == "pieces":
-                (first,) = (int(x) for x in rest)
-                label = f"pieces {first}"
-                if first < 1:
-                    raise ValueError
-            elif word == "within":
-                way, number = _vector(rest[0]), float(rest[1])
-                label = f"within {number:g}"
-            elif word == "side":
-                (direction,) = rest
-                way, label = _vector(direction), "side"
-            else:
-                if rest:
-                    first, last = (int(x) for x in rest[:2])
-                if len(rest) > (3 if word == "straight" else 2):
-                    raise ValueError
-                if len(rest) == 3 and rest[2] is not None:
-                    way = _vector(rest[2])
-                label = f"{word} {first + 1} to {last + 1}"
-        except (TypeError, ValueError, IndexError):
-            raise FairingError(
-                f"the shape `{word}` takes {expected}, "
-                f"found {', '.join(map(str, rest)) or 'nothing'}"
-            ) from None
-        if word in RANGES and not 0 <= first < last < count:
-            raise FairingError(
-                f"{word}: expected a first and a later point of 0 to {count - 1}, "
-                f"found {first} and {last}"
-            )
-        out.append((word, first, last, way, number))
-        labels.append(label)
-    return out, labels

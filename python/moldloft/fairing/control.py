@@ -259,7 +259,7 @@ def result(
         certified = sampled = far["control"]
         closed = original.closed
         laid = [
-            Spline._interpolated(p, original.degree, "uniform", closed, made.breaks)[0]
+            Spline._interpolated(p, original.degree, "index", closed, made.breaks)[0]
             for p in (data, rows)
         ]
         original, spline = laid

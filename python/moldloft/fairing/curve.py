@@ -15,17 +15,14 @@ from moldloft.fairing.arrays import direction, points_of, radii
 from moldloft.fairing.asked import (
     EXACT,
     EXACT_NEAREST,
-    Asked,
     ends_of,
-    goal_of,
-    goal_of_curve,
     index_of,
     only_data,
     stays_near,
 )
 from moldloft.fairing.conditions import join_conditions, linear_conditions
 from moldloft.fairing.control import Own, left, prepared, result, spread
-from moldloft.fairing.data import fair_data
+from moldloft.fairing.data import Data, fair_data
 from moldloft.fairing.faired import Fairing
 from moldloft.fairing.spline import Spline
 
@@ -60,7 +57,7 @@ def fair_curve(
     goal: Any = "near",
     release: Sequence[int] | str = (),
     bends: bool = False,
-    shape: Iterable[Any] = (),
+    shape: Iterable[str] | str = (),
     original: ArrayLike | None = None,
     count: int | None = None,
     knots: ArrayLike | None = None,
@@ -71,7 +68,7 @@ def fair_curve(
     least_drop: float = 0.0,
     stop_gap: float = 0.0,
     stop_pieces: bool = False,
-    accuracy: float = 1e-9,
+    accuracy: float | None = None,
     log: bool = False,
 ) -> Fairing:
     """Fair a curve within a tolerance.
@@ -119,8 +116,8 @@ def fair_curve(
         Points (control points of fits and splines), from 0, that do not move.
     ends
         What open ends keep: ``"free"``, ``"position"``, ``"tangent"``, ``"curvature"`` or a number
-        of control points; or two of these. By default the tangent for fits and splines, two points
-        otherwise.
+        of control points; or two of these. By default nothing of data that the curve is near, the
+        tangent where control points of fits and splines move, and two points otherwise.
     motion
         ``"ball"``; ``"box"``, each coordinate by itself; a direction such as ``(0, 1)``, the only
         one in which points move (offsets at fixed stations); ``("across", direction)``, a plane in
@@ -138,10 +135,10 @@ def fair_curve(
     spacing
         Parameters of the points: ``"chord"``, ``"centripetal"``, a coordinate (``"x"``, ``"y"``,
         ``"z"``) or a direction along which the points run, ``"index"``, or ``"curvature"``, lengths
-        times (1 + (k / 2 m)^2)^(1/4), where k is the curvature of a smoothing spline through the
-        points and m its mean. ``"auto"`` is ``"curvature"`` where an optimum of data is to be near
-        the truth (goals ``"near"`` and ``"budget"``), its ends keep no tangents and there are no
-        shapes, conditions, joins or directions of the motion, else ``"chord"``.
+        times (1 + (k / 2 m)^2)^(1/4), where k is the curvature of the curve of budget 1 and m its
+        mean. ``"auto"`` is ``"curvature"`` for the goals ``"near"`` and ``"budget"`` where ends
+        keep no tangents and there are no shapes, conditions, joins or directions of the motion,
+        else ``"chord"``.
     at
         The parameters themselves, rising, in [0, 1].
     goal
@@ -156,16 +153,15 @@ def fair_curve(
         Other modes than optima of data have ``"near"``, which leaves points on a line, conic,
         plane cubic or helix as they are, and ``"fairest"``.
     shape
-        What shape an optimum of data has, all points counted from 0: ``("convex", i, j)`` or
-        ``("concave", i, j)``, a turn to the left or to the right only between two points (seen
-        from above, or in a vertical plane with z up: of a graph over x from left to right what
-        these words mean); ``("one-way", i, j)``, no inflection there; ``("straight", i, j)``, or
-        ``("straight", i, j, direction)``; ``("arc", i, j)``, a circle, tangent to straight runs
-        and arcs that begin or end at its ends or one point from these; ``("pieces", k)``, at most
-        k pieces of monotone curvature; ``("within", direction, most)``, the curve stays where
-        ``direction . x`` is at most that; ``("side", direction)``, it leaves the points only
-        against this direction. ``"convex"``, ``"concave"`` and ``"one-way"`` alone are about the
-        whole curve. Signs, lines and limits hold of the whole curve, not of samples.
+        What shape an optimum of data has, in the words of the command and of models, points from 1:
+        ``"convex=4-10"`` or ``"concave=1-4"``, a turn to the left or to the right only between two
+        points (seen from above, or in a vertical plane with z up: of a graph over x from left to
+        right what these words mean); ``"one-way=1-9"``, no inflection there; ``"straight=1-9"``, or
+        ``"straight=1-9:0,1"`` in a direction; ``"arc=9-15"``, a circle, tangent to straight runs
+        and arcs that begin or end at its ends or one point from these; ``"pieces=2"``, at most so
+        many pieces of monotone curvature; ``"within=0,1:4.6"``, the largest value along a
+        direction; ``"side=0,-1"``, it leaves the points only against this direction. A word alone
+        is about the whole curve. Signs, lines and limits hold of the whole curve, not of samples.
     release
         Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
         :attr:`Fairing.findings`. Nothing is released by itself.
@@ -173,8 +169,8 @@ def fair_curve(
         The points as they were read, when ``points`` were faired already: tolerances are counted
         from these, so that fairing a result again is fairing the original.
     bends
-        Whether third derivatives may buy smoothness with inflections that the curve of least
-        bending does not have.
+        Whether the curve may have more inflections, and under ``"near"`` more than two monotone
+        pieces of curvature more, than the fairest within the tolerance.
     count
         Fit by least squares with so many control points instead of through all points.
     knots, weights, period
@@ -187,7 +183,8 @@ def fair_curve(
         measure by less than this share, the certified gap is below this share, or n steps bring no
         fewer monotone pieces.
     accuracy
-        The certified gap of an optimum, as a share of the measure.
+        The certified gap of an optimum, as a share of the measure; by default as small as rounding
+        allows.
     log
         Whether local steps are written down.
 
@@ -210,7 +207,7 @@ def fair_curve(
         points = again.data[:, : again.points.shape[1]]
     shape = [shape] if isinstance(shape, str) else list(shape)
     if as_ is None:
-        as_ = "fit" if mode == "optimum" and bound in (None, "data") else "control"
+        as_ = "fit" if mode == "optimum" else "control"
     if original is not None:
         reference, _ = points_of(original)
         if isinstance(points, Spline) or len(reference) != len(points_of(points)[0]):
@@ -220,29 +217,35 @@ def fair_curve(
         raise FairingError(f"points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
     own = Own(knots, weights, period)
-    word, share = goal_of(goal)
     through, tangents = list(through), list(tangents)
     if not isinstance(points, Spline) and mode == "optimum":
-        asked = Asked(
-            closed,
-            degree,
-            measure,
-            breaks,
-            release,
-            fixed,
-            ends,
-            motion,
-            spacing,
-            at,
-            goal_of_curve(goal),
-            bends,
-            shape,
-            accuracy,
-        )
         # Points that move are those of the curve through them.
-        moves = as_ == "points" and bound is None and spacing not in ("index", "uniform")
+        moves = as_ == "points" and bound is None and spacing != "index"
         if (as_ == "fit" or moves) and not own.given and count is None and bound in (None, "data"):
-            return fair_data(points, tol, asked, (through, tangents, keep, joins), as_, started)
+            asked = Data(
+                points,
+                tol,
+                as_,
+                closed,
+                degree,
+                measure,
+                breaks,
+                release,
+                fixed,
+                ends,
+                motion,
+                spacing,
+                at,
+                goal,
+                bends,
+                shape,
+                accuracy,
+                through,
+                tangents,
+                keep,
+                joins,
+            )
+            return fair_data(asked, started)
     if shape:
         raise FairingError('shapes are for optima of data, `as_="fit"` without knots of their own')
     only_data(goal)
@@ -253,9 +256,8 @@ def fair_curve(
     if at is not None:
         raise FairingError('parameters of your own are for optima of data, `as_="fit"`')
     measure = measure or "second"
-    if spacing in ("index", "auto"):
-        spacing = "uniform" if spacing == "index" else "chord"
-    if not isinstance(spacing, str) or spacing not in ("chord", "centripetal", "uniform"):
+    spacing = "chord" if spacing == "auto" else spacing
+    if not isinstance(spacing, str) or spacing not in ("chord", "centripetal", "index"):
         raise FairingError(
             f"spacing {spacing!r} is for optima of data; here: chord, centripetal or index"
         )
@@ -265,9 +267,7 @@ def fair_curve(
     n = len(spline.control_points)
     # A result is near the points, and exact points are as fair as can be.
     free = spline.weights is None and not (through or tangents or keep or joins)
-    stay = stays_near((word, share), free) and _core.is_exact(
-        data, list(made.breaks), spline.closed
-    )
+    stay = stays_near(goal, free) and _core.is_exact(data, list(made.breaks), spline.closed)
     limits = radii(tol, n) if made.parameters is None else spread(left(tol, made), made, n)
     for finding in made.corrected:
         if finding.kind == "outlier" and made.role != "fit":
@@ -277,6 +277,7 @@ def fair_curve(
         bound = "curve" if fitted else "points"
     default = {"sweeps": 10, "levels": 2}.get(mode, n)
     kept = list(ends_of(ends if ends is not None else ("tangent" if fitted else 2), spline.closed))
+    kept = [word or "free" for word in kept]
     if stay:
         limits = [0.0] * n
     conditions, labels = linear_conditions(through, tangents, keep)
@@ -298,7 +299,7 @@ def fair_curve(
         "stops": (least_move, least_drop, stop_gap, stop_pieces),
         "conditions": conditions,
         "labels": labels,
-        "accuracy": accuracy,
+        "accuracy": 1e-9 if accuracy is None else accuracy,
         "log": log,
     }
     if conditions and mode != "optimum":

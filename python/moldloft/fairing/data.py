@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,8 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii
-from moldloft.fairing.asked import Asked, curve_spacing, ends_of, index_of, spacing_of
-from moldloft.fairing.conditions import join_conditions, linear_conditions, shape_conditions
+from moldloft.fairing.asked import ends_of, goal_of, index_of, spacing_of
+from moldloft.fairing.conditions import join_conditions, linear_conditions
 from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.report import Finding, Numbers
 from moldloft.fairing.spline import Spline
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
-
-
-THIN_MEASURES = ("variation", "bending", "third", "second")
-"""Measures that have a meaning on few knots at any places."""
 
 
 def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: int) -> list[int]:
@@ -37,23 +34,37 @@ def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: i
     return sorted({index_of(k, count) for k in given})
 
 
-def _released(limits: list[float], release: list[int], data: Floats) -> list[float]:
-    """Tolerances with room for wrong points: as large as the data, which is none at all."""
-    out = list(limits)
-    for k in release:
-        out[k] += float(np.ptp(data, axis=0).max())
-    return out
+@dataclass
+class Data:
+    """Data and what is asked of the curve near them, in the words of the caller."""
+
+    points: ArrayLike
+    tol: ArrayLike | None
+    as_: str
+    closed: bool
+    degree: int
+    measure: str | None
+    breaks: Sequence[int] | str
+    release: Sequence[int] | str
+    fixed: Sequence[int]
+    ends: Any
+    motion: Any
+    spacing: Any
+    at: ArrayLike | None
+    goal: Any
+    bends: bool
+    shape: list[str]
+    accuracy: float | None
+    through: list[tuple[float, ArrayLike]]
+    tangents: list[tuple[float, ArrayLike]]
+    keep: Sequence[str]
+    joins: Sequence[Spline]
 
 
-def _data_measure(measure: str | None, degree: int) -> str:
-    return measure or ("variation" if degree >= 3 else "bending")
-
-
-def fair_data(
-    points: ArrayLike, tol: ArrayLike | None, asked: Asked, wanted: Any, as_: str, started: float
-) -> Fairing:
+def fair_data(asked: Data, started: float) -> Fairing:
     """Data under tolerances."""
-    data, width = points_of(points)
+    tol = asked.tol
+    data, width = points_of(asked.points)
     n = len(data)
     least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
     if n < least:
@@ -61,7 +72,6 @@ def fair_data(
     found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
     breaks = chosen(asked.breaks, found, "corner", n)
     release = chosen(asked.release, found, "outlier", n)
-    limits = radii(tol, n)
     # Neighbours in one place have one parameter.
     places = 1 + int((data[1:] != data[:-1]).any(axis=1).sum())
     if places <= asked.degree:
@@ -70,20 +80,13 @@ def fair_data(
             f"found {places}: of {n} points the others coincide with the one before"
         )
     notes = []
-    for k in asked.fixed:
-        limits[index_of(k, n)] = 0.0
-    limits = _released(limits, release, data)
-    if asked.closed and tol is None:
-        raise FairingError("a closed curve without a tolerance shrinks to a point")
     word, way = direction(asked.motion)
-    kept = list(ends_of(asked.ends if asked.ends is not None else "free", asked.closed))
-    through, tangents, keep, joins = wanted
-    conditioned = bool(through or tangents or keep or joins)
-    spaced, spacing_way = spacing_of(curve_spacing(asked, conditioned))
-    conditions, labels = linear_conditions(through, tangents, keep)
-    if joins:
+    kept = list(ends_of(asked.ends, asked.closed))
+    spaced, spacing_way = spacing_of(asked.spacing)
+    conditions, labels = linear_conditions(asked.through, asked.tangents, asked.keep)
+    if asked.joins:
         rough = Spline.interpolate(data, degree=asked.degree, closed=asked.closed)
-        for k, join in enumerate(join_conditions(joins, rough)):
+        for k, join in enumerate(join_conditions(asked.joins, rough)):
             kept[int(join[1])] = "position"
             conditions.append(join)
             labels.append(f"join {k + 1}")
@@ -93,38 +96,27 @@ def fair_data(
         rises = len(at) == n and all(a < b for a, b in pairwise(at)) and at[0] >= 0 and at[-1] <= 1
         if not rises:
             raise FairingError(f"expected {n} rising parameters in [0, 1]")
-    measure = _data_measure(asked.measure, asked.degree)
-    shape, shape_labels = shape_conditions(asked.shape, n)
-    # Of many points most knots would say nothing, if nothing asks for one at each.
-    thin = (
-        not (conditioned or shape or breaks)
-        and asked.spacing == "auto"
-        and asked.at is None
-        and word == "ball"
-        and asked.goal[0] in ("near", "fairest")
-        and measure in THIN_MEASURES
-    )
     core, original, reported = _core.Spline.fair_data(
         data,
         {
-            "tolerance": limits,
+            "tolerance": radii(tol, n),
+            "fixed": [index_of(k, n) for k in asked.fixed],
+            "release": release,
+            "breaks": breaks,
             "motion": word,
             "direction": way,
-            "ends": tuple(kept),
+            "ends": kept,
             "closed": asked.closed,
             "degree": asked.degree,
-            "breaks": breaks,
             "spacing": spaced,
             "spacing_direction": spacing_way,
             "at": at,
-            "thin": thin,
-            "measure": measure,
-            "goal": asked.goal,
+            "measure": asked.measure,
+            "goal": goal_of(asked.goal),
             "conditions": conditions,
             "labels": labels,
-            "shape": shape,
-            "shape_labels": shape_labels,
-            "bends": asked.bends or measure == "jump-lengths",
+            "shape": asked.shape,
+            "bends": asked.bends,
             "accuracy": asked.accuracy,
         },
     )
@@ -152,9 +144,9 @@ def fair_data(
         original=before,
         data=data,
         tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
-        as_=as_,
+        as_=asked.as_,
         mode="optimum",
-        measure=measure,
+        measure=reported["measure"],
         breaks=tuple(breaks),
         before=Numbers(**reported["before"]),
         after=Numbers(**reported["after"]),
@@ -173,10 +165,11 @@ def fair_data(
         jump_lengths_after=reported["jumps_after"],
         notes=(*reported["notes"], *notes),
         seconds=time.perf_counter() - started,
-        goal=asked.goal[0],
+        goal=goal_of(asked.goal)[0],
         residuals=reported["residuals"],
         used=reported["used"],
         parameters=reported["at"],
         arcs=arcs,
         thin=reported["thin"],
+        fairer=reported["fairer"],
     )

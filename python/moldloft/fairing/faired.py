@@ -117,6 +117,9 @@ class Fairing:
     """The circular arcs that were asked for."""
     thin: bool = False
     """Whether the spline has fewer knots than there are points: their feet are their parameters."""
+    fairer: float = 0.0
+    """How far the curve went from the goal's own (0) towards the fairest (1; 2 with lengths for
+    parameters), so that it bends no more often than that one."""
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
     """Local steps in order, when asked for: which point went where. Replayed on the original they
     give the result's bits."""
@@ -217,6 +220,7 @@ class Fairing:
             "corrected": [_finding(f) for f in self.corrected],
             "notes": list(self.notes),
             "budget_used": self.used,
+            "fairer": self.fairer,
             "arcs": [
                 {
                     "points": [a.first + 1, a.last + 1],

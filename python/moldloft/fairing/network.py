@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["NetworkFairing", "network"]
 
-NETWORK_BUDGET = 0.3
-"""The share of the goal ``near`` in networks whose fairest takes more than noise has."""
-
 
 @dataclass(frozen=True)
 class NetworkFairing:
@@ -261,10 +258,8 @@ def network(
     wanted = goal_of(goal)
     if mode != "optimum":
         only_data(goal)
-    if goal == "near":
-        wanted = ("near", NETWORK_BUDGET)
     word_spaced, spaced_way = spacing_of(spacing)
-    index = mode != "optimum" or word_spaced in ("index", "uniform")
+    index = mode != "optimum" or word_spaced == "index"
     count = len(data)
     lists: list[tuple[list[int], bool]] = []
     marked = {_number(b, count) for b in breaks}

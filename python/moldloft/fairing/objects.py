@@ -111,7 +111,7 @@ def _curve(model: Model, name: str, tol: float | None) -> Sampled:
             ts.append(1.0)
         points = curve(ts)
         smooth = closed and not corners
-        spacing = "uniform" if not corners else "chord"
+        spacing = "index" if not corners else "chord"
         spline, at, _ = Spline._interpolated(points, 3, spacing, smooth, breaks)
         middle = 0.5 * (np.asarray(ts) + np.append(ts[1:], 1.0))
         middle = middle if smooth else middle[:-1]

@@ -32,7 +32,8 @@ class Finding:
     """Something that noise does not explain."""
 
     kind: str
-    """``"corner"``, probably an intended break, or ``"outlier"``, probably a wrong digit."""
+    """``"corner"``, probably an intended break, ``"outlier"``, probably a wrong digit, or
+    ``"order"``, a point that probably belongs behind the next one."""
     index: int
     """The point, from 0."""
     vector: tuple[float, float, float]
@@ -83,7 +84,7 @@ def certificate_of(value: float, gap: float, relative: float, *, moved: bool) ->
     str
         The measure and how far it is from the least, or that no such thing is claimed.
     """
-    said = f"relative optimality gap <= {relative:.1e}"
+    said = f"relative optimality gap <= {relative:.1e} with these knots and parameters"
     if not math.isfinite(gap):
         said = "without a tolerance there is no optimality bound"
     elif not claims_optimum(gap, relative):

@@ -132,7 +132,7 @@ class Spline:
         degree
             The polynomial degree.
         spacing
-            How points get their parameters: ``"chord"``, ``"centripetal"`` or ``"uniform"``.
+            How points get their parameters: ``"chord"``, ``"centripetal"`` or ``"index"``.
         closed
             Whether the curve returns to the first point.
         breaks
@@ -179,7 +179,7 @@ class Spline:
         degree
             Polynomial degree.
         spacing
-            ``"chord"``, ``"centripetal"``, ``"uniform"``, or an axis, ``"x"`` to ``"z"``.
+            ``"chord"``, ``"centripetal"``, ``"index"``, or an axis, ``"x"`` to ``"z"``.
         closed
             Whether the curve closes.
 

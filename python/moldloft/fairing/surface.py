@@ -269,7 +269,7 @@ class _Axis:
         line = np.column_stack([np.arange(count, dtype=np.float64), np.zeros((count, 2))])
         if knots is None:
             core, at, marks = _core.Spline.interpolate(
-                line, degree, "uniform", closed, rows, (1.0, 0.0, 0.0)
+                line, degree, "index", closed, rows, (1.0, 0.0, 0.0)
             )
             low, high = core.domain
             period = high - low if closed else None
@@ -305,11 +305,11 @@ class _Axis:
                     self.knots,
                     None,
                     None,
-                    "uniform",
+                    "index",
                     self.at,
                 )[0].control_points
             made = _core.Spline.interpolate(
-                line, self.degree, "uniform", self.closed, self.breaks, (1.0, 0.0, 0.0)
+                line, self.degree, "index", self.closed, self.breaks, (1.0, 0.0, 0.0)
             )
             return made[0].control_points
 
@@ -816,7 +816,7 @@ def fair_surface(
         "tolerance": radii(tol, m * n),
         "motion": word,
         "direction": way,
-        "ends": tuple(f"points:{e}" if isinstance(e, int) else str(e) for e in pair),
+        "ends": tuple(map(str, pair)),
         "marks": marks,
         "fixed": [int(i) * n + int(j) for i, j in fixed],
         "measure": measure,

@@ -8,17 +8,17 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
-use crate::curve::bends::{BendCounter, BendCounts, PieceBounds, SolvedFit};
+use crate::curve::bends::BendCounter;
 use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::curve::near::is_gated;
 use crate::curve::thinning::CurvesBesideData;
 use crate::optimum::goal::{
-    Adaptation, CurveTest, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single,
-    check_unique, moved, rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
+    moved, rounding,
 };
-use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
@@ -95,6 +95,9 @@ pub struct DataFit {
     pub bends: usize,
     /// The arcs that were asked for.
     pub arcs: Vec<FoundArc>,
+    /// How far the curve went from the goal's own (0) towards the fairest (1, and 2 by the lengths for parameters),
+    /// so that it bends no more often than that one.
+    pub fairer: f64,
 }
 
 /// Data of which neighbours in one place are one datum.
@@ -199,6 +202,9 @@ impl Data {
         for &m in &layout.marks {
             frozen[layout.control_of(m)] = true;
         }
+        for c in self.fixed_control(&radii) {
+            frozen[c] = true;
+        }
         // A datum without tolerance stays on the curve.
         for k in (0..radii.len()).filter(|&k| radii[k] == 0.0) {
             let (columns, factors) = layout.rows.row(k);
@@ -268,6 +274,21 @@ impl Data {
         })
     }
 
+    /// The control points about which all data are without tolerance: between these the curve stays as it is, to the
+    /// bit.
+    fn fixed_control(&self, radii: &[f64]) -> Vec<usize> {
+        if radii.iter().all(|&r| r > 0.0) {
+            return Vec::new();
+        }
+        let mut fixed = vec![true; self.layout.space.count()];
+        for k in (0..radii.len()).filter(|&k| radii[k] > 0.0) {
+            let (columns, factors) = self.layout.rows.row(k);
+            let near = columns.iter().zip(factors).filter(|(_, f)| **f != 0.0);
+            near.for_each(|(&c, _)| fixed[c as usize] = false);
+        }
+        (0..fixed.len()).filter(|&c| fixed[c]).collect()
+    }
+
     /// The control points beside the ends that these keep.
     fn held(&self) -> Vec<usize> {
         if self.layout.space.is_closed() {
@@ -296,7 +317,7 @@ impl Data {
     }
 
     /// The data that pull, as rows of displacements over tolerances.
-    fn pull(&self, parts: &Parts<'_>) -> SparseRows {
+    pub(super) fn pull(&self, parts: &Parts<'_>) -> SparseRows {
         let mut pull = SparseRows::new();
         let pulls = self.pulls();
         for (k, owner) in self.layout.owner.iter().enumerate() {
@@ -325,7 +346,7 @@ impl Data {
     }
 
     /// The curve through the data, or of few control points the nearest to them, as a job with these limits' motion.
-    fn job(&self) -> Result<Job, FairError> {
+    pub(super) fn job(&self) -> Result<Job, FairError> {
         let points = match &self.layout.thin {
             Some(thin) => thin.nearest.clone(),
             None => self.layout.through(&self.layout.data(&self.points))?,
@@ -374,35 +395,27 @@ impl InterpolationSpace {
 pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairError> {
     let job = data.job()?;
     if !options.shape.is_empty() {
-        return data.in_shape(options, &job);
+        if is_gated(options) {
+            return data.gated_shape(options, &job);
+        }
+        return data.under_shape(options, &job);
     }
-    let mut parts = data.parts(options, &job)?;
+    if is_gated(options) {
+        return Ok(data.gated(options, &job, None)?.1);
+    }
     let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
-    let near = matches!(options.goal, Goal::Near(_)) && !options.bends && !jumps;
-    // A curve that has too many pieces is another's start, and need not be known to its last digit.
-    let space = &data.layout.space;
-    let bounds = std::cell::OnceCell::new();
-    let counter = BendCounter::new(space);
-    let crowded = |fairest: &[Vec3<f64>], own: &[Vec3<f64>]| {
-        let samples = counter.samples(own);
-        let of = || PieceBounds::of(counter.of(&job.points), counter.of(fairest));
-        shape::plane_normal(&samples).is_some()
-            && BendCounts::of(&samples).pieces > bounds.get_or_init(of).most()
-    };
-    let mut found = data.found(options, &job, &mut parts, near.then_some(&crowded))?;
-    let (fairest, solution) = (std::mem::take(&mut found.fairest), found.solution.take());
+    let mut parts = data.parts(options, &job)?;
+    let mut found = data.found(options, &job, &mut parts)?;
+    let fairest = std::mem::take(&mut found.fairest);
     let plain = data.fit(found, &job);
-    if options.bends || jumps || data.stays(options, &job, &plain) {
+    if options.bends || jumps || plain.points == job.points {
         return Ok(plain);
     }
-    let samples = counter.samples(&plain.points);
-    if shape::plane_normal(&samples).is_none() {
+    let counter = BendCounter::new(&data.layout.space);
+    if shape::plane_normal(&counter.samples(&plain.points)).is_none() {
         return Ok(plain);
     }
-    let counts = BendCounts::of(&samples);
-    let bounds = bounds.into_inner();
-    let before = SolvedFit { fairest, counts, solution, bounds };
-    data.without_bends(options, &job, plain, before, &counter)
+    data.without_bends(options, &job, plain, fairest, &counter)
 }
 
 /// Times that signs and lines are made linear again at most.
@@ -475,7 +488,11 @@ impl Data {
     }
 
     /// The curve of a goal that has the shape asked for.
-    fn in_shape(&self, options: &DataOptions, job: &Job) -> Result<DataFit, FairError> {
+    pub(super) fn under_shape(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+    ) -> Result<DataFit, FairError> {
         let space = &self.layout.space;
         // Data whose own curve has the shape need not move for it.
         let own = options.shape.by(space, &job.points);
@@ -573,20 +590,6 @@ impl Data {
         start: &[Vec3<f64>],
         search: SignSearch,
     ) -> Result<DataFit, FairError> {
-        let made = self.with_signs_unless(options, job, shape, start, search, &|_| false)?;
-        made.ok_or(FairError::Shape { shapes: Vec::new(), miss: 0.0 })
-    }
-
-    /// The same, or none where the first curve under signs already is one that is not wanted.
-    pub(super) fn with_signs_unless(
-        &self,
-        options: &DataOptions,
-        job: &Job,
-        shape: ShapeConstraints,
-        start: &[Vec3<f64>],
-        search: SignSearch,
-        unwanted: &dyn Fn(&[Vec3<f64>]) -> bool,
-    ) -> Result<Option<DataFit>, FairError> {
         let mut control = shape.projected(start);
         let slack = self.slack();
         let asked = options.conditions.len();
@@ -602,7 +605,7 @@ impl Data {
             let tried = match search.weight {
                 Some(weight) => {
                     parts.accuracy = parts.accuracy.max(search.settled * ROUGHLY);
-                    self.weighed(job, &mut parts, weight, None).map(|made| made.0)
+                    self.weighed(job, &mut parts, weight)
                 }
                 None => self.along(&options, job, &mut parts),
             };
@@ -623,16 +626,13 @@ impl Data {
                 Err(FairError::Shape { .. }) if best.is_some() => break,
                 other => other?,
             };
-            if round == 0 && unwanted(&made.points) {
-                return Ok(None);
-            }
             missed = options.shape.miss(self, &made.points, slack);
             if missed.0 > 0.0 && search.least.is_finite() {
                 // As near as that the first curve, which has the signs, may be a hair away.
                 if let Some(pulled) = self.pulled_back(&options, &made, start, slack) {
                     let above = self.weighed_value(&pulled) - search.least;
                     if above <= search.settled * search.least.abs() {
-                        return Ok(Some(self.exact(&options.shape, pulled)));
+                        return Ok(self.exact(&options.shape, pulled));
                     }
                 }
             }
@@ -657,7 +657,7 @@ impl Data {
                 }
             }
         }
-        best.map(Some).ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+        best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
     }
 
     /// The curve a little towards one that has the signs, as far as it takes to have them, too.
@@ -693,20 +693,14 @@ impl Data {
         job: &Job,
         parts: &mut Parts<'_>,
     ) -> Result<DataFit, FairError> {
-        Ok(self.fit(self.found(options, job, parts, None)?, job))
+        Ok(self.fit(self.found(options, job, parts)?, job))
     }
 
     /// The optimum of the measure and the squared residuals of this weight.
-    pub(super) fn weighed(
-        &self,
-        job: &Job,
-        parts: &mut Parts<'_>,
-        weight: f64,
-        before: Option<&CertifiedSolution>,
-    ) -> Result<(DataFit, CertifiedSolution), FairError> {
+    fn weighed(&self, job: &Job, parts: &mut Parts<'_>, weight: f64) -> Result<DataFit, FairError> {
         let pull = self.pull(parts);
         parts.pull = (weight > 0.0).then(|| pull.scaled(weight.sqrt()));
-        let (optimum, solution) = parts.solve_after(before)?;
+        let optimum = parts.solve()?;
         let value = crate::measure::value(&parts.measure, parts.norm, &optimum.points);
         let mut found = GoalOptimum::unmoved(&optimum.points, value, false);
         found.optimum =
@@ -714,7 +708,7 @@ impl Data {
         found.weight = weight;
         let mut made = self.fit(found, job);
         made.used = self.used(&made.residuals);
-        Ok((made, solution))
+        Ok(made)
     }
 
     /// The measure of a curve and its squares by their weight.
@@ -738,6 +732,7 @@ impl Data {
             original: job.points.clone(),
             bends: 0,
             arcs: Vec::new(),
+            fairer: 0.0,
         }
     }
 
@@ -769,12 +764,11 @@ impl Data {
         Goal::Near(most / mean)
     }
 
-    fn found(
+    pub(super) fn found(
         &self,
         options: &DataOptions,
         job: &Job,
         parts: &mut Parts<'_>,
-        enough: Option<CurveTest<'_>>,
     ) -> Result<GoalOptimum, FairError> {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
@@ -795,7 +789,6 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
             adapts: Adaptation::None,
-            enough,
             moves: self.layout.thin.as_ref().map(|thin| self.moves(thin)),
         };
         let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
@@ -810,6 +803,15 @@ pub struct MovingFit<T> {
     pub points: Vec<Vec3<T>>,
     /// The space's knots.
     pub knots: Vec<T>,
+}
+
+impl<T: Real> MovingFit<T> {
+    /// A curve that stays as it is.
+    pub(super) fn still(layout: &InterpolationSpace, fit: &DataFit) -> Self {
+        let points = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        let knots = layout.space.knots().iter().map(|&k| T::from(k)).collect();
+        Self { points, knots }
+    }
 }
 
 /// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
@@ -837,9 +839,7 @@ pub fn fair_data_with<T: Real>(
             ));
         }
         let made = fair_data(data, options)?;
-        let knots = data.layout.space.knots().iter().map(|&k| T::from(k)).collect();
-        let points = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
-        return Ok((MovingFit { points, knots }, made));
+        return Ok((MovingFit::still(&data.layout, &made), made));
     }
     if !data.layout.interpolates() {
         if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
@@ -848,13 +848,11 @@ pub fn fair_data_with<T: Real>(
             ));
         }
         let made = fair_data(data, options)?;
-        let knots = data.layout.space.knots().iter().map(|&k| T::from(k)).collect();
-        let points = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
-        return Ok((MovingFit { points, knots }, made));
+        return Ok((MovingFit::still(&data.layout, &made), made));
     }
     let job = data.job()?;
     let mut parts = data.parts(options, &job)?;
-    let found = data.found(options, &job, &mut parts, None)?;
+    let found = data.found(options, &job, &mut parts)?;
     let (share, weight) = (found.share, found.weight);
     let layout = &data.layout;
     let (sites, knots) = layout.moving(at);

@@ -31,6 +31,12 @@ impl EndContinuity {
         })
     }
 
+    /// What ends keep where nothing is said and control points move: of a curve through points its tangent, else two
+    /// control points.
+    pub(crate) fn of_control(fitted: bool) -> Self {
+        if fitted { Self::Tangent } else { Self::Points(2) }
+    }
+
     /// How many derivatives are kept, position included.
     pub(crate) fn kept(self) -> usize {
         match self {

@@ -974,6 +974,11 @@ impl ShapeConstraints {
         out
     }
 
+    /// How many pieces it may have, where a number was asked for.
+    pub(crate) fn most_pieces(&self) -> Option<usize> {
+        self.pieces.map(|(_, most)| most)
+    }
+
     /// The shape but for its count of pieces.
     pub(crate) fn without_pieces(&self) -> Self {
         Self { pieces: None, ..self.clone() }

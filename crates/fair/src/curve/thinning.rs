@@ -60,7 +60,8 @@ pub(crate) struct CurvesBesideData {
 }
 
 /// A spline of few knots for many data in tolerances, with a place for each; none where the data are few or
-/// exact, some have no tolerance of their own or may move in some directions only, or no such spline stays within the
+/// exact, some have no tolerance of their own or may move in some directions only (but along one from stations on a
+/// line, which are the parameters then), or no such spline stays within the
 /// tolerances. With `turning` parameters run faster where the curve turns, as
 /// [`crate::curvature_parameters`] do.
 ///
@@ -89,13 +90,50 @@ pub fn thinned(
     let n = points.len();
     let kept = |e: &EndContinuity| matches!(e, EndContinuity::Free | EndContinuity::Position);
     let some = limit.radii.iter().all(|r| *r > 0.0 && r.is_finite());
-    let plain = some && limit.motion == Motion::Ball && (closed || ends.iter().all(kept));
+    let plain = some && (closed || ends.iter().all(kept));
     if n < MANY_DATA || degree < 3 || !plain || is_exact(points, &[], closed) {
         return Ok(None);
     }
+    let stations = match limit.motion {
+        Motion::Ball => None,
+        Motion::Along(d) if !closed => match stations(points, d) {
+            None => return Ok(None),
+            some => some,
+        },
+        _ => return Ok(None),
+    };
     let mut thinning = Thinning::new(points, limit, degree, closed);
+    if let Some(at) = stations {
+        thinning.knots = thinning.bounds.iter().map(|&b| at[b]).collect();
+        (thinning.at, thinning.stationed) = (at, true);
+    }
     thinning.hold = ends.map(|e| e != EndContinuity::Free && !closed);
     thinning.run(turning)
+}
+
+/// Stations are on a line to this share of the extent.
+const IN_LINE: f64 = 1e-12;
+
+/// Rising parameters in [0, 1] of points that move along a direction only, by their stations: none where these are not
+/// on a line, or some are in one place.
+fn stations(points: &[Vec3<f64>], along: Vec3<f64>) -> Option<Vec<f64>> {
+    let flat = |p: &Vec3<f64>| *p - along * along.dot(*p);
+    let (first, last) = (flat(points.first()?), flat(points.last()?));
+    let way = last - first;
+    let length = way.norm();
+    let axis = way.normalized()?;
+    let mut at = Vec::with_capacity(points.len());
+    for p in points {
+        let off = flat(p) - first;
+        let t = axis.dot(off) / length;
+        let aside = (off - axis * axis.dot(off)).norm();
+        if aside > IN_LINE * length || at.last().is_some_and(|before| t <= *before) {
+            return None;
+        }
+        at.push(t);
+    }
+    at[points.len() - 1] = 1.0;
+    Some(at)
 }
 
 /// A spline whose spans grow in number.
@@ -113,6 +151,8 @@ struct Thinning<'a> {
     /// The parameters of these, and of the data.
     knots: Vec<f64>,
     at: Vec<f64>,
+    /// Whether the data stay at their parameters.
+    stationed: bool,
 }
 
 /// The spline, the control points and the residuals of a fit.
@@ -145,6 +185,7 @@ impl<'a> Thinning<'a> {
             bounds,
             knots,
             at,
+            stationed: false,
         }
     }
 
@@ -303,6 +344,9 @@ impl<'a> Thinning<'a> {
 
     /// Takes for parameters those of the feet of the data; ends stay at the ends.
     fn place_at_feet(&mut self, fitted: &FittedSpline) {
+        if self.stationed {
+            return;
+        }
         let n = self.points.len();
         let inner = if self.closed { 0..n } else { 1..n - 1 };
         for i in inner {
@@ -326,6 +370,9 @@ impl<'a> Thinning<'a> {
 
     /// Takes lengths for parameters, longer ones where the curve turns.
     fn place_by_length(&mut self, fitted: &FittedSpline, turning: bool) {
+        if self.stationed {
+            return;
+        }
         let pieces = &fitted.pieces;
         let rule = gauss(3);
         let mut stops: Vec<f64> = Vec::new();

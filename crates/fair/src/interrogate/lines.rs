@@ -48,7 +48,9 @@ pub fn line_findings(
             }
             seen[place] += usize::from(matches!(finding, DataFinding::WrongDigit { .. }));
             match &mut finding {
-                DataFinding::WrongDigit { index, .. } | DataFinding::Knuckle { index, .. } => {
+                DataFinding::WrongDigit { index, .. }
+                | DataFinding::Knuckle { index, .. }
+                | DataFinding::Swapped { index } => {
                     *index = place;
                 }
             }

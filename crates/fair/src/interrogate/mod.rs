@@ -5,5 +5,7 @@ pub(crate) mod lines;
 pub(crate) mod outliers;
 pub(crate) mod report;
 pub mod shape;
+mod short_lists;
+pub(crate) mod soft_counts;
 pub(crate) mod spans;
 pub mod surface;

@@ -5,6 +5,7 @@
 //! off across it is set against a scale of the neighbourhood that the whole file moderates (Smyth
 //! 2004). A knuckle differs from a wrong digit: leaving the point out cures a wrong digit.
 
+use crate::interrogate::short_lists::{SHORT, short_knuckles, swapped};
 use moldloft_num::Vec3;
 
 /// A finding about data.
@@ -30,13 +31,20 @@ pub enum DataFinding {
         /// The turn as a multiple of its scale.
         score: f64,
     },
+    /// A point that seems to belong behind the next one: the way through both runs back.
+    Swapped {
+        /// The first of the two.
+        index: usize,
+    },
 }
 
 impl DataFinding {
     /// The point that it is about.
     pub fn index(&self) -> usize {
         match *self {
-            Self::WrongDigit { index, .. } | Self::Knuckle { index, .. } => index,
+            Self::WrongDigit { index, .. }
+            | Self::Knuckle { index, .. }
+            | Self::Swapped { index } => index,
         }
     }
 }
@@ -56,6 +64,11 @@ impl std::fmt::Display for DataFinding {
                 "point {number}: an intended break? the tangent turns by {:.2} degrees there, \
                  {score:.0} times the scale",
                 angle.to_degrees()
+            ),
+            Self::Swapped { index } => write!(
+                f,
+                "points {number} and {}: in the wrong order? the way through them runs back",
+                index + 2
             ),
         }
     }
@@ -88,10 +101,10 @@ const KNUCKLE_SCORE: f64 = 20.0;
 const LARGEST_TURN: f64 = 0.44;
 
 /// A polygon that doubles back by more than this is a nose that the points do not resolve.
-const DOUBLES_BACK: f64 = 1.75;
+pub(super) const DOUBLES_BACK: f64 = 1.75;
 
 /// How many times the turns beside it a knuckle's is, where a nose could be as sharp.
-const STANDS_OUT: f64 = 6.0;
+pub(super) const STANDS_OUT: f64 = 6.0;
 
 /// Neighbours on either side.
 const SIDE: usize = 5;
@@ -138,13 +151,13 @@ struct NeighbourFit {
 
 /// A least squares fit of polynomials with an extra column, by Householder's QR through modified
 /// Gram and Schmidt, which columns this few allow.
-struct ThinQr<const C: usize> {
+pub(super) struct ThinQr<const C: usize> {
     q: Vec<[f64; C]>,
     r: [[f64; C]; C],
 }
 
 impl<const C: usize> ThinQr<C> {
-    fn new(mut a: Vec<[f64; C]>) -> Option<Self> {
+    pub(super) fn new(mut a: Vec<[f64; C]>) -> Option<Self> {
         let mut r = [[0.0; C]; C];
         for j in 0..C {
             for _ in 0..2 {
@@ -164,7 +177,12 @@ impl<const C: usize> ThinQr<C> {
         Some(Self { q: a, r })
     }
 
-    fn solve(&self, b: &[Vec3<f64>]) -> [Vec3<f64>; C] {
+    /// What the last column has that the others do not.
+    pub(super) fn last(&self) -> f64 {
+        self.r[C - 1][C - 1]
+    }
+
+    pub(super) fn solve(&self, b: &[Vec3<f64>]) -> [Vec3<f64>; C] {
         let mut x = [Vec3::zero(); C];
         for j in 0..C {
             x[j] = self.q.iter().zip(b).fold(Vec3::zero(), |s, (row, p)| s + *p * row[j]);
@@ -497,11 +515,24 @@ fn wrong_digits(
     out
 }
 
-/// What stands out among data, wrong digits first, the clearest first. Nothing is said of lists of
-/// fewer than a dozen points.
+/// What stands out among data, wrong digits first, the clearest first. Nothing is said of wrong digits in lists of
+/// fewer than a dozen points, and of knuckles and the order in lists of fewer than seven.
 pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     let n = points.len();
-    if n < FEWEST {
+    let swapped = swapped(points, closed);
+    if !swapped.is_empty() {
+        // What else there is shows in the other order.
+        let mut ordered = points.to_vec();
+        swapped.iter().for_each(|&k| ordered.swap(k, (k + 1) % n));
+        let said = swapped.iter().map(|&index| DataFinding::Swapped { index });
+        return said.chain(ordered_findings(&ordered, closed)).collect();
+    }
+    ordered_findings(points, closed)
+}
+
+fn ordered_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
+    let n = points.len();
+    if n < SHORT[0] {
         return Vec::new();
     }
     let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
@@ -575,6 +606,9 @@ fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> 
 fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> {
     const HALF: usize = 4;
     let n = points.len();
+    if !closed && n <= SHORT[1] {
+        return short_knuckles(points, floor);
+    }
     if n < 2 * HALF + 1 {
         return Vec::new();
     }

@@ -167,6 +167,16 @@ pub fn data_report(
     options: &DataOptions,
 ) -> Result<(DataFit, FairingReport), FairError> {
     let made = fair_data(data, options)?;
+    let reported = report_of(data, options.measure, &made)?;
+    Ok((made, reported))
+}
+
+/// The report of a faired curve near data.
+pub(crate) fn report_of(
+    data: &Data,
+    measure: Measure,
+    made: &DataFit,
+) -> Result<FairingReport, FairError> {
     let n = made.points.len();
     let job = Job {
         space: data.layout.space.clone(),
@@ -176,7 +186,7 @@ pub fn data_report(
         marks: Vec::new(),
         ends: data.ends,
     };
-    let numbers = |points: &[Vec3<f64>]| numbers(&job, options.measure, points);
+    let numbers = |points: &[Vec3<f64>]| numbers(&job, measure, points);
     let (before, after) = (numbers(&job.points)?, numbers(&made.points)?);
     let rows = KnotJumps::of(&job.space).rows;
     let jumps = [&job.points, &made.points]
@@ -219,7 +229,7 @@ pub fn data_report(
     let report = FairingReport {
         deviation: deviation(&job, &made.points),
         points: made.points.clone(),
-        measure: options.measure.name(),
+        measure: measure.name(),
         before,
         after,
         certificate: made.certificate,
@@ -230,7 +240,7 @@ pub fn data_report(
         jumps,
         notes,
     };
-    Ok((made, report))
+    Ok(report)
 }
 
 /// What stands out and is not taken into account yet.
@@ -304,7 +314,7 @@ impl fmt::Display for FairingReport {
         } else if gap >= 1.0 {
             writeln!(f, "no optimum is claimed: what is proved of the gap exceeds the measure")?;
         } else {
-            writeln!(f, "relative optimality gap <= {gap:.2e}")?;
+            writeln!(f, "relative optimality gap <= {gap:.2e} with these knots and parameters")?;
         }
         match (self.stopped, self.active) {
             (Some(why), _) => writeln!(f, "steps              {} ({})", self.steps, why.name())?,

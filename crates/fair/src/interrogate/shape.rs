@@ -169,6 +169,12 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
 ///
 /// Samples are those of [`samples`], so many on each span.
 pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
+    let Some(floors) = curvature_floors(samples, share) else { return 1 };
+    runs_above(&curvatures(samples), &floors).max(1)
+}
+
+/// At each sample the reversal of the curvature that is not counted; none where the whole range says nothing.
+pub(crate) fn curvature_floors(samples: &[Sample], share: f64) -> Option<Vec<f64>> {
     let values = curvatures(samples);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -176,15 +182,14 @@ pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
     let far = |s: &Sample| (s.point - samples[0].point).norm();
     let extent = samples.iter().map(far).fold(0.0, f64::max);
     if high - low <= SAME * most || most * extent <= 1e-9 {
-        return 1;
+        return None;
     }
     let least = share * (high - low);
     let spans = spans_of(samples);
     let circles = circles(samples, &spans);
     let own = own_errors(samples, &spans, &circles);
     let ripples = ripples(samples, &spans, &circles);
-    let floors: Vec<f64> = ripples.into_iter().zip(own).map(|(r, e)| r.max(e).max(least)).collect();
-    runs_above(&values, &floors).max(1)
+    Some(ripples.into_iter().zip(own).map(|(r, e)| r.max(e).max(least)).collect())
 }
 
 /// The samples of each span: both sides of a knot are samples at its parameter.

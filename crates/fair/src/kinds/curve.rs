@@ -1,10 +1,9 @@
 //! `FairCurve`: the faired spline of points.
 
-use super::demands::Demand;
 use super::faired::{CurveContext, FairedSpline};
 use super::options::{curve_options, shared_options};
 use super::shapes::AnchoredSpline;
-use crate::{EndContinuity, FairError};
+use crate::{Demand, FairError};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
@@ -50,9 +49,10 @@ shared_options! {
         #[field(min = 0)]
         tolerance: T,
         /// The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
-        /// "variation".
-        #[field(default = "second")]
-        measure: Arc<str>,
+        /// "variation". Without it "variation" of points that the curve is near ("bending" below degree 3), and "second"
+        /// where control points move.
+        #[field(default)]
+        measure: Option<Arc<str>>,
         /// Meaning of the points: "fit" (the curve passes through them before it is faired), "control"
         /// (its control points) or "points" (they are faired and then interpolated: of optima the same as "fit" unless the
         /// spacing is "index").
@@ -64,9 +64,10 @@ shared_options! {
         #[field(default)]
         breaks: Option<Vec<usize>>,
         /// What open ends keep of the curve through the points: "free" (within the tolerance), "position",
-        /// "tangent" or "curvature".
-        #[field(default = "position")]
-        ends: Arc<str>,
+        /// "tangent", "curvature" or a number of control points. Without it "free" of points that the curve is near,
+        /// "tangent" of fits whose control points move, and else "2".
+        #[field(default)]
+        ends: Option<Arc<str>>,
         /// "optimum", or steps of the report of 1991: "faithful" (knots removed and re-inserted, the longest
         /// achievable move first), "literal" (the largest jump first; may stall), "vertex" (one control point at a time
         /// to its own best place), "sweeps" (all points in order) or "levels" (waves of all lengths). The last two have no
@@ -117,15 +118,14 @@ const SPACINGS: [&str; 8] = ["auto", "chord", "centripetal", "x", "y", "z", "ind
 impl<T: Real> FairCurve<T> {
     /// What the curve keeps.
     fn kept(&self) -> Result<Vec<Demand>, CallError> {
-        let one = |(k, word): (usize, &Arc<str>)| match &**word {
-            "area" => Ok(Demand::Area),
-            "volume" => Ok(Demand::Volume),
-            "centroid" => Ok(Demand::Centroid),
-            _ => Err(CallError::new("unknown-name", format!("`{word}` cannot be kept"))
-                .expected("\"area\", \"volume\" or \"centroid\"")
-                .found(word.to_string())
-                .in_item(k)
-                .in_field(Self::KEEP)),
+        let one = |(k, word): (usize, &Arc<str>)| {
+            Demand::kept(word).ok_or_else(|| {
+                CallError::new("unknown-name", format!("`{word}` cannot be kept"))
+                    .expected("\"area\", \"volume\" or \"centroid\"")
+                    .found(word.to_string())
+                    .in_item(k)
+                    .in_field(Self::KEEP)
+            })
         };
         self.keep.iter().flatten().enumerate().map(one).collect()
     }
@@ -235,7 +235,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
             through: self.through.iter().flatten().map(|p| p.xyz).collect(),
             keep: self.kept()?,
             keep_field: Self::KEEP,
-            least_end: EndContinuity::Free,
+            least_end: None,
             budget: crate::near_budget(&plain, options.motion()?),
             turns: true,
             spacings: &SPACINGS,

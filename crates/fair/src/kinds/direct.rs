@@ -1,13 +1,13 @@
 //! Curves whose control points are faired: at the index, under a bound on the whole curve, with knots or a
 //! number of control points of the user's, or step by step.
 
-use super::demands::Demand;
 use super::figures::FairFigures;
-use super::{ACCURACY, GivenKnots, Intent, PointRole, indices, moves};
+use super::{GivenKnots, Intent, PointRole, indices, moves};
 use crate::curve::condition::{end_jet, joined};
+use crate::curve::request::ACCURACY;
 use crate::{
-    Bound, Certificate, Condition, EndContinuity, FairError, Goal, Job, KnotRemovalOptions, Limit,
-    Measure, OptimumOptions, ParameterSpacing, RowNorm, Space, ball_gap, fit, fit_rational,
+    Bound, Certificate, Condition, Demand, EndContinuity, FairError, Goal, Job, KnotRemovalOptions,
+    Limit, Measure, OptimumOptions, ParameterSpacing, RowNorm, Space, ball_gap, fit, fit_rational,
     interpolate, interpolate_with_corners, is_exact, knot_removal, least_squares, multilevel,
     optimum_with, parameters, parameters_with, replay_with, shape, sweeps,
 };
@@ -298,7 +298,7 @@ impl<T: Real> DirectCurve<T> {
         tolerances: &[T],
     ) -> Result<MovedControlPoints<T>, FairError> {
         let SplineToFair { space, control: points, .. } = laid;
-        let measure = self.intent.measure;
+        let measure = self.intent.measure.unwrap_or(Measure::Second);
         // What an end keeps is counted in points where these move: with tangents, two of them.
         let end = |end: EndContinuity| match (self.role, end) {
             (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
@@ -312,7 +312,10 @@ impl<T: Real> DirectCurve<T> {
             weights: self.own.weights.clone(),
             limit: Limit::new(self.intent.motion, radii)?,
             marks: laid.marks.clone(),
-            ends: self.intent.ends.map(end),
+            ends: self
+                .intent
+                .ends
+                .map(|e| end(e.unwrap_or(EndContinuity::of_control(self.role == PointRole::Fit)))),
         };
         let (mut conditions, mut targets) = (Vec::new(), Vec::new());
         for (at, other) in self.joins.iter().enumerate() {
@@ -329,7 +332,7 @@ impl<T: Real> DirectCurve<T> {
             return Err(FairError::NoDerivative(CONDITIONS));
         }
         for &(t, demand) in &self.conditions {
-            conditions.extend(demand.conditions(space, &job.points, t));
+            conditions.extend(demand.conditions(space, &job.points, t)?);
         }
         let lifted =
             |points: Vec<Vec3<f64>>| points.into_iter().map(Vec3::lifted).collect::<Vec<Vec3<T>>>();

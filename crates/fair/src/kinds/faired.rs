@@ -1,18 +1,20 @@
 //! From the options of curves and snakes to the faired spline.
 
-use super::demands::{Demand, Demands, one_each, shapes_of};
+use super::demands::{Demands, one_each, shapes_of};
 use super::direct::{CurveMethod, DirectCurve};
 use super::options::{CurveOptions, constant};
 use super::{
-    ArgumentFields, GivenKnots, Intent, PointRole, end, fault, goal_of, measure, role, shapes,
-    spacing, unknown,
+    ArgumentFields, GivenKnots, Intent, PointRole, end, fault, goal_of, role, shapes, spacing,
+    unknown,
 };
 use crate::{
-    Bound, FairError, Goal, KnotRemovalOptions, Motion, ParameterSpacing, RemovalStep, Rule, Stops,
+    Bound, Demand, EndContinuity, FairError, Goal, KnotRemovalOptions, Motion, ParameterSpacing,
+    PointSpacing, RemovalStep, Rule, Stops,
 };
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::{BSplineCurve, SplineWithKnotDerivatives};
+use std::sync::Arc;
 
 /// What curves ask for that snakes do not, or in another way.
 pub(crate) struct CurveContext<T> {
@@ -23,8 +25,8 @@ pub(crate) struct CurveContext<T> {
     pub keep: Vec<Demand>,
     /// The field of what it keeps.
     pub keep_field: FieldId,
-    /// What ends that are free keep none the less.
-    pub least_end: crate::EndContinuity,
+    /// What ends keep none the less if they keep nothing else.
+    pub least_end: Option<EndContinuity>,
     /// The share of the goals.
     pub budget: f64,
     /// Whether "auto" may be "curvature".
@@ -90,10 +92,10 @@ impl<T: Real> CurveOptions<T> {
         let method = self.method()?;
         let role = role(&self.role, self.fields.role)?;
         let bound = self.bound()?;
-        let intent = self.intent(&context, &demands)?;
+        let (intent, spacing) = self.intent(&context)?;
         let optimum = matches!(method, CurveMethod::Optimum);
         let alone = context.joins.iter().all(Option::is_none);
-        let index = intent.spacing == ParameterSpacing::Uniform;
+        let index = spacing == PointSpacing::Given(ParameterSpacing::Uniform);
         let own = self.own()?;
         let given = own.knots.is_some() || own.weights.is_some();
         // Points that move are those of the curve through them.
@@ -103,10 +105,11 @@ impl<T: Real> CurveOptions<T> {
             if let Some((what, field)) = self.stepwise_only() {
                 return Err(self.elsewhere(what, field, "mode = \"faithful\""));
             }
-            let (curve, figures) = intent.near(points, &demands).map_err(unmade)?;
+            let (curve, figures) = intent.near(points, demands, spacing).map_err(unmade)?;
             // A free end leaves its point, and a closed curve has no ends.
             let still = self.tolerance.re() == 0.0;
-            let kept = intent.ends.map(|e| !intent.closed && (e.kept() > 0 || still));
+            let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
+            let kept = intent.ends.map(|e| !intent.closed && (keeps(e) || still));
             let members = figures.members().to_vec();
             return Ok(FairedSpline { curve: FairedCurve::Moving(curve), members, kept });
         }
@@ -207,6 +210,8 @@ impl<T: Real> CurveOptions<T> {
                 return Err(refused("spacing", fields.spacing, expected));
             }
         };
+        let fitted = role == PointRole::Fit;
+        intent.ends = intent.ends.map(|e| e.or(Some(EndContinuity::of_control(fitted))));
         let kept = intent.ends;
         let joined = context.joins.each_ref().map(Option::is_some);
         let closed = intent.closed;
@@ -230,53 +235,51 @@ impl<T: Real> CurveOptions<T> {
         let spline = spline
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(fields.points))?;
         // Fits of few control points end at their points, too.
-        let end = |at: usize| !closed && (kept[at].kept() > 0 || joined[at]);
+        let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
+        let end = |at: usize| !closed && (keeps(kept[at]) || joined[at]);
         let members = made.figures.members_of_moves();
         Ok(FairedSpline { curve: FairedCurve::Still(spline), members, kept: [end(0), end(1)] })
     }
 
-    fn intent(
-        &self,
-        context: &CurveContext<T>,
-        demands: &Demands<T>,
-    ) -> Result<Intent<T>, CallError> {
+    /// What is asked for, and how points get their parameters.
+    fn intent(&self, context: &CurveContext<T>) -> Result<(Intent<T>, PointSpacing), CallError> {
         let fields = &self.fields;
         let motion = self.motion()?;
         constant("share", fields.share, self.share.into_iter())?;
         let share = self.share.map(|s| s.re());
         let goal = goal_of(&self.goal, share, context.budget, [fields.goal, fields.share])?;
-        let first = end(&self.ends, fields.ends)?;
-        let last = match &self.last_end {
-            Some(word) => end(word, fields.last_end)?,
-            None => first,
+        let kept = |word: &Option<Arc<str>>, field| -> Result<Option<EndContinuity>, CallError> {
+            word.as_deref().map(|word| end(word, field)).transpose()
         };
-        let ends = [first, last].map(|e| if e.kept() == 0 { context.least_end } else { e });
-        let free = demands.shape.is_empty()
-            && demands.conditions.is_empty()
-            && motion == Motion::Ball
-            && (self.closed || ends.iter().all(|e| e.kept() < 2));
-        let to_the_truth = matches!(goal, Goal::Near(_) | Goal::Budget(_));
-        let turning = match &*self.spacing {
-            "auto" => context.turns && free && to_the_truth,
-            word => word == "curvature",
-        };
+        let first = kept(&self.ends, fields.ends)?;
+        let last = kept(&self.last_end, fields.last_end)?.or(first);
+        let ends = [first, last].map(|e| match e {
+            Some(e) if e.kept() > 0 => Some(e),
+            e => context.least_end.or(e),
+        });
         if !context.spacings.contains(&&*self.spacing) {
             return Err(unknown("spacing", &self.spacing, context.spacings, fields.spacing));
         }
-        let word =
-            if matches!(&*self.spacing, "auto" | "curvature") { "chord" } else { &self.spacing };
-        Ok(Intent {
+        let spacing = match spacing(&self.spacing, fields.spacing)? {
+            PointSpacing::Auto if !context.turns => PointSpacing::Given(ParameterSpacing::Chord),
+            other => other,
+        };
+        let measure = self.measure.as_deref();
+        let intent = Intent {
             tolerance: self.tolerance,
             degree: self.degree,
             closed: self.closed,
-            measure: measure(&self.measure, fields.measure)?,
+            measure: measure.map(|word| super::measure(word, fields.measure)).transpose()?,
             ends,
             breaks: self.breaks.clone(),
-            spacing: spacing(word, fields.spacing)?,
-            turning,
+            spacing: match spacing {
+                PointSpacing::Given(spacing) => spacing,
+                _ => ParameterSpacing::Chord,
+            },
             goal,
             motion,
-        })
+        };
+        Ok((intent, spacing))
     }
 
     /// The directions in which points may move.
@@ -426,7 +429,7 @@ impl<T: Real> CurveOptions<T> {
             // Control points of a fit are no points of the user's.
             (role == PointRole::Fit && !self.fixed.is_empty(), "fixed", fields.fixed),
             (self.release.is_some(), "release", fields.release),
-            (!self.bends, "bends", fields.bends),
+            (self.bends, "bends", fields.bends),
             (self.at.is_some(), "at", fields.at),
             (&*self.spacing == "curvature", "spacing \"curvature\"", fields.spacing),
         ];

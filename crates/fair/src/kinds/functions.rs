@@ -49,11 +49,10 @@ impl<T: Real> Build<T> for Fair<T> {
             tolerance: self.tolerance,
             degree: 3,
             closed: self.closed == 1,
-            measure: measure(&self.measure, Self::MEASURE)?,
-            ends: [crate::EndContinuity::Points(2); 2],
+            measure: Some(measure(&self.measure, Self::MEASURE)?),
+            ends: [Some(crate::EndContinuity::Points(2)); 2],
             breaks: Vec::new(),
             spacing: crate::ParameterSpacing::Uniform,
-            turning: false,
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };

@@ -16,7 +16,10 @@ mod surface;
 mod surface_demands;
 mod surface_method;
 
-use crate::{EndContinuity, FairError, Goal, Measure, Motion, ParameterSpacing, Space};
+use crate::words::{self, WordError};
+use crate::{
+    EndContinuity, FairError, Goal, Measure, Motion, ParameterSpacing, PointSpacing, Space,
+};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{CallError, FieldId, Row};
@@ -44,50 +47,61 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// The certified gap of the kinds: as small as rounding allows, so that which limits are reached is
-/// decided and derivatives are those of the optimum itself.
-pub(crate) const ACCURACY: f64 = 1e-13;
-
 /// How points become a fair spline: what the arguments of the kinds say.
 pub(crate) struct Intent<T> {
     pub tolerance: T,
     pub degree: usize,
     pub closed: bool,
-    pub measure: Measure,
-    pub ends: [EndContinuity; 2],
+    /// The measure; that of data or of control points without one.
+    pub measure: Option<Measure>,
+    /// What the ends keep; what those of data or of control points keep where nothing is said.
+    pub ends: [Option<EndContinuity>; 2],
     /// Intended breaks, from 1.
     pub breaks: Vec<usize>,
     /// How points get their parameters; the index for control points and knot removal.
     pub spacing: ParameterSpacing,
-    /// Whether parameters run faster where the curve turns.
-    pub turning: bool,
     /// Which of the curves within the tolerances is wanted.
     pub goal: Goal,
     /// The directions in which points may move.
     pub motion: Motion,
 }
 
+/// A word that an option does not have, as a fault at its argument.
+pub(crate) fn unread(error: WordError, field: FieldId) -> CallError {
+    let said = if error.id == "unknown-name" {
+        format!("unknown {} \"{}\"", error.noun, error.found)
+    } else {
+        format!("the {} \"{}\" is not determined", error.noun, error.found)
+    };
+    CallError::new(error.id, said)
+        .expected(error.expected)
+        .found(format!("\"{}\"", error.found))
+        .in_field(field)
+}
+
 /// The way in which points get their parameters that is called `name`.
-pub(crate) fn spacing(name: &str, field: FieldId) -> Result<ParameterSpacing, CallError> {
-    let axis = |x, y, z| ParameterSpacing::Along(Vec3::of(x, y, z));
-    Ok(match name {
-        "chord" => ParameterSpacing::Chord,
-        "centripetal" => ParameterSpacing::Centripetal,
-        "index" => ParameterSpacing::Uniform,
-        "x" => axis(1.0, 0.0, 0.0),
-        "y" => axis(0.0, 1.0, 0.0),
-        "z" => axis(0.0, 0.0, 1.0),
+pub(crate) fn spacing(name: &str, field: FieldId) -> Result<PointSpacing, CallError> {
+    words::spacing(name).map_err(|e| unread(e, field))
+}
+
+/// The same where the turns of a curve give none.
+pub(crate) fn plain_spacing(name: &str, field: FieldId) -> Result<ParameterSpacing, CallError> {
+    match spacing(name, field)? {
+        PointSpacing::Given(spacing) => Ok(spacing),
         _ => {
-            let all = ["chord", "centripetal", "x", "y", "z", "index"];
-            return Err(unknown("spacing", name, &all, field));
+            let all: Vec<_> = words::SPACINGS
+                .into_iter()
+                .filter(|w| !matches!(*w, "auto" | "curvature"))
+                .collect();
+            Err(unknown("spacing", name, &all, field))
         }
-    })
+    }
 }
 
 /// The budget of the goals: 1 is what noise takes that fills the tolerances evenly.
-pub(crate) const BUDGET: f64 = 0.8;
+pub const BUDGET: f64 = 0.8;
 
-/// The same of networks whose hull the measure does not have: of 36 networks of six hulls all come
+/// The same of networks by the index whose hull the measure does not have: of 36 networks of six hulls all come
 /// nearer to the truth with it, and 5 of 30 do not with that of curves.
 pub const NETWORK_BUDGET: f64 = 0.3;
 
@@ -98,22 +112,9 @@ pub(crate) fn goal_of(
     budget: f64,
     [field, of_share]: [FieldId; 2],
 ) -> Result<Goal, CallError> {
-    let needed = || {
-        CallError::new("no-share", "the goal \"energy\" has a largest measure")
-            .expected("share = the measure")
-            .in_field(of_share)
-    };
-    Ok(match name {
-        "near" => Goal::Near(share.unwrap_or(budget)),
-        "budget" => Goal::Budget(share.unwrap_or(budget)),
-        "fairest" => Goal::Fairest,
-        "nearest" => Goal::Nearest(share.unwrap_or(0.1)),
-        "energy" => Goal::Energy(share.ok_or_else(needed)?),
-        "closest" => Goal::Closest,
-        _ => {
-            let all = ["near", "budget", "fairest", "nearest", "energy", "closest"];
-            return Err(unknown("goal", name, &all, field));
-        }
+    words::goal(name, share, budget).map_err(|e| {
+        let at = if e.id == "no-share" { of_share } else { field };
+        unread(e, at)
     })
 }
 
@@ -205,8 +206,7 @@ pub(crate) fn role(name: &str, field: FieldId) -> Result<PointRole, CallError> {
 
 /// The measure called `name`.
 pub(crate) fn measure(name: &str, field: FieldId) -> Result<Measure, CallError> {
-    let all = Measure::ALL.map(Measure::name);
-    Measure::named(name).ok_or_else(|| unknown("measure", name, &all, field))
+    words::measure(name).map_err(|e| unread(e, field))
 }
 
 /// True for the mode "faithful", false for "optimum".
@@ -220,8 +220,7 @@ pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
 
 /// The end condition called `name`.
 pub(crate) fn end(name: &str, field: FieldId) -> Result<EndContinuity, CallError> {
-    let all = ["free", "position", "tangent", "curvature"];
-    EndContinuity::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
+    words::end(name).map_err(|e| unread(e, field))
 }
 
 /// The directions in which points may move: `along`, and what it means; the fields of both.
@@ -230,32 +229,15 @@ pub(crate) fn motion<T: Real>(
     word: Option<&str>,
     [field, of_word]: [FieldId; 2],
 ) -> Result<Motion, CallError> {
-    let undetermined = |word: &str, expected: &'static str| {
-        CallError::new("other-mode", format!("the motion \"{word}\" is not determined"))
-            .expected(expected)
-            .in_field(of_word)
-    };
-    let Some(direction) = along else {
-        return match word {
-            None => Ok(Motion::Ball),
-            Some("box") => Ok(Motion::Box),
-            Some("across") => Err(undetermined("across", "`along`, the direction across which")),
-            Some(word) => Err(unknown("motion", word, &["across", "box"], of_word)),
-        };
-    };
-    options::constant("along", field, direction.to_array().into_iter())?;
-    let direction = direction.re();
-    if direction.norm() == 0.0 {
-        return Err(CallError::new("zero-direction", "the direction has no length")
-            .expected("a direction such as {0, 1, 0}")
-            .in_field(field));
+    if let Some(direction) = along {
+        options::constant("along", field, direction.to_array().into_iter())?;
+        if direction.re().norm() == 0.0 {
+            return Err(CallError::new("zero-direction", "the direction has no length")
+                .expected("a direction such as {0, 1, 0}")
+                .in_field(field));
+        }
     }
-    match word {
-        None => Ok(Motion::Along(direction)),
-        Some("across") => Ok(Motion::Across(direction)),
-        Some("box") => Err(undetermined("box", "no `along`")),
-        Some(word) => Err(unknown("motion", word, &["across", "box"], of_word)),
-    }
+    words::motion(along.map(|d| d.re()), word).map_err(|e| unread(e, of_word))
 }
 
 /// A refusal as a fault at its argument.

@@ -3,7 +3,8 @@
 use super::figures::FairFigures;
 use super::options::{constant, shared_options};
 use super::shapes::{self, AnchoredSpline};
-use super::{ACCURACY, ArgumentFields, fault, measure};
+use super::{ArgumentFields, fault, measure};
+use crate::curve::request::ACCURACY;
 use crate::{
     EndContinuity, FairError, InterpolationSpace, Limit, Network, NetworkCurve, ParameterSpacing,
     Space, are_exact, interpolate_with_corners, line_findings, parameters_across,
@@ -215,8 +216,9 @@ impl<T: Real> Build<T> for FairNet<T> {
             degree: Self::DEGREE,
             breaks: Self::BREAKS,
         };
-        let spaced = super::spacing(&self.spacing, Self::SPACING)?;
-        let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
+        let spaced = super::plain_spacing(&self.spacing, Self::SPACING)?;
+        let by_index = spaced == ParameterSpacing::Uniform && &*self.goal == "near";
+        let budget = if by_index { super::NETWORK_BUDGET } else { super::BUDGET };
         constant("share", Self::SHARE, self.share.into_iter())?;
         let goal = super::goal_of(
             &self.goal,

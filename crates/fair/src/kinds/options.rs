@@ -81,9 +81,9 @@ macro_rules! shared_options {
             /// Parameters, from 0 to 1, of `tangents`.
             #[field(default)]
             tangents_at: Option<Vec<T>>,
-            /// 0 to have no more inflections than the one of least bending within the tolerances; no
-            /// derivatives then.
-            #[field(default = 1, min = 0, max = 1)]
+            /// 1 to allow more inflections and monotone pieces of the curvature than the fairest within the tolerances has.
+            /// With 0 derivatives are known where none had to be taken away.
+            #[field(default = 0, min = 0, max = 1)]
             bends: usize,
             /// Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed curve less than
             /// 1 apart).
@@ -169,10 +169,10 @@ pub(crate) struct CurveFields {
 pub(crate) struct CurveOptions<T> {
     pub fields: CurveFields,
     pub tolerance: T,
-    pub measure: Arc<str>,
+    pub measure: Option<Arc<str>>,
     pub role: Arc<str>,
     pub breaks: Vec<usize>,
-    pub ends: Arc<str>,
+    pub ends: Option<Arc<str>>,
     pub last_end: Option<Arc<str>>,
     pub mode: Arc<str>,
     pub degree: usize,

@@ -3,7 +3,8 @@
 use super::figures::FairFigures;
 use super::options::shared_options;
 use super::surface::{PointGrid, Rims, fitted, lines, turned};
-use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
+use super::{ArgumentFields, PointRole, fault, measure, role};
+use crate::curve::request::ACCURACY;
 use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space, are_exact};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};

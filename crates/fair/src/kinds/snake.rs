@@ -55,11 +55,11 @@ shared_options! {
         #[field(min = 0)]
         tolerance: T,
         /// The measure to minimise; see `FairCurve`.
-        #[field(default = "second")]
-        measure: Arc<str>,
-        /// Kept at the ends: "position", "tangent" or "curvature".
-        #[field(default = "tangent")]
-        ends: Arc<str>,
+        #[field(default)]
+        measure: Option<Arc<str>>,
+        /// Kept at the ends: "position" (the default), "tangent" or "curvature".
+        #[field(default)]
+        ends: Option<Arc<str>>,
         /// "optimum", or a mode of single steps; see `FairCurve`.
         #[field(default = "optimum")]
         mode: Arc<str>,
@@ -161,7 +161,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
             through: self.through.iter().flatten().map(place).collect(),
             keep: Vec::new(),
             keep_field: Self::MAGNETS,
-            least_end: EndContinuity::Position,
+            least_end: Some(EndContinuity::Position),
             budget: super::BUDGET,
             turns: false,
             spacings: &SPACINGS,

@@ -5,7 +5,8 @@ use super::moving_surface::MovingSurface;
 use super::options::{constant, shared_options};
 use super::surface_demands::{NumberGrid, PlacedValues, SurfaceDemands, places as points_of};
 use super::surface_method::{MethodOptions, SurfaceMethod};
-use super::{ACCURACY, ArgumentFields, GivenKnots, PointRole, fault, indices, measure, role};
+use super::{ArgumentFields, GivenKnots, PointRole, fault, indices, measure, role};
+use crate::curve::request::ACCURACY;
 use crate::{
     EndContinuity, FairError, GridData, InterpolationSpace, Limit, MovingGrid, Network, Optimum,
     ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
@@ -399,7 +400,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
         let own = self.own(grid.shape)?;
         let motion =
             super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
-        let spacing = super::spacing(&self.spacing, Self::SPACING)?;
+        let spacing = super::plain_spacing(&self.spacing, Self::SPACING)?;
         constant("share", SHARE, self.share.into_iter())?;
         let goal =
             super::goal_of(&self.goal, self.share.map(|s| s.re()), super::BUDGET, [GOAL, SHARE])?;

@@ -457,7 +457,6 @@ impl GridData {
             noise: rounding(&rows, norm, original),
             original,
             adapts: Adaptation::Surface,
-            enough: None,
             moves: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.

@@ -2,5 +2,6 @@
 
 mod conditions;
 pub mod grid;
+mod lines;
 pub mod network;
 pub(crate) mod patches;

@@ -357,7 +357,7 @@ impl Network {
     }
 
     /// The rows of a measure over the points of curve `k`.
-    fn own_rows(&self, k: usize, measure: Measure) -> Result<SparseRows, FairError> {
+    pub(super) fn own_rows(&self, k: usize, measure: Measure) -> Result<SparseRows, FairError> {
         let strand = &self.strands[k];
         let own = &strand.points;
         let mut all = SparseRows::new();
@@ -400,14 +400,29 @@ impl Network {
     fn found(
         &self,
         parts: &mut Parts<'_>,
+        measure: Measure,
         goal: Goal,
         conditioned: bool,
     ) -> Result<(GoalOptimum, SparseRows, Vec<usize>), FairError> {
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
-        if !conditioned && matches!(goal, Goal::Near(_)) && self.exact() {
-            let value = crate::measure::value(&rows, norm, &self.points);
-            return Ok((GoalOptimum::unmoved(&self.points, value, false), pull, owners));
+        if let (Goal::Near(share), false) = (goal, conditioned) {
+            if self.exact() {
+                let value = crate::measure::value(&rows, norm, &self.points);
+                return Ok((GoalOptimum::unmoved(&self.points, value, false), pull, owners));
+            }
+            if self.has_lines(norm) && !pull.is_empty() {
+                let mean = pull.len() as f64 / 3.0;
+                let made = self.by_lines(parts, measure, &pull, share * mean)?;
+                let moved: Vec<_> =
+                    made.optimum.points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+                let mut found = GoalOptimum::unmoved(&made.optimum.points, 0.0, false);
+                found.used = pull.sum_sq(&moved) / mean;
+                found.least = made.optimum.certificate.value;
+                (found.share, found.weight) = (1.0, made.weight);
+                found.optimum = made.optimum;
+                return Ok((found, pull, owners));
+            }
         }
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
@@ -419,7 +434,6 @@ impl Network {
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
             adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
-            enough: None,
             moves: None,
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
@@ -439,7 +453,7 @@ impl Network {
     ) -> Result<(Optimum, f64), FairError> {
         let conditioned = !conditions.is_empty();
         let mut parts = self.parts(measure, Bound::ControlPoints, conditions, accuracy)?;
-        let (found, _, _) = self.found(&mut parts, goal, conditioned)?;
+        let (found, _, _) = self.found(&mut parts, measure, goal, conditioned)?;
         Ok((found.optimum, found.used))
     }
 
@@ -458,7 +472,7 @@ impl Network {
         ats: &[Option<Vec<T>>],
     ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
         let mut parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
-        let (found, pull, owners) = self.found(&mut parts, goal, false)?;
+        let (found, pull, owners) = self.found(&mut parts, measure, goal, false)?;
         let fit = NetworkFit {
             certificate: found.optimum.certificate,
             active: found.optimum.active,
@@ -471,6 +485,12 @@ impl Network {
         }
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
+        }
+        if matches!(goal, Goal::Near(_)) && self.has_lines(measure.norm()) {
+            return Err(FairError::NoDerivative(
+                "derivatives of a network whose curves are weighed by what is left of their measures are \
+                 not known: take the goal \"budget\" or \"fairest\"",
+            ));
         }
         let explained = crate::optimum::goal::allowed(0.0, found.used, owners.len()).is_none();
         let free = match goal {

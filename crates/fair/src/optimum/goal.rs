@@ -205,15 +205,9 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub original: &'a [Vec3<f64>],
     /// How the budget of `near` goes by what the fairest takes.
     pub adapts: Adaptation,
-    /// Whether it is enough to know a budget's curve nearly, by the fairest and by what is known of it, as
-    /// another will be taken.
-    pub enough: Option<CurveTest<'a>>,
     /// How far to move from an original that is the nearest of few control points; else it goes by the gain.
     pub moves: Option<f64>,
 }
-
-/// Asks something of two curves.
-pub(crate) type CurveTest<'a> = &'a dyn Fn(&[Vec3<f64>], &[Vec3<f64>]) -> bool;
 
 /// Whether the budget of `near` is the goal's own, or goes by what the fairest takes of the squares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -240,8 +234,6 @@ pub(crate) struct GoalOptimum {
     pub fairest_used: f64,
     /// Whether the budget hangs on what the fairest takes.
     pub between: bool,
-    /// The solution at the weight, where one was looked for.
-    pub solution: Option<CertifiedSolution>,
 }
 
 impl GoalOptimum {
@@ -258,7 +250,6 @@ impl GoalOptimum {
             fairest: Vec::new(),
             fairest_used: 0.0,
             between: false,
-            solution: None,
         }
     }
 }
@@ -369,7 +360,6 @@ where
                 fairest: fairest_points.clone(),
                 fairest_used: squares / mean,
                 between,
-                solution: None,
             })
         };
         // Between the data's own curve and the optimum, by what there is to gain: both are within
@@ -467,11 +457,6 @@ where
             }
             _ => None,
         };
-        if let Some(found) = &nearly
-            && self.enough.is_some_and(|enough| enough(&fairest.points, &found.optimum.points))
-        {
-            return settle(found.optimum.clone(), found.weight);
-        }
         let guess = || self.balance(&fairest.points, [begin, least, squares]);
         let mut trial = nearly.as_ref().map_or_else(guess, |found| libm::log(found.weight));
         let begun = nearly.is_some();
@@ -552,9 +537,7 @@ where
         }
         let (weight, _, optimum) = best.expect("one solution at least");
         let weight = libm::exp(weight);
-        let mut found = settle(optimum, weight)?;
-        found.solution = last.filter(|l| l.0 == weight && found.share >= 1.0).map(|l| l.1);
-        Ok(found)
+        settle(optimum, weight)
     }
 }
 

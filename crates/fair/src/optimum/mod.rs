@@ -310,6 +310,7 @@ impl<'a> Parts<'a> {
         // Squares are solved as halves.
         let certificate = Certificate { value: 2.0 * solution.value, gap: 2.0 * solution.gap };
         let points = self.moved(&frame, &solution.x);
+        self.check_halves(&solution, &points)?;
         let active = active(&problem, &solution);
         let optimum = Optimum { points, certificate, iterations: solution.iterations, active };
         Ok(Some(BudgetOptimum { weight, optimum, good }))
@@ -488,6 +489,21 @@ impl<'a> Parts<'a> {
             let conditions = missed.into_iter().filter_map(|k| k.checked_sub(self.own)).collect();
             return Err(FairError::Contradiction { conditions, ends, miss });
         }
+        self.check_halves(&solution, &points)?;
+        // Squares are solved as halves.
+        let unit = if self.norm == RowNorm::Square { 2.0 } else { 1.0 };
+        let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
+        let active = active(problem, &solution);
+        let iterations = solution.iterations;
+        Ok((Optimum { points, certificate, iterations, active }, solution))
+    }
+
+    /// Refuses a solution outside of a half-space.
+    fn check_halves(
+        &self,
+        solution: &problem::CertifiedSolution,
+        points: &[Vec3<f64>],
+    ) -> Result<(), FairError> {
         let left: Vec<usize> = (0..self.halves.len())
             .filter(|&k| solution.outside[k].is_nan() || solution.outside[k] > 1e-9)
             .collect();
@@ -504,12 +520,7 @@ impl<'a> Parts<'a> {
             shapes.dedup();
             return Err(FairError::Shape { shapes, miss });
         }
-        // Squares are solved as halves.
-        let unit = if self.norm == RowNorm::Square { 2.0 } else { 1.0 };
-        let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
-        let active = active(problem, &solution);
-        let iterations = solution.iterations;
-        Ok((Optimum { points, certificate, iterations, active }, solution))
+        Ok(())
     }
 
     fn moved(&self, frame: &MotionAxes, x: &[V]) -> Vec<Vec3<f64>> {

@@ -137,9 +137,11 @@ fn derivatives_of_networks_and_of_passes() {
     dual[k].y = Dual4::seeded(points[k].y, 0);
     let tolerance = |by: f64| number(2e-3 + by);
     let seeded = Value::Number(Dual4::seeded(2e-3, 1));
-    let exact = curves(call("FairNet", vec![lists(&dual), seeded], vec![]).unwrap());
+    let named = || vec![("goal", Value::text("budget"))];
+    let exact = curves(call("FairNet", vec![lists(&dual), seeded], named()).unwrap());
     let plain = |points: &[Vec3<f64>], by: f64| {
-        let net = curves(call("FairNet", vec![lists(points), tolerance(by)], vec![]).unwrap());
+        let budget = vec![("goal", Value::text("budget"))];
+        let net = curves(call("FairNet", vec![lists(points), tolerance(by)], budget).unwrap());
         net[3].jet(0.4, Order::Zero)[0]
     };
     let got = exact[3].jet(Dual4::from(0.4), Order::Zero)[0];

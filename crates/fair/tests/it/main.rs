@@ -2,6 +2,7 @@
 #![allow(missing_docs)]
 
 mod breaks;
+mod defaults;
 mod entity;
 mod findings;
 mod fit;
@@ -18,4 +19,5 @@ mod optimum;
 mod option_derivatives;
 mod rational;
 mod shapes;
+mod short_lists;
 mod truth;

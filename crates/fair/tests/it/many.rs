@@ -243,7 +243,11 @@ fn few_or_other_data_have_a_knot_each() {
     assert!(!thin(&points, &limit, EndContinuity::Tangent));
     assert!(!thin(&points[..499], &Limit::ball(499, 1e-3).unwrap(), EndContinuity::Free));
     let along = Limit::new(Motion::Along(Vec3::of(0.0, 1.0, 0.0)), vec![1e-3; 2000]).unwrap();
-    assert!(!thin(&points, &along, EndContinuity::Free));
+    // Stations on a line are parameters; others have none.
+    assert!(thin(&points, &along, EndContinuity::Free));
+    let mut aside = points.clone();
+    aside[900].z += 1e-3;
+    assert!(!thin(&aside, &along, EndContinuity::Free));
     let mut fixed = limit.clone();
     fixed.radii[700] = 0.0;
     assert!(!thin(&points, &fixed, EndContinuity::Free));

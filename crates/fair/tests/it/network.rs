@@ -349,7 +349,12 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
             Vec3::of(s, y + 8e-3 * g.centred(), z)
         })
         .collect();
-    let network = |data: &[Vec3<f64>], radii: Vec<f64>| lines_and_stations(data, n, radii);
+    // By the index: curves through their points are weighed one by one.
+    let network = |data: &[Vec3<f64>], radii: Vec<f64>| {
+        let mut all = lines_and_stations(data, n, radii);
+        all.strands.iter_mut().for_each(|strand| strand.at = None);
+        all
+    };
     let near = |data: &[Vec3<f64>], radii: &[f64]| {
         let network = network(data, radii.to_vec());
         network.toward(Measure::Third, Goal::Near(0.3), Vec::new(), 1e-12).unwrap()

@@ -151,7 +151,7 @@ fn options(g: &mut Random, n: usize) -> Vec<(&'static str, Given)> {
             19 => {
                 out.push(("keep", Given::Texts(vec![picked(g, &["area", "volume", "centroid"])])))
             }
-            20 => out.push(("bends", Given::Number(0.0))),
+            20 => out.push(("bends", Given::Number(1.0))),
             21 => {
                 let wave = |t: f64| t + 0.03 * (3.0 * t).sin() * (1.0 - t);
                 out.push(("at", Given::Numbers(rising(n).map(wave).collect())));

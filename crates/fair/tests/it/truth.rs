@@ -142,7 +142,7 @@ fn data_near(points: &[Vec3<f64>], tolerance: f64) -> (Data, f64) {
     let mut data = data_of(points, tolerance, ParameterSpacing::Chord);
     let budget = near_budget(points, Motion::Ball);
     let tolerances = vec![tolerance; points.len()];
-    let at = curvature_parameters(&data, points, &tolerances, &data.layout.at, budget).unwrap();
+    let at = curvature_parameters(&data, points, &tolerances, &data.layout.at).unwrap();
     data.layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
     (data, budget)
 }
@@ -309,7 +309,7 @@ fn parameters_by_curvature_turn_scale_and_are_the_datas() {
                     points: points.to_vec(),
                 };
                 let all = vec![tolerance; points.len()];
-                curvature_parameters(&data, points, &all, &at, 0.5).unwrap()
+                curvature_parameters(&data, points, &all, &at).unwrap()
             };
             let at = own(&points, 2e-3);
             assert!(at[0] == 0.0 && at.windows(2).all(|w| w[0] < w[1]), "{at:?}");

@@ -50,10 +50,7 @@ pub fn floats(numbers: Option<PyReadonlyArray1<'_, f64>>) -> Option<Vec<f64>> {
 }
 
 pub fn measure(name: &str) -> PyResult<Measure> {
-    Measure::named(name).ok_or_else(|| {
-        let all: Vec<_> = Measure::ALL.iter().map(|m| m.name()).collect();
-        refused(format!("unknown measure `{name}`; expected one of: {}", all.join(", ")))
-    })
+    moldloft::fair::words::measure(name).map_err(refused)
 }
 
 /// The space of these knots; without knots one of the uniform forms.

@@ -8,7 +8,6 @@ mod spline;
 
 pub use look::Look;
 pub use net::{Net, Web};
-pub use solve::fair_shape;
 pub use spline::{
     Spline, are_exact, data_findings, detectable, divided_differences, eta_y, is_exact,
     line_findings, monotone_runs,

@@ -6,9 +6,9 @@ use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
 use crate::arrays;
 use moldloft::fair::{
-    Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure, Network,
-    NetworkCurve, NetworkMode, NetworkReport, ParameterSpacing, PatchNet, Seam, Space, fair_grid,
-    grid_parameters, grid_spacing, parameters_across,
+    Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure,
+    NETWORK_BUDGET, Network, NetworkCurve, NetworkMode, NetworkReport, ParameterSpacing, PatchNet,
+    SURFACE_BUDGET, Seam, Space, fair_grid, grid_parameters, grid_spacing, parameters_across,
 };
 use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -170,7 +170,7 @@ impl Net {
         let rims = rims(&get::<[String; 4]>(&options, "rims")?)?;
         let data = GridData { points, limit, layouts, rims };
         let named = measure(&get::<String>(&options, "measure")?)?;
-        let wanted = goal(&get(&options, "goal")?)?;
+        let wanted = goal(&get(&options, "goal")?, SURFACE_BUDGET)?;
         let conditions: Vec<(String, [f64; 2], [f64; 3])> = get(&options, "conditions")?;
         let labels: Vec<String> = get(&options, "labels")?;
         let done = crate::work::interruptible(py, &Default::default(), move || {
@@ -359,8 +359,12 @@ fn solved<'py>(
     let mode: String = get(options, "mode")?;
     let (passes, steps): (usize, usize) = (get(options, "passes")?, get(options, "steps")?);
     let mode = match mode.as_str() {
-        "optimum" => match get::<Option<(String, f64)>>(options, "goal")? {
-            Some(word) => NetworkMode::Toward(goal(&word)?),
+        "optimum" => match get::<Option<(String, Option<f64>)>>(options, "goal")? {
+            Some(word) => {
+                let by_index = word.0 == "near" && get::<String>(options, "spacing")? == "index";
+                let budget = if by_index { NETWORK_BUDGET } else { SURFACE_BUDGET };
+                NetworkMode::Toward(goal(&word, budget)?)
+            }
             None => NetworkMode::Joint(bound(&get::<String>(options, "bound")?)?),
         },
         "sweeps" => NetworkMode::Sweeps(steps),

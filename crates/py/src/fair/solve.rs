@@ -1,14 +1,14 @@
 //! From options to reports.
 
 use super::arguments::{certificate, fair_error, measure, refused};
-use super::spline::{Spline, reported, spacing};
+use super::spline::{Spline, reported};
 use moldloft::fair::{
-    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
-    FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
-    OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, curvature_parameters,
-    data_report, knot_removal, merged, near_budget, parameters_across, report, shape, thinned,
+    Bound as Bounded, CurveRequest, CurveStatistics, Demand, EndContinuity, FairError,
+    FairingReport, Goal, Job, KnotRemovalOptions, Limit, Mode, Motion, NearCurve, OptimumOptions,
+    ParameterSpacing, PointSpacing, RemovalStep, Rule, ShapeCondition, Stops, knot_removal,
+    near_budget, report, shape, words,
 };
-use moldloft::num::{Order, Vec3};
+use moldloft::num::Vec3;
 use numpy::ToPyArray;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
@@ -35,14 +35,7 @@ pub fn motion(word: &str, direction: [f64; 3]) -> PyResult<Motion> {
 }
 
 pub fn end(word: &str) -> PyResult<EndContinuity> {
-    if let Some(count) = word.strip_prefix("points:").and_then(|n| n.parse().ok()) {
-        return Ok(EndContinuity::Points(count));
-    }
-    EndContinuity::named(word).ok_or_else(|| {
-        refused(format!(
-            "unknown end condition `{word}`; expected one of: free, position, tangent, curvature"
-        ))
-    })
+    words::end(word).map_err(refused)
 }
 
 pub fn bound(word: &str) -> PyResult<Bounded> {
@@ -55,30 +48,8 @@ pub fn bound(word: &str) -> PyResult<Bounded> {
     })
 }
 
-/// One condition of the user's as linear conditions.
-fn conditions(
-    space: &Space,
-    points: &[Vec3],
-    (word, t, v, second): &(String, f64, [f64; 3], [f64; 3]),
-) -> PyResult<Vec<Condition>> {
-    let (t, v) = (*t, *v);
-    let (a, b) = space.domain();
-    let at = a + (b - a) * t;
-    Ok(match word.as_str() {
-        "through" => Condition::point(space, at, v.into()),
-        "join" => Condition::join(space, points, t > 0.5, [v.into(), (*second).into()])
-            .map_err(fair_error)?,
-        "tangent" => Condition::tangent(space, at, v.into()),
-        "derivative" => {
-            let scaled = Vec3::from(v) * (1.0 / (b - a));
-            Condition::derivative(space, at, Order::First, scaled)
-        }
-        "centroid" => Condition::centroid(points),
-        "area" => vec![Condition::area(space, points, v.into())],
-        "volume" => vec![Condition::revolution(space, points, v.into())],
-        _ => return Err(refused(format!("unknown condition `{word}`"))),
-    })
-}
+/// A condition: its word, its parameter in [0, 1], and one or two vectors.
+type PlacedCondition = (String, f64, [f64; 3], [f64; 3]);
 
 /// The job and the mode of a curve's options.
 fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)> {
@@ -119,9 +90,10 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
             let mut chosen = OptimumOptions::of(named);
             chosen.bound = bound(&get::<String>(options, "bound")?)?;
             chosen.accuracy = get(options, "accuracy")?;
-            let wanted: Vec<(String, f64, [f64; 3], [f64; 3])> = get(options, "conditions")?;
+            let wanted: Vec<PlacedCondition> = get(options, "conditions")?;
             for (k, one) in wanted.iter().enumerate() {
-                let all = conditions(&job.space, &job.points, one)?;
+                let (t, demand) = demand(one)?;
+                let all = demand.conditions(&job.space, &job.points, t).map_err(fair_error)?;
                 owners.extend(std::iter::repeat_n(k, all.len()));
                 chosen.conditions.extend(all);
             }
@@ -180,68 +152,63 @@ pub fn curve<'py>(
     Ok((faired, dict))
 }
 
-/// The goal called `word`, with its share.
-pub fn goal((word, share): &(String, f64)) -> PyResult<Goal> {
-    Ok(match word.as_str() {
-        "near" => Goal::Near(*share),
-        "fairest" => Goal::Fairest,
-        "budget" => Goal::Budget(*share),
-        "nearest" => Goal::Nearest(*share),
-        "energy" => Goal::Energy(*share),
-        "closest" => Goal::Closest,
-        _ => {
-            let known = "near, fairest, budget, nearest, energy, closest";
-            return Err(refused(format!("unknown goal `{word}`; expected one of: {known}")));
-        }
-    })
+/// The goal called `word`, with its share; that of "near" and "budget" without one.
+pub fn goal((word, share): &(String, Option<f64>), budget: f64) -> PyResult<Goal> {
+    words::goal(word, *share, budget).map_err(refused)
 }
 
-/// A shape: its word, points or a count, a direction and a number, those that it has.
-pub type ShapeOption = (String, usize, usize, Option<[f64; 3]>, f64);
-
-fn condition_of_shape((word, a, b, v, x): &ShapeOption, count: usize) -> PyResult<ShapeCondition> {
-    let between = [*a, *b];
-    let direction = || {
-        v.map(Vec3::from).ok_or_else(|| refused(format!("the shape `{word}` needs a direction")))
-    };
-    if let Some(k) = between.into_iter().find(|&k| k >= count)
-        && word != "pieces"
-    {
-        return Err(fair_error(FairError::Mark { index: k, count }));
+/// A spacing: a word, or "along" and the direction.
+pub fn point_spacing(word: &str, direction: [f64; 3]) -> PyResult<PointSpacing> {
+    if word == "along" {
+        return Ok(PointSpacing::Given(ParameterSpacing::Along(direction.into())));
     }
-    Ok(match word.as_str() {
-        "convex" | "concave" => ShapeCondition::Turn { between, left: word == "convex" },
-        "one-way" => ShapeCondition::OneWay { between },
-        "straight" => ShapeCondition::Straight { between, along: v.map(Vec3::from) },
-        "arc" => ShapeCondition::Arc { between },
-        "pieces" => ShapeCondition::Pieces(*a),
-        "within" => ShapeCondition::Within { direction: direction()?, most: *x },
-        "side" => ShapeCondition::OneSided { direction: direction()? },
-        _ => {
-            let known = "convex, concave, one-way, straight, arc, pieces, within, side";
-            return Err(refused(format!("unknown shape `{word}`; expected one of: {known}")));
-        }
-    })
+    words::spacing(word).map_err(refused)
 }
 
-/// A shape as the command writes it, for a number of points.
-#[pyfunction]
-pub fn fair_shape(text: &str, count: usize) -> PyResult<ShapeOption> {
-    use ShapeCondition as C;
-    let made = C::read(text, count).map_err(refused)?;
-    let plain = |word: &str, [a, b]: [usize; 2]| (word.to_string(), a, b, None, 0.0);
-    Ok(match made {
-        C::Turn { between, left } => plain(if left { "convex" } else { "concave" }, between),
-        C::OneWay { between } => plain("one-way", between),
-        C::Straight { between: [a, b], along } => {
-            ("straight".to_string(), a, b, along.map(|d| d.to_array()), 0.0)
-        }
-        C::Arc { between } => plain("arc", between),
-        C::Pieces(k) => plain("pieces", [k, k]),
-        C::Within { direction, most } => {
-            ("within".to_string(), 0, 0, Some(direction.to_array()), most)
-        }
-        C::OneSided { direction } => ("side".to_string(), 0, 0, Some(direction.to_array()), 0.0),
+/// What a condition asks for: its word and vectors.
+fn demand((word, t, v, second): &PlacedCondition) -> PyResult<(f64, Demand)> {
+    let v = Vec3::from(*v);
+    let demand = match word.as_str() {
+        "through" => Demand::Through(v),
+        "tangent" => Demand::Tangent(v),
+        "join" => Demand::Join([v, (*second).into()]),
+        word => Demand::kept(word).ok_or_else(|| {
+            refused(format!("`{word}` cannot be kept; what can: area, centroid, volume"))
+        })?,
+    };
+    Ok((*t, demand))
+}
+
+/// The request of a curve near its points, and how its conditions and shapes are called.
+fn request(points: &[Vec3], options: Options) -> PyResult<CurveRequest<f64>> {
+    let motion = motion(&get::<String>(options, "motion")?, get(options, "direction")?)?;
+    let ends: [Option<String>; 2] = get(options, "ends")?;
+    let kept = |k: usize| match &ends[k] {
+        Some(word) => end(word),
+        None => Ok(EndContinuity::Free),
+    };
+    let measured = get::<Option<String>>(options, "measure")?;
+    let shape = get::<Vec<String>>(options, "shape")?;
+    let shape = shape.iter().map(|text| ShapeCondition::read(text, points.len()));
+    let conditions: Vec<PlacedCondition> = get(options, "conditions")?;
+    let spaced = get::<String>(options, "spacing")?;
+    Ok(CurveRequest {
+        tolerances: get(options, "tolerance")?,
+        fixed: get(options, "fixed")?,
+        release: get(options, "release")?,
+        breaks: get(options, "breaks")?,
+        degree: get(options, "degree")?,
+        closed: get(options, "closed")?,
+        measure: measured.as_deref().map(measure).transpose()?,
+        goal: goal(&get(options, "goal")?, near_budget(points, motion))?,
+        spacing: point_spacing(&spaced, get(options, "spacing_direction")?)?,
+        at: get(options, "at")?,
+        ends: [kept(0)?, kept(1)?],
+        motion,
+        shape: shape.collect::<Result<_, _>>().map_err(refused)?,
+        conditions: conditions.iter().map(demand).collect::<PyResult<_>>()?,
+        bends: get(options, "bends")?,
+        accuracy: get(options, "accuracy")?,
     })
 }
 
@@ -251,57 +218,20 @@ pub fn data<'py>(
     points: Vec<Vec3>,
     options: Options<'_, 'py>,
 ) -> PyResult<(Spline, Spline, Bound<'py, PyDict>)> {
-    let radii: Vec<f64> = get(options, "tolerance")?;
-    let motion = motion(&get::<String>(options, "motion")?, get(options, "direction")?)?;
-    let ends: (String, String) = get(options, "ends")?;
-    let closed: bool = get(options, "closed")?;
-    let degree: usize = get(options, "degree")?;
-    let breaks: Vec<usize> = get(options, "breaks")?;
-    let one = merged(&points, &radii, closed).map_err(fair_error)?;
-    let limit = Limit::new(motion, one.radii.clone()).map_err(fair_error)?;
-    let budget = near_budget(&one.points, limit.motion);
-    let mut turning = false;
-    let at = match get::<Option<Vec<f64>>>(options, "at")? {
-        Some(all) if one.points.len() < points.len() => {
-            let first = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(0);
-            (0..one.points.len()).map(|k| all[first(k)]).collect()
+    let asked = request(&points, options)?;
+    let labels: Vec<String> = get(options, "labels")?;
+    let shape_labels: Vec<String> = get(options, "shape")?;
+    let own = points.clone();
+    let done = crate::work::interruptible(py, &Default::default(), move || {
+        let curve = asked.curve(&own)?;
+        let reported = curve.report()?;
+        Ok::<_, FairError>((curve, reported))
+    })?;
+    let (curve, reported) = done.map_err(|error| match error {
+        FairError::Contradiction { conditions, ends, miss } => {
+            let owners: Vec<usize> = (0..labels.len()).collect();
+            contradiction(&conditions, ends, miss, &owners, &labels)
         }
-        Some(all) => all,
-        None => {
-            let word: String = get(options, "spacing")?;
-            turning = word == "curvature";
-            let chosen = if turning { "chord" } else { &word };
-            let spaced = spacing(chosen, get(options, "spacing_direction")?)?;
-            parameters_across(&one.points, spaced, closed, (limit.motion, &limit.radii))
-                .map_err(fair_error)?
-        }
-    };
-    let breaks: Vec<usize> = breaks.iter().filter_map(|&b| one.of.get(b).copied()).collect();
-    let wanted: Vec<ShapeCondition> = get::<Vec<ShapeOption>>(options, "shape")?
-        .iter()
-        .map(|one| condition_of_shape(one, points.len()))
-        .collect::<PyResult<_>>()?;
-    let shape_labels: Vec<String> = get(options, "shape_labels")?;
-    let renumbered: Vec<ShapeCondition> =
-        wanted.iter().map(|w| w.renumbered(|k| one.of.get(k).copied().unwrap_or(k))).collect();
-    let ends = [end(&ends.0)?, end(&ends.1)?];
-    let thin = if get(options, "thin")? && breaks.is_empty() {
-        thinned(&one.points, &limit, ends, degree, closed, turning).map_err(fair_error)?
-    } else {
-        None
-    };
-    turning &= thin.is_none();
-    let layout = match thin {
-        Some(thin) => thin,
-        None => InterpolationSpace::new(degree, &at, &breaks, closed).map_err(fair_error)?,
-    };
-    let mut data = Data { limit, layout, ends, points: one.points.clone() };
-    if turning {
-        let own = curvature_parameters(&data, &data.points, &data.limit.radii, &at, budget)
-            .map_err(fair_error)?;
-        data.layout = InterpolationSpace::new(degree, &own, &breaks, closed).map_err(fair_error)?;
-    }
-    let unshaped = |e: FairError| match e {
         FairError::Shape { shapes, miss } => {
             let named: Vec<&str> =
                 shapes.iter().filter_map(|&k| shape_labels.get(k)).map(String::as_str).collect();
@@ -315,63 +245,32 @@ pub fn data<'py>(
             refused(format!("{label}: {why}"))
         }
         other => fair_error(other),
-    };
-    let (data, shape) = data.shaped(&renumbered).map_err(&unshaped)?;
-    let mut owners = Vec::new();
-    let mut chosen = DataOptions {
-        measure: measure(&get::<String>(options, "measure")?)?,
-        goal: match get::<(String, Option<f64>)>(options, "goal")? {
-            (word, Some(share)) => goal(&(word, share))?,
-            (word, None) => goal(&(word, budget))?,
-        },
-        conditions: Vec::new(),
-        shape,
-        bends: get(options, "bends")?,
-        accuracy: get(options, "accuracy")?,
-    };
-    let wanted: Vec<(String, f64, [f64; 3], [f64; 3])> = get(options, "conditions")?;
-    if !wanted.is_empty() {
-        let control = data.layout.through(&data.layout.data(&data.points)).map_err(fair_error)?;
-        for (k, one) in wanted.iter().enumerate() {
-            let all = conditions(&data.layout.space, &control, one)?;
-            owners.extend(std::iter::repeat_n(k, all.len()));
-            chosen.conditions.extend(all);
-        }
-    }
-    let labels: Vec<String> = get(options, "labels")?;
-    let done = crate::work::interruptible(py, &Default::default(), move || {
-        data_report(&data, &chosen).map(|made| (data, made))
     })?;
-    let (data, (made, reported)) = match done {
-        Ok(done) => done,
-        Err(FairError::Contradiction { conditions, ends, miss }) => {
-            return Err(contradiction(&conditions, ends, miss, &owners, &labels));
-        }
-        Err(other) => return Err(unshaped(other)),
-    };
+    let NearCurve { data, of, fit, .. } = curve;
     let space = data.layout.space.clone();
     let dict = dictionary(py, &reported)?;
     let off = |k: usize| {
-        let t = data.layout.at[one.of[k]];
-        (shape::sample_at(&space, &made.points, None, t).point - points[k]).norm()
+        let t = data.layout.at[of[k]];
+        (shape::sample_at(&space, &fit.points, None, t).point - points[k]).norm()
     };
     let off: Vec<f64> = (0..points.len()).map(off).collect();
     dict.set_item("residuals", off.to_pyarray(py))?;
     let (a, b) = space.domain();
-    let at: Vec<f64> = one.of.iter().map(|&k| (data.layout.at[k] - a) / (b - a)).collect();
+    let at: Vec<f64> = of.iter().map(|&k| (data.layout.at[k] - a) / (b - a)).collect();
     dict.set_item("at", at.to_pyarray(py))?;
     dict.set_item("thin", !data.layout.interpolates())?;
-    dict.set_item("used", made.used)?;
-    dict.set_item("least", made.least)?;
+    dict.set_item("used", fit.used)?;
+    dict.set_item("least", fit.least)?;
+    dict.set_item("fairer", fit.fairer)?;
     let arc = |a: &moldloft::fair::FoundArc| {
-        let user = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(k);
+        let user = |k: usize| of.iter().position(|&o| o == k).unwrap_or(k);
         (a.between.map(user), a.radius, a.centre.to_array(), a.off)
     };
-    dict.set_item("arcs", made.arcs.iter().map(arc).collect::<Vec<_>>())?;
+    dict.set_item("arcs", fit.arcs.iter().map(arc).collect::<Vec<_>>())?;
     let marks: Vec<usize> = data.layout.marks.iter().map(|&m| data.layout.control_of(m)).collect();
     dict.set_item("marks", marks)?;
     let spline = |points: Vec<Vec3>| Spline { space: space.clone(), points, weights: None };
-    Ok((spline(made.points), spline(made.original), dict))
+    Ok((spline(fit.points), spline(fit.original), dict))
 }
 
 /// Which of the user's conditions contradict each other or the tolerance.

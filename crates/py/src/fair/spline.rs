@@ -5,7 +5,7 @@ use super::solve;
 use crate::arrays;
 use moldloft::fair::shape::{self, Sample};
 use moldloft::fair::{
-    DataFinding, Finding, Job, KnotJumps, ParameterSpacing, Space, fit, fit_rational,
+    DataFinding, Finding, Job, KnotJumps, ParameterSpacing, PointSpacing, Space, fit, fit_rational,
     interpolate_with_corners, least_squares, parameters, surface,
 };
 use moldloft::num::Vec3;
@@ -22,19 +22,12 @@ pub struct Spline {
     pub weights: Option<Vec<f64>>,
 }
 
+/// A spacing other than by the turns of a curve.
 pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<ParameterSpacing> {
-    Ok(match name {
-        // The literal rule of the report: the index is the parameter.
-        "uniform" | "index" => ParameterSpacing::Uniform,
-        "chord" => ParameterSpacing::Chord,
-        "centripetal" => ParameterSpacing::Centripetal,
-        "along" => ParameterSpacing::Along(direction.into()),
-        _ => {
-            let known = "chord, centripetal, index (or uniform), x, y, z, a direction; of one curve \
-                         near its points also curvature";
-            return Err(refused(format!("unknown spacing `{name}`; expected one of: {known}")));
-        }
-    })
+    match solve::point_spacing(name, direction)? {
+        PointSpacing::Given(spacing) => Ok(spacing),
+        _ => Err(refused(format!("spacing `{name}` is of one curve near its points"))),
+    }
 }
 
 fn rows<'py>(py: Python<'py>, points: &[Vec3]) -> Bound<'py, PyArray2<f64>> {
@@ -381,6 +374,7 @@ fn told_of(points: &[Vec3], finding: DataFinding) -> Reported {
             ("outlier", index, (points[index] - expected).to_array(), text)
         }
         DataFinding::Knuckle { index, angle, .. } => ("corner", index, [angle, 0.0, 0.0], text),
+        DataFinding::Swapped { index } => ("order", index, [0.0; 3], text),
     }
 }
 

@@ -1,0 +1,397 @@
+//! The curve near its data: no fairer than noise of the tolerance's size asks for, and never with
+//! more inflections than the fairest, nor with more than two monotone pieces of curvature more.
+//!
+//! Third derivatives may buy smoothness with a bend, parameters by curvature may follow the
+//! noise's, and a budget leaves some ripples of the data's. On the way from the goal's curve to the
+//! fairest (whose budget rises to what the fairest takes, and whose parameters then go back to the
+//! lengths) these disappear. How far it goes is an integral of counts in which a ripple counts by
+//! its persistence (Edelsbrunner, Letscher and Zomorodian 2002), so it is a continuous function of
+//! the data: no count flips the result.
+
+use crate::curve::bends::{BendCounter, BendCounts};
+use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
+use crate::curve::job::Job;
+use crate::interrogate::shape::{self, Sample};
+use crate::interrogate::soft_counts::SoftCounts;
+use crate::optimum::Parts;
+use crate::optimum::goal::Goal;
+use crate::{FairError, InterpolationSpace, Measure, SparseRows};
+use moldloft_num::Vec3;
+
+/// Steps of the integral from the goal's budget to what the fairest takes, and back to the lengths.
+const BUDGET_STEPS: usize = 20;
+const PARAMETER_STEPS: usize = 4;
+
+/// The step of the last search, which goes by the counts themselves.
+const COUNTED_STEP: f64 = 0.05;
+
+/// Monotone pieces that the curve near its data may have more than the fairest.
+const MORE_PIECES: f64 = 2.0;
+
+/// The fairest takes so many times the goal's budget at least: the way has a length.
+const LEAST_WAY: f64 = 1.05;
+
+/// Where a ripple begins to count and where it counts whole, in those that are counted: of a curve
+/// on the way it counts early, of the fairest late, so that what is within the soft limits is
+/// within the limits.
+const EARLY: [f64; 2] = [0.8, 1.0];
+const LATE: [f64; 2] = [1.0, 1.25];
+
+/// Below this share of the way from the data the budget is read from the goal and not from the
+/// curve.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Steps of the same integral under a shape, where each curve is a search of its own, and on few
+/// knots.
+const SHAPED_STEPS: usize = 5;
+
+/// A curve with the spline that it is on, where that is not the data's own.
+pub(super) type Relaid = (Option<InterpolationSpace>, DataFit);
+
+/// What a curve may have: the counts of the fairest and some pieces more.
+struct CountLimits {
+    soft: SoftCounts,
+    signs: usize,
+    pieces: f64,
+}
+
+impl CountLimits {
+    /// Those of fairest curves, of which the first is the one that is taken in the end.
+    fn of(fairest: &[Vec<Sample>], more: f64) -> Self {
+        let all: Vec<SoftCounts> = fairest.iter().map(|s| SoftCounts::of(s, LATE)).collect();
+        let least = |of: fn(&SoftCounts) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+        let (inflections, pieces) = (least(|c| c.inflections), least(|c| c.pieces) + more);
+        let counts = BendCounts::of(&fairest[0]);
+        Self {
+            soft: SoftCounts { inflections, pieces },
+            signs: counts.signs,
+            pieces: counts.pieces as f64 + more,
+        }
+    }
+
+    /// How far a curve is beyond the limits, at most 1.
+    fn beyond(&self, samples: &[Sample]) -> f64 {
+        let own = SoftCounts::of(samples, EARLY);
+        let signs = own.inflections - self.soft.inflections;
+        signs.max(own.pieces - self.soft.pieces).clamp(0.0, 1.0)
+    }
+
+    fn hold(&self, samples: &[Sample]) -> bool {
+        let own = BendCounts::of(samples);
+        own.signs <= self.signs && own.pieces as f64 <= self.pieces
+    }
+}
+
+/// How many pieces more than the fairest the curve of a goal may have: as many as it likes where a
+/// budget was named.
+fn more_pieces(goal: Goal) -> f64 {
+    if matches!(goal, Goal::Near(_)) { MORE_PIECES } else { f64::INFINITY }
+}
+
+/// The same data at the lengths, where their parameters follow the turns; both lists of parameters,
+/// in the order of the data.
+pub(super) struct TurnedFrom<'a> {
+    pub lengths: &'a Data,
+    pub own: &'a [f64],
+    pub at: &'a [f64],
+}
+
+/// The way from the goal's curve to the fairest.
+struct FairingPath<'a> {
+    data: &'a Data,
+    job: &'a Job,
+    /// The options of the goal's curve, whatever it bends.
+    plain: DataOptions,
+    parts: Parts<'a>,
+    pull: SparseRows,
+    goal: DataFit,
+    fairest: Vec<Vec3<f64>>,
+    /// The least of the measure, and how far the goal's curve is from the data to the optimum.
+    least: f64,
+    share: f64,
+    /// The budgets of the goal's curve and of the fairest.
+    budgets: [f64; 2],
+    /// The squares of a budget of 1.
+    mean: f64,
+    /// The fairest curve with no more bends than that of least bending, at the lengths.
+    calm: DataFit,
+    turned: Option<TurnedFrom<'a>>,
+    counter: BendCounter<'a>,
+}
+
+impl FairingPath<'_> {
+    fn budget(&self, x: f64) -> f64 {
+        self.budgets[0] * libm::pow(self.budgets[1] / self.budgets[0], x)
+    }
+
+    /// Between the data's own curve and one, as far as the goal's is, and farther along the way.
+    fn towards(&self, points: &[Vec3<f64>], x: f64) -> Vec<Vec3<f64>> {
+        let share = self.share + (1.0 - self.share) * x;
+        if share >= 1.0 {
+            return points.to_vec();
+        }
+        let both = self.job.points.iter().zip(points);
+        both.map(|(from, to)| *from + (*to - *from) * share).collect()
+    }
+
+    /// The curve on the way to the fairest, near enough to be counted.
+    fn rough(&mut self, x: f64) -> Result<Vec<Vec3<f64>>, FairError> {
+        if x == 0.0 {
+            return Ok(self.goal.points.clone());
+        }
+        if x >= 1.0 || self.goal.weight == 0.0 {
+            return Ok(self.towards(&self.fairest, x.min(1.0)));
+        }
+        self.parts.pull = None;
+        let found = self.parts.within(&self.pull, self.budget(x) * self.mean)?;
+        let points = match found {
+            Some(found) => found.optimum.points,
+            None => self.exact(x)?.points,
+        };
+        Ok(self.towards(&points, x))
+    }
+
+    /// The optimum of a budget on the way.
+    fn exact(&mut self, x: f64) -> Result<DataFit, FairError> {
+        let goal = if x < 1.0 && self.goal.weight > 0.0 {
+            Goal::Budget(self.budget(x))
+        } else {
+            Goal::Fairest
+        };
+        let options = DataOptions { goal, ..self.plain.clone() };
+        self.data.along(&options, self.job, &mut self.parts)
+    }
+
+    /// The data at parameters between their own and the lengths.
+    fn between(&self, y: f64) -> Result<Option<Data>, FairError> {
+        let Some(turned) = &self.turned else { return Ok(None) };
+        let at: Vec<f64> = turned.own.iter().zip(turned.at).map(|(a, b)| a + (b - a) * y).collect();
+        let layout = &self.data.layout;
+        let space = &layout.space;
+        let closed = space.is_closed() || layout.owner.first() == layout.owner.last();
+        let layout = InterpolationSpace::new(space.degree(), &at, &layout.break_data(), closed)?;
+        Ok(Some(Data { layout, ..self.data.clone() }))
+    }
+
+    /// The curve at a place of the way, with its layout where that is another.
+    fn made(&mut self, x: f64) -> Result<Relaid, FairError> {
+        if x == 0.0 {
+            return Ok((None, self.goal.clone()));
+        }
+        if x >= 2.0 {
+            let layout = self.turned.as_ref().map(|t| t.lengths.layout.clone());
+            return Ok((layout, self.calm.clone()));
+        }
+        if x <= 1.0 {
+            let fit = self.exact(x)?;
+            if self.share >= 1.0 {
+                return Ok((None, fit));
+            }
+            let points = self.towards(&fit.points, x);
+            return Ok((None, self.measured(points)?));
+        }
+        let y = x - 1.0;
+        match self.between(y)? {
+            Some(data) => {
+                let options = DataOptions { goal: Goal::Fairest, ..self.plain.clone() };
+                let job = data.job()?;
+                let mut parts = data.parts(&options, &job)?;
+                let fit = data.along(&options, &job, &mut parts)?;
+                Ok((Some(data.layout), fit))
+            }
+            None => {
+                let both = self.fairest.iter().zip(&self.calm.points);
+                let points = both.map(|(p, q)| *p + (*q - *p) * y).collect();
+                Ok((None, self.measured(points)?))
+            }
+        }
+    }
+
+    fn samples(&self, layout: Option<&InterpolationSpace>, fit: &DataFit) -> Vec<Sample> {
+        match layout {
+            Some(layout) => BendCounter::new(&layout.space).samples(&fit.points),
+            None => self.counter.samples(&fit.points),
+        }
+    }
+
+    /// A curve that is between optima, with what it measures more than the least for its gap.
+    fn measured(&self, points: Vec<Vec3<f64>>) -> Result<DataFit, FairError> {
+        let options = &self.plain;
+        let rows = options.measure.rows(&self.data.layout.space)?;
+        let value = crate::measure::value(&rows, options.measure.norm(), &points);
+        let mut fit = self.data.between_optima(points, value, self.job);
+        fit.certificate.gap = (value - self.least).max(0.0);
+        Ok(fit)
+    }
+}
+
+impl Data {
+    /// The curve of the goal `near` or `budget`, or one on the way from it to the fairest. `turned`
+    /// is where the parameters come from if they follow the turns.
+    pub(super) fn gated<'a>(
+        &'a self,
+        options: &DataOptions,
+        job: &'a Job,
+        turned: Option<TurnedFrom<'a>>,
+    ) -> Result<Relaid, FairError> {
+        let plain = DataOptions { bends: true, ..options.clone() };
+        let mut parts = self.parts(&plain, job)?;
+        let found = self.found(&plain, job, &mut parts)?;
+        let (fairest, least, share) = (found.fairest.clone(), found.least, found.share);
+        let (used, fairest_used) = (found.used, found.fairest_used);
+        let goal = self.fit(found, job);
+        let counter = BendCounter::new(&self.layout.space);
+        let samples = counter.samples(&goal.points);
+        if fairest.is_empty() || shape::plane_normal(&samples).is_none() {
+            return Ok((None, goal));
+        }
+        let calm = {
+            let options = DataOptions { goal: Goal::Fairest, ..options.clone() };
+            fair_data(turned.as_ref().map_or(self, |t| t.lengths), &options)?
+        };
+        let calm_samples = match &turned {
+            Some(t) => BendCounter::new(&t.lengths.layout.space).samples(&calm.points),
+            None => counter.samples(&calm.points),
+        };
+        let fairest_samples = counter.samples(&fairest);
+        let limits = CountLimits::of(&[calm_samples, fairest_samples], more_pieces(options.goal));
+        if limits.beyond(&samples) == 0.0 && limits.hold(&samples) {
+            return Ok((None, goal));
+        }
+        let pull = self.pull(&parts);
+        let mean = (pull.len() as f64 / 3.0).max(f64::MIN_POSITIVE);
+        let own = match options.goal {
+            _ if share > LEAST_SHARE => used / (share * share),
+            Goal::Near(b) | Goal::Budget(b) => b.min(fairest_used),
+            _ => used,
+        };
+        let top = fairest_used.max(LEAST_WAY * own);
+        let mut path = FairingPath {
+            data: self,
+            job,
+            plain,
+            parts,
+            pull,
+            goal,
+            fairest,
+            least,
+            share,
+            budgets: [own, top],
+            mean,
+            calm,
+            turned,
+            counter,
+        };
+        // The least of what is too many so far, so that the way ends where nothing is.
+        let (mut x, mut over) = (0.0, 1.0_f64);
+        // Few knots have few ripples, and many data take long.
+        let steps = if self.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };
+        for k in 0..steps {
+            let points = path.rough(k as f64 / steps as f64)?;
+            over = over.min(limits.beyond(&path.counter.samples(&points)));
+            if over == 0.0 {
+                break;
+            }
+            x += over / steps as f64;
+        }
+        for k in 0..PARAMETER_STEPS {
+            if over == 0.0 {
+                break;
+            }
+            let (layout, fit) = path.made(1.0 + k as f64 / PARAMETER_STEPS as f64)?;
+            over = over.min(limits.beyond(&path.samples(layout.as_ref(), &fit)));
+            x += over / PARAMETER_STEPS as f64;
+        }
+        loop {
+            let (layout, fit) = path.made(x)?;
+            if x >= 2.0 || limits.hold(&path.samples(layout.as_ref(), &fit)) {
+                return Ok((layout, DataFit { fairest_used, fairer: x, ..fit }));
+            }
+            x = (x + COUNTED_STEP).min(2.0);
+        }
+    }
+}
+
+/// Whether counts say which curve on the way to the fairest is taken.
+pub(super) fn is_gated(options: &DataOptions) -> bool {
+    let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
+    !options.bends && !jumps && matches!(options.goal, Goal::Near(_) | Goal::Budget(_))
+}
+
+/// Fairs data as [`fair_data`] does; where their parameters follow the turns it may do so with
+/// others, nearer to the lengths.
+///
+/// # Errors
+/// As [`fair_data`].
+pub(super) fn fair_turned<'a>(
+    data: &'a Data,
+    options: &DataOptions,
+    turned: Option<TurnedFrom<'a>>,
+) -> Result<Relaid, FairError> {
+    if turned.is_none() || !is_gated(options) || !options.shape.is_empty() {
+        return Ok((None, fair_data(data, options)?));
+    }
+    let job = data.job()?;
+    data.gated(options, &job, turned)
+}
+
+impl Data {
+    /// The same under a shape: the budget rises until the curve has no more inflections than the
+    /// fairest of that shape and as many pieces as it may have.
+    pub(super) fn gated_shape(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+    ) -> Result<DataFit, FairError> {
+        let loose = DataOptions { shape: options.shape.without_pieces(), ..options.clone() };
+        let goal = self.under_shape(&loose, job)?;
+        let counter = BendCounter::new(&self.layout.space);
+        let samples = counter.samples(&goal.points);
+        let asked = options.shape.most_pieces();
+        let allowed = |pieces: usize| asked.is_none_or(|most| pieces <= most);
+        let own = BendCounts::of(&samples).pieces;
+        let stays = goal.points == job.points && allowed(own);
+        if stays || shape::plane_normal(&samples).is_none() {
+            return if allowed(own) { Ok(goal) } else { self.under_shape(options, job) };
+        }
+        let fairest =
+            self.under_shape(&DataOptions { goal: Goal::Fairest, ..loose.clone() }, job)?;
+        let calm = counter.samples(&fairest.points);
+        if !allowed(BendCounts::of(&calm).pieces) {
+            return self.under_shape(options, job);
+        }
+        let mut limits = CountLimits::of(&[calm], more_pieces(options.goal));
+        if let Some(most) = asked.map(|most| most as f64) {
+            limits.pieces = limits.pieces.min(most);
+            limits.soft.pieces = limits.soft.pieces.min(most);
+        }
+        if limits.beyond(&samples) == 0.0 && limits.hold(&samples) {
+            return Ok(goal);
+        }
+        let begin = goal.used.max(f64::MIN_POSITIVE);
+        let end = fairest.used.max(LEAST_WAY * begin);
+        let made = |x: f64| {
+            let goal = Goal::Budget(begin * libm::pow(end / begin, x));
+            self.under_shape(&DataOptions { goal, ..loose.clone() }, job)
+        };
+        let (mut x, mut over) = (0.0, limits.beyond(&samples));
+        for k in 0..SHAPED_STEPS {
+            if k > 0 {
+                let fit = made(k as f64 / SHAPED_STEPS as f64)?;
+                over = over.min(limits.beyond(&counter.samples(&fit.points)));
+            }
+            if over == 0.0 {
+                break;
+            }
+            x += over / SHAPED_STEPS as f64;
+        }
+        while x < 1.0 {
+            let fit = made(x)?;
+            if limits.hold(&counter.samples(&fit.points)) {
+                return Ok(DataFit { fairer: x, fairest_used: fairest.used, ..fit });
+            }
+            x += 1.0 / SHAPED_STEPS as f64;
+        }
+        Ok(DataFit { fairer: 1.0, ..fairest })
+    }
+}
