@@ -332,7 +332,14 @@ class Document:
         tuple[
             str,
             list[str],
-            list[tuple[Side, Side, list[int]]],
+            list[
+                tuple[
+                    Side,
+                    Side,
+                    list[int],
+                    tuple[list[float], list[float], list[float]] | None,
+                ]
+            ],
             list[tuple[Side, str, str]],
         ]
     ]: ...

@@ -48,15 +48,12 @@ class ClusterExecutor(Executor):
         }
         main = str(Path(model).relative_to(root))
 
-        class ModelFiles(WorkerPlugin):
+        def setup(plugin: Any, worker: Any) -> None:
             """Writes the files on each worker, those that join later too."""
+            install(digest, files, main)
 
-            name = f"moldloft-{digest[:16]}"
-
-            def setup(self, worker: Any) -> None:
-                install(digest, files, main)
-
-        self.client.register_plugin(ModelFiles())
+        members = {"name": f"moldloft-{digest[:16]}", "setup": setup}
+        self.client.register_plugin(type("ModelFiles", (WorkerPlugin,), members)())
 
 
 def executor_of(client: Any) -> ClusterExecutor:

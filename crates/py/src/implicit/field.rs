@@ -6,9 +6,7 @@ use super::oracle::{PythonOracle, Slots};
 use crate::arrays;
 use crate::error::plain_error;
 use crate::work::unlocked_if;
-use moldloft::field::{
-    Affine, FieldError, Form, Primitive, SmoothShape, check_rail, check_rails,
-};
+use moldloft::field::{Affine, FieldError, Form, Primitive, SmoothShape, check_rail, check_rails};
 use moldloft::num::{Axis, Vec3};
 use moldloft_parallel::prelude::*;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
