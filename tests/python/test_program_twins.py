@@ -1,4 +1,4 @@
-"""Programs beside the same in Python: lists, records, default arguments, masks, texts."""
+"""Programs beside the same in Python: lists, records, default arguments, masks, texts.
 
 Each statement is made twice, in the language and as a Python function on a dictionary of values; at
 the end all variables are compared. `MOLDLOFT_SOAK=1` runs thousands.
