@@ -1094,6 +1094,108 @@ def transition(
         field a = sphere({0, 0, 0}, 1); field b = sphere({3, 0, 0}, 0.5); set neck = transition(a, b, plane({1, 0, 0}, {0.8, 0, 0}), plane({-1, 0, 0}, {2.7, 0, 0}));
     """
     ...
+def smooth_union(
+    a: _Set,
+    b: _Set,
+    width: _Number,
+    blend: _Text | None = ...,
+) -> FieldShape:
+    """The union of two bodies with the edge between them filled.
+
+    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
+    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
+    are arcs between planes at right angles.
+
+    Parameters
+    ----------
+    a : set
+        A body.
+    b : set
+        The other body.
+    width : number
+        The width of the blend. At least 0.
+    blend : text, optional
+        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+
+    Returns
+    -------
+    field
+
+    Notes
+    -----
+    In the language::
+
+        field blob = smooth_union(sphere({0, 0, 0}, 1, distance = 1), sphere({1.5, 0, 0}, 1, distance = 1), 0.5);
+    """
+    ...
+def smooth_intersection(
+    a: _Set,
+    b: _Set,
+    width: _Number,
+    blend: _Text | None = ...,
+) -> FieldShape:
+    """What two bodies have in common, with its edge rounded.
+
+    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
+    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
+    are arcs between planes at right angles.
+
+    Parameters
+    ----------
+    a : set
+        A body.
+    b : set
+        The other body.
+    width : number
+        The width of the blend. At least 0.
+    blend : text, optional
+        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+
+    Returns
+    -------
+    field
+
+    Notes
+    -----
+    In the language::
+
+        field lens = smooth_intersection(sphere({0, 0, 0}, 1, distance = 1), sphere({1, 0, 0}, 1, distance = 1), 0.2);
+    """
+    ...
+def smooth_difference(
+    a: _Set,
+    b: _Set,
+    width: _Number,
+    blend: _Text | None = ...,
+) -> FieldShape:
+    """One body without another, with the edge between them rounded.
+
+    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
+    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
+    are arcs between planes at right angles.
+
+    Parameters
+    ----------
+    a : set
+        A body.
+    b : set
+        The other body.
+    width : number
+        The width of the blend. At least 0.
+    blend : text, optional
+        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+
+    Returns
+    -------
+    field
+
+    Notes
+    -----
+    In the language::
+
+        field bowl = smooth_difference(sphere({0, 0, 0}, 1, distance = 1), sphere({0, 0, 1}, 0.8, distance = 1), 0.2);
+    """
+    ...
 def remapped(
     shape: _Set,
     x: _Field,
@@ -1199,6 +1301,36 @@ def repeated(
     In the language::
 
         set row = repeated(set(sphere({0, 0, 0}, 0.4)), {1, 0, 0}, 5); assert components(row) == 5;
+    """
+    ...
+def circular_array(
+    set: _Set,
+    axis: _Curve,
+    count: _Integer,
+    angle: _Number | None = ...,
+) -> SetShape:
+    """Copies of a set about an axis, each turned from the one before by the same angle.
+
+    Parameters
+    ----------
+    set : set
+        The set.
+    axis : curve
+        The axis, right-handed.
+    count : integer
+        How many copies there are. 1 to 10000.
+    angle : number, optional
+        The angle from each copy to the next; a full turn by their number by default.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); set holes = circular_array(set(sphere({3, 0, 0}, 0.5)), axis, 6); assert components(holes) == 6;
     """
     ...
 def set_union(
@@ -2321,9 +2453,11 @@ def makecc(
     curve : curve or surface
         The points, two or more.
     ends : text, optional
-        End conditions. Default quadratic.
+        End conditions: "natural", "quadratic", "specified", "notaknot", "bessel" or "periodic".
+        Default quadratic.
     basis : text, optional
-        The parameter. Default arc.
+        The parameter: "arc", "index", "centripetal", "arclen", "arclen+breaks" or "arc+breaks".
+        Default arc.
     t1 : vector, optional
         Tangent at the start, where it is "specified".
     t2 : vector, optional
@@ -2384,11 +2518,13 @@ def makecs(
     surface : curve or surface
         The points.
     ends : text, optional
-        End conditions of the lines along the first index. Default quadratic.
+        End conditions of the lines along the first index: "natural", "quadratic", "specified",
+        "notaknot", "bessel" or "periodic". Default quadratic.
     basis : text, optional
-        The parameters. Default arc.
+        The parameters: "arc", "index" or "centripetal". Default arc.
     ends_v : text, optional
-        End conditions of the lines along the second index; those of the first, if not given.
+        End conditions of the lines along the second index, those of the first if not given:
+        "natural", "quadratic", "specified", "notaknot", "bessel" or "periodic".
 
     Returns
     -------
@@ -2644,14 +2780,14 @@ def lengthc(
     """
     ...
 def length(
-    curve: _Curve,
+    curve: object,
 ) -> Expr:
-    """The length of a curve; another name of `lengthc`.
+    """The length of a curve: of one with a parameter as `lengthc`, of points the sum of their distances.
 
     Parameters
     ----------
-    curve : curve
-        The curve.
+    curve : value
+        The curve, or the points of one.
 
     Returns
     -------
@@ -2775,16 +2911,16 @@ def norm(
     """
     ...
 def len(
-    curve: _Vectors,
+    a: object,
 ) -> Expr:
-    """The length of a curve of points: the sum of its steps.
+    """The number of items: elements of a row, lines of a grid, layers of a block, items of a list, characters of a text.
 
-    Of curves with a parameter there is `lengthc`.
+    The length of a curve is `length`.
 
     Parameters
     ----------
-    curve : curve or surface
-        The points.
+    a : value
+        The array, list or text.
 
     Returns
     -------
@@ -2794,13 +2930,13 @@ def len(
     -----
     In the language::
 
-        assert len(points({0, 0, 0}, {3, 4, 0}, {3, 4, 1})) == 6;
+        assert len(list(5, 6)) == 2 and len("wing") == 4;
     """
     ...
 def cumlen(
     curve: _Vectors,
 ) -> AnyShape:
-    """The length of a curve of points up to each of them, from 0 to `len`.
+    """The length of a curve of points up to each of them, from 0 to `length`.
 
     Parameters
     ----------
@@ -2983,24 +3119,28 @@ def all(
     """
     ...
 def find(
-    mask: _Numbers,
+    a: object,
+    part: _Text | None = ...,
 ) -> AnyShape:
-    """The positions, from 1, at which a mask of a row holds; none when it holds nowhere.
+    """The positions, from 1, at which a mask of a row holds; none when it holds nowhere. Of a text the position of the
+    first occurrence of a part, 0 where there is none.
 
     Parameters
     ----------
-    mask : list of number
-        The mask.
+    a : value
+        The mask, or the text.
+    part : text, optional
+        What is looked for in a text.
 
     Returns
     -------
-    farray
+    value
 
     Notes
     -----
     In the language::
 
-        farray k = find(list(5, 1, 7) > 4); assert k[1] == 1 and k[2] == 3;
+        farray k = find(list(5, 1, 7) > 4); assert k[1] == 1 and k[2] == 3; assert find("wing.dat", ".") == 5;
     """
     ...
 def sort(
@@ -3093,6 +3233,192 @@ def interp(
         assert interp(1.5, list(0, 1, 2), list(0, 10, 30)) == 20;
     """
     ...
+def cut(
+    text: _Text,
+    first: _Integer,
+    last: _Integer | None = ...,
+) -> AnyShape:
+    """The characters `first` to `last` of a text, both included; without `last` to its end.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+    first : integer
+        The number of the first character, from 1. At least 1.
+    last : integer, optional
+        The number of the last character.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        assert cut("wing.dat", 1, 4) == "wing" and cut("wing.dat", 6) == "dat";
+    """
+    ...
+def number(
+    text: _Text,
+) -> Expr:
+    """The number that a text spells, blanks around it left out.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+
+    Returns
+    -------
+    number
+
+    Notes
+    -----
+    In the language::
+
+        assert number(" -2.5e3 ") == -2500;
+    """
+    ...
+def replace(
+    text: _Text,
+    part: _Text,
+    by: _Text,
+) -> AnyShape:
+    """The text with every occurrence of a part replaced.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+    part : text
+        What is replaced, at least one character.
+    by : text
+        What takes its place.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        assert replace("a-b-c", "-", "+") == "a+b+c";
+    """
+    ...
+def split(
+    text: _Text,
+    separator: _Text | None = ...,
+) -> AnyShape:
+    """The parts of a text between separators, as a list of texts; without a separator the words between blanks.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+    separator : text, optional
+        What stands between the parts.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        string words[] = split("a, b", ","); assert len(words) == 2 and trim(words[2]) == "b";
+    """
+    ...
+def trim(
+    text: _Text,
+) -> AnyShape:
+    """The text without the blanks at its ends.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        assert trim("  wing ") == "wing";
+    """
+    ...
+def lower(
+    text: _Text,
+) -> AnyShape:
+    """The text in lower-case letters.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        assert lower("NACA 0012") == "naca 0012";
+    """
+    ...
+def upper(
+    text: _Text,
+) -> AnyShape:
+    """The text in upper-case letters.
+
+    Parameters
+    ----------
+    text : text
+        The text.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        assert upper("naca") == "NACA";
+    """
+    ...
+def append(
+    items: object,
+    value: object,
+) -> AnyShape:
+    """A list with values added behind its last.
+
+    Parameters
+    ----------
+    items : value
+        The list.
+    value : value
+        What is added.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2], parts[] = {s}; parts = append(parts, s + {1, 0, 0}); assert len(parts) == 2;
+    """
+    ...
 def list(
     *numbers: _Number | _Numbers,
 ) -> AnyShape:
@@ -3161,24 +3487,25 @@ def join(
     """
     ...
 def stack(
-    *curves: object,
+    *parts: object,
 ) -> AnyShape:
-    """The surface whose lines s[1,], s[2,], ... are these curves, all equally long.
+    """The surface whose lines s[1,], s[2,], ... are these curves, all equally long; of surfaces of one shape the block
+    whose layers b[,,1], b[,,2], ... they are.
 
     Parameters
     ----------
-    curves : list of value
-        The curves.
+    parts : list of value
+        The curves or surfaces.
 
     Returns
     -------
-    curve or surface
+    value
 
     Notes
     -----
     In the language::
 
-        surface s = stack(points({0, 0, 0}, {1, 0, 0}), points({0, 1, 0}, {1, 1, 0})); assert s[2,1].y == 1;
+        surface s = stack(points({0, 0, 0}, {1, 0, 0}), points({0, 1, 0}, {1, 1, 0})); assert s[2,1].y == 1; block b = stack(s, s + {0, 0, 1}); assert b.d3 == 2;
     """
     ...
 def reverse(
@@ -3759,8 +4086,7 @@ def tfi(
 
     `s` is a surface whose edges are set (what is inside does not matter); or a list of four curves,
     s[1,], s[m,], s[,1], s[,n], which must meet in the corners; or a list of six surfaces, the faces
-    i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is the list of its layers
-    k = 1 .. nk. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
+    i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is that block. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
     length with cubic blending: blocks join smoothly) or "soni2" (arc lengths averaged rather than
     intersected). An edge without length, a pole, takes the spacing of the opposite one.
 
@@ -3820,7 +4146,7 @@ def elliptic(
     on : surface, optional
         The surface that the points stay on.
     walls : text, optional
-        Walls, for "sorenson".
+        Walls, for the method sorenson: "i1", "im", "j1", "jn".
     spacing : number, optional
         Spacing off the walls. At least 0.
     angle : number, optional
@@ -3853,7 +4179,7 @@ def hyperbolic(
     """A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
     and Steger 1992): lines leave it at right angles, with the layers at given heights.
 
-    Off a surface, along s_i x s_j: the value is the list of layers, the surface first. Off a curve, to the
+    Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve, to the
     left of its direction as seen against `normal`: the value is the surface whose line g[k,] is layer k; it
     lies in the plane of the curve, or on the surface `on` (a collar). The first layer has its height
     everywhere, at corners and sharp tails too; heights farther out are means. `sides` says what happens at
@@ -3872,14 +4198,16 @@ def hyperbolic(
     heights : list of number
         The distances of the layers, the first 0.
     sides : text, optional
-        Conditions at the edges.
+        Conditions at the edges: "i1", "im", "j1", "jn" with "pole", "free", "periodic",
+        "symmetry x", "symmetry y", "symmetry z", "constant x", "constant y" or "constant z".
     smoothing : number, optional
         How strongly converging lines are smoothed apart; 0 for not at all. 0 to 10, default 1.
     normal : vector, optional
         Normal of the plane of a curve, z if not given; with `on`, the side of the surface that
         is seen.
     stop : text, optional
-        When the march ends early.
+        When the march ends early: "keep", "jacobian 0.1", "skew 0.9", "growth 1.5" or
+        "isotropic".
     on : surface, optional
         The surface that a grid off a curve stays on.
 
@@ -3895,7 +4223,7 @@ def hyperbolic(
     """
     ...
 def elliptic_block(
-    layers: Sequence[object] | _Array | _Any,
+    b: _Array | Sequence[object] | _Any,
     n: _Integer | None = ...,
     tol: _Number | None = ...,
     method: _Text | None = ...,
@@ -3903,8 +4231,7 @@ def elliptic_block(
     spacing: _Number | None = ...,
     omega: _Number | None = ...,
 ) -> AnyShape:
-    """A block, given as the list of its layers, smoothed by the elliptic equations; its faces stay. The value is the
-    list of layers.
+    """A block smoothed by the elliptic equations; its faces stay.
 
     `method`: "laplace" evens lines out, "middlecoff" carries the spacing of the edges inward. `walls` names faces,
     "i1", "in", "j1", "jn", "k1", "kn", blank-separated, off which lines leave at right angles with the first cell
@@ -3913,8 +4240,8 @@ def elliptic_block(
 
     Parameters
     ----------
-    layers : list of value
-        The layers.
+    b : block
+        The block.
     n : integer, optional
         The most sweeps. 0 to 1e+06, default 2000.
     tol : number, optional
@@ -3923,7 +4250,7 @@ def elliptic_block(
     method : text, optional
         "laplace" or "middlecoff". Default middlecoff.
     walls : text, optional
-        Walls.
+        Walls: "i1", "in", "j1", "jn", "k1", "kn".
     spacing : number, optional
         The first cell off the walls. At least 0.
     omega : number, optional
@@ -3931,7 +4258,7 @@ def elliptic_block(
 
     Returns
     -------
-    list
+    block
 
     Notes
     -----
@@ -4017,8 +4344,7 @@ def h_grid(
 ) -> AnyShape:
     """An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
     section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
-    last height below the lower and above the upper end of the section. With as many points above as below they are a
-    block of two layers.
+    last height below the lower and above the upper end of the section.
 
     The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
     greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the
@@ -4072,9 +4398,10 @@ def quality(
     Parameters
     ----------
     s : value
-        The grid, or the layers of a block.
+        The grid, or the block.
     metric : text, optional
-        The metric. Default sj.
+        "sj", "skew", "aspect", "edge_ratio", "growth_i", "growth_j", "growth_k", "warp",
+        "turn", "area" or "volume". Default sj.
 
     Returns
     -------
@@ -4090,12 +4417,12 @@ def quality(
 def folds(
     s: object,
 ) -> Expr:
-    """The number of folded cells of a grid, or of a block given as the list of its layers.
+    """The number of folded cells of a grid or a block.
 
     Parameters
     ----------
     s : value
-        The grid, or the layers.
+        The grid, or the block.
 
     Returns
     -------
@@ -4112,13 +4439,12 @@ def report(
     s: object,
 ) -> AnyShape:
     """A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-    value and the cell that is worst; of a block, given as the list of its layers, the figures of
-    OpenFOAM's checkMesh and the least scaled Jacobian.
+    value and the cell that is worst; of a block the figures of OpenFOAM's checkMesh and the least scaled Jacobian.
 
     Parameters
     ----------
     s : value
-        The grid, or the layers.
+        The grid, or the block.
 
     Returns
     -------
@@ -4802,7 +5128,7 @@ def format(
     ----------
     pattern : text
         Text with directives as in C: %d %i %f %e %g %s, with flags and widths.
-    values : list of value
+    values : list of value, optional
         Numbers, texts and points for the directives.
 
     Returns
@@ -4821,7 +5147,7 @@ def open(
 ) -> AnyShape:
     """Opens a text file to read ("r"), write ("w") or append ("a"); open(7, name) chooses the unit.
 
-    Called as `open(name, mode)`.
+    Called as `open(name, mode, unit)`.
 
     Parameters
     ----------
@@ -4829,6 +5155,8 @@ def open(
         Name of the file, beside the program.
     mode : text, optional
         "r", "w" or "a"; "r" by default.
+    unit : integer, optional
+        Number of the unit; it may stand first, as in open(7, name).
 
     Returns
     -------
@@ -4875,7 +5203,7 @@ def write(
     ----------
     f : file
         The file, its unit, or `stdout`.
-    values : list of value
+    values : list of value, optional
         Texts, numbers, points and arrays, each from a new line.
 
     Returns
@@ -5101,7 +5429,7 @@ def refined(
 def refined_step(
     *args: object,
 ) -> Expr:
-    """A step per index consistent with refined(n): halved at each refinement.
+    """A step per index consistent with refined(n): halved at each refinement; of d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
 
     Called as `refined_step(ds)`.
 
@@ -5262,7 +5590,8 @@ def write_cgns(
         What is written; lists of them count as their members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
-        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+        faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
+        patch.
 
     Returns
     -------
@@ -5278,7 +5607,7 @@ def write_cgns(
 def write_su2(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.
+    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.
 
     Called as `write_su2(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
@@ -5286,11 +5615,12 @@ def write_su2(
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block
-        What is written.
+    b : list of block or surface
+        What is written: blocks, or surfaces in one plane; lists count as their members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
-        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
 
     Returns
     -------
@@ -5306,7 +5636,7 @@ def write_su2(
 def write_gmsh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.
+    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, of surfaces one physical curve.
 
     Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
@@ -5314,11 +5644,12 @@ def write_gmsh(
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block
-        What is written.
+    b : list of block or surface
+        What is written: blocks, or surfaces in one plane; lists count as their members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
-        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
 
     Returns
     -------
@@ -5334,7 +5665,7 @@ def write_gmsh(
 def write_blockmesh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.
+    """Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.
 
     Called as `write_blockmesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
 
@@ -5342,11 +5673,12 @@ def write_blockmesh(
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block
-        What is written.
+    b : list of block or surface
+        What is written: blocks, or surfaces in one plane; lists count as their members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
-        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
 
     Returns
     -------
@@ -5407,6 +5739,31 @@ def read_p3d(
     In the language::
 
         surface s[3,2] = {1, 2, 3}; write_p3d("s.x", s); assert read_p3d("s.x", 1).d2 == 2;
+    """
+    ...
+def iblank_p3d(
+    *args: object,
+) -> AnyShape:
+    """The blanking of a surface or block of a Plot3D file, a whole number for each point.
+
+    Called as `iblank_p3d(name, block)`.
+
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    block : integer, optional
+        Number of the block in the file; 1 by default.
+
+    Returns
+    -------
+    farray or block
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2] = {1, 2, 3}; farray hole[2,2] = 1; hole[1,1] = 0; write_p3d("s.x", s, hole); assert iblank_p3d("s.x")[1,1] == 0;
     """
     ...
 def count_p3d(

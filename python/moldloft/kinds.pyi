@@ -2705,8 +2705,9 @@ def OffsetCurve(
     the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
     positive side, if d is positive.
 
-    It is refused where the distance exceeds the radius of curvature on that side, since the offset
-    has a cusp there.
+    At an end without speed, such as a double control point, T is the limit from inside. It is refused
+    where the curve stands still inside, and where the distance exceeds the radius of curvature on that
+    side, since the offset has a cusp there.
 
     Parameters
     ----------
@@ -3497,6 +3498,7 @@ def NURBSnake(
     degree: _Integer | None = ...,
     knots: _Numbers | None = ...,
     weights: _Numbers | None = ...,
+    places: _Numbers | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -3523,7 +3525,10 @@ def NURBSnake(
     knots : list of number, optional
         Knots, end knots included, ascending.
     weights : list of number, optional
-        Weights of the magnets, positive.
+        Weights of the magnets, positive; of `places` too, between those of the two magnets.
+    places : list of number, optional
+        Control points that are no objects, as u, v, u, v, ...: they are between the first
+        magnet and the second, and there are no other magnets.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -3538,7 +3543,7 @@ def NURBSnake(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); NURBSnake s({p, q, r}, 2, weights = {1, 0.7, 1});
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); NURBSnake s({p, q, r}, 2, weights = {1, 0.7, 1}); NURBSnake w({p, r}, 2, places = {0.5, 0.3});
     """
     ...
 def ConicSnake(
@@ -3907,10 +3912,11 @@ def IntSnake(
     parameter is the share of its length.
 
     From a magnet the branch through the place nearest to it is taken; from a bare surface the one
-    that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
+    that comes nearest to its middle (that of the surface declared first), and others are reported. The snake runs along n1 x n2, the
     product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
     lie on the intersection and give it their identity there, so that patches join. A closed branch
-    begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it lies on
+    begins at the place nearest to the magnet or, without one, to S(0.3, 0.4) of the surface that is
+    declared first: so cuts of two surfaces, each of the other, are one curve. Each point of it lies on
     both, to rounding. Across the seam of a closed surface it runs on: its place
     on the surface goes over from u = 1 to u = 0 there.
 
@@ -5178,9 +5184,11 @@ def TrimSurf(
 
     Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
     itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-    one is the boundary of the surface and all loops are holes. The interior contains points of the surface's
-    own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
-    parameters scaled to lengths). All vertices are on the surface.
+    one is the boundary of the surface and all loops are holes. All vertices are on the surface. Where no divisions are
+    stated, the border is divided by its own curvature and the interior by the surface's, until the area of the triangles
+    is within 1e-3 of that of the surface; what they miss by more is a warning. With `nu` or `nv` the interior contains
+    points of the surface's own nu x nv divisions that are not too near the border. The triangles are Delaunay's, in
+    parameters stretched to lengths or by curvature.
 
     Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
     fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
@@ -5200,11 +5208,13 @@ def TrimSurf(
     whole : integer, optional
         1 when the whole surface is kept but for holes. 0 to 1, default 0.
     rim : integer, optional
-        Divisions of each snake. Not given: as its neighbours have them, or 12. 1 to 10000.
+        Divisions of each snake. Not given: as many as its curvature and that of the surface ask
+        for, and at least as its neighbours have them. 1 to 10000.
     nu : integer, optional
-        Divisions along u of the surface's grid inside the border. 1 to 1000, default 12.
+        Divisions along u of the surface's grid inside the border. Not given: as the curvature
+        of the surface asks for. 1 to 1000.
     nv : integer, optional
-        Divisions of the surface along v. 1 to 1000, default 12.
+        Divisions of the surface along v. 1 to 1000.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6514,7 +6524,7 @@ def ArcLenRelabel(
     all of it, so that equal steps of t are equal lengths.
 
     It is meant as the relabel of a curve of the same shape: of a copy, a neighbour, or a curve on the
-    same points. The curve must move at both ends.
+    same points. The curve must move everywhere.
 
     Parameters
     ----------
@@ -7657,7 +7667,8 @@ def FairCurve(
         How far the curve may be from each of the points; 0 passes through all. At least 0.
     measure : text, optional
         The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
-        "variation". Default second.
+        "variation". Without it "variation" of points that the curve is near ("bending" below
+        degree 3), and "second" where control points move.
     as : text, optional
         Meaning of the points: "fit" (the curve passes through them before it is faired),
         "control" (its control points) or "points" (they are faired and then interpolated: of
@@ -7668,7 +7679,9 @@ def FairCurve(
         first of them.
     ends : text, optional
         What open ends keep of the curve through the points: "free" (within the tolerance),
-        "position", "tangent" or "curvature". Default position.
+        "position", "tangent", "curvature" or a number of control points. Without it "free" of
+        points that the curve is near, "tangent" of fits whose control points move, and else
+        "2".
     mode : text, optional
         "optimum", or steps of the report of 1991: "faithful" (knots removed and re-inserted,
         the longest achievable move first), "literal" (the largest jump first; may stall),
@@ -7732,8 +7745,9 @@ def FairCurve(
     tangents_at : list of number, optional
         Parameters, from 0 to 1, of `tangents`.
     bends : integer, optional
-        0 to have no more inflections than the one of least bending within the tolerances; no
-        derivatives then. 0 to 1, default 1.
+        1 to allow more inflections and monotone pieces of the curvature than the fairest within
+        the tolerances has. With 0 derivatives are known where none had to be taken away. 0 to
+        1, default 0.
     at : list of number, optional
         Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
         curve less than 1 apart).
@@ -7852,9 +7866,9 @@ def FairSnake(
     tolerance : number
         Largest distance from the path through the magnets, in u and v. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`. Default second.
+        The measure to minimise; see `FairCurve`.
     ends : text, optional
-        Kept at the ends: "position", "tangent" or "curvature". Default tangent.
+        Kept at the ends: "position" (the default), "tangent" or "curvature".
     mode : text, optional
         "optimum", or a mode of single steps; see `FairCurve`. Default optimum.
     degree : integer, optional
@@ -7894,8 +7908,9 @@ def FairSnake(
     tangents_at : list of number, optional
         Parameters, from 0 to 1, of `tangents`.
     bends : integer, optional
-        0 to have no more inflections than the one of least bending within the tolerances; no
-        derivatives then. 0 to 1, default 1.
+        1 to allow more inflections and monotone pieces of the curvature than the fairest within
+        the tolerances has. With 0 derivatives are known where none had to be taken away. 0 to
+        1, default 0.
     at : list of number, optional
         Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
         curve less than 1 apart).
@@ -8761,10 +8776,11 @@ def MeshBody(
     name: str,
     /,
     points: _Vectors,
-    triangles: Sequence[_Integer] | _Array | _Any,
+    triangles: Sequence[_Integer] | _Array | _Any | None = ...,
     volume: _Number | None = ...,
     area: _Number | None = ...,
     centroid: _Vector | None = ...,
+    quads: Sequence[_Integer] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8788,7 +8804,7 @@ def MeshBody(
         The name of the object.
     points : list of vector
         The vertices.
-    triangles : list of integer
+    triangles : list of integer, optional
         Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
     volume : number, optional
         The exact volume, where it is known.
@@ -8796,6 +8812,8 @@ def MeshBody(
         The exact area, where it is known.
     centroid : vector, optional
         The exact centroid, where it is known.
+    quads : list of integer, optional
+        Corners of panels of four corners, as those of the triangles.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8808,7 +8826,7 @@ def MeshBody(
     -----
     In the language::
 
-        MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4});
+        MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); MeshBody plate({{0,0,0}, {1,0,0}, {1,1,0}, {0,1,0}}, quads = {1,2,3,4});
     """
     ...
 def Model(
