@@ -7,7 +7,7 @@ use moldloft::syntax::{decode, model_file};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = decode(bytes, "fuzz.ms2") else { return };
-    let (model, faults) = model_file::parse(&text, FileId(0));
+    let (model, faults) = model_file::parse(&*text, FileId(0));
     for fault in &faults {
         assert!(fault.span().range().end <= text.len());
     }
