@@ -178,7 +178,7 @@ class Model(Floating, Writable, Adapted):
         ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
         ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
         ... XPlane p(9); IntBead b(low, p);
-        ... ''')
+        ... ''', strict=False)
         >>> m.mesh()
         Traceback (most recent call last):
             ...
