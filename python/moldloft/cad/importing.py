@@ -58,7 +58,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
         raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
     found = read(path, UNITS[units])
     align(found.faces)
-    if any(face.colour is not None for face in found.faces):
+    if any(face.colour is not None and not _is_own(face.colour) for face in found.faces):
         found.remarks.append("colours become the nearest of the sixteen of a model")
     # Joins may add remarks.
     return _loadable(found, path.name, units), found.remarks
@@ -182,6 +182,11 @@ def nearest_colour(rgb: tuple[float, float, float]) -> int:
     (4, 1)
     """
     return int(np.argmin(((_EGA - np.array(rgb) * 255) ** 2).sum(axis=1)))
+
+
+def _is_own(rgb: tuple[float, float, float]) -> bool:
+    """Whether a colour is one of the model's, to the nearest of 256 levels."""
+    return np.array_equal(_EGA[nearest_colour(rgb)], np.rint(np.array(rgb) * 255))
 
 
 _POLE = 1e-9
