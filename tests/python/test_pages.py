@@ -107,6 +107,26 @@ from pathlib import Path
 Path("tee.sdl").write_text({blocks(ROOT / "docs" / "tutorials" / "product.md", "sdl")[0]!r})
 """
 
+# A hull with the inputs of the page's study; its plan in eight cases, and an objective.
+_STUDY = f"""
+from pathlib import Path
+Path("hull.sdl").write_text('''
+Model info(symmetry = "y", units = "m");
+param float beam = 4 in [3, 5];
+param float length = 12 in [11.5, 13];
+AbsPoint P11(0, 0, 1); AbsPoint P12(0.4, 0, 0.2); AbsPoint P13(1, 0, -0.4);
+AbsPoint P21(length / 2, 2, 1); AbsPoint P22(length / 2, beam / 2, -0.3);
+AbsPoint P23(length / 2, 0, -0.6);
+AbsPoint P31(length, 1.5, 1); AbsPoint P32(length, 1.2, 0.6); AbsPoint P33(length, 0, 0.2);
+BCurve stem({{P11, P12, P13}}, degree = 2); BCurve midship({{P21, P22, P23}}, degree = 2);
+BCurve transom({{P31, P32, P33}}, degree = 2);
+CLoftSurf hull({{stem, midship, transom}}, divisions = {{8, 16}});
+''')
+study = {blocks(DOCS / "studies.md", "toml")[0]!r}
+goal = "[optimize]\\nminimize = 'area'\\nmethod = 'slsqp'\\n"
+Path("yacht.toml").write_text(study.replace("count = 256", "count = 8") + goal)
+"""
+
 #: What a page's Python blocks take as given.
 GIVEN = {
     "README.md": _README,
@@ -116,6 +136,7 @@ GIVEN = {
     "panels.md": _HULL,
     "grids.md": _GRIDS,
     "product.md": _TEE,
+    "studies.md": _STUDY,
 }
 
 
