@@ -365,7 +365,7 @@ def test_nets_and_networks_keep_what_is_meant():
 def test_interrogation():
     angle = 2 * np.pi * np.arange(24) / 24
     ring = fairing.Spline.interpolate(
-        np.column_stack([2 * np.cos(angle), 2 * np.sin(angle)]), closed=True, spacing="uniform"
+        np.column_stack([2 * np.cos(angle), 2 * np.sin(angle)]), closed=True, spacing="index"
     )
     assert ring.curvature([0.1, 0.7]) == pytest.approx([0.5, 0.5], rel=5e-3)
     assert ring.length == pytest.approx(4 * np.pi, rel=1e-5) and ring.inflections() == 0
