@@ -7,12 +7,12 @@ use spade::{
 use std::collections::HashMap;
 
 /// A vertex and its number.
-struct Corner {
+struct PlanarVertex {
     at: [f64; 2],
     number: usize,
 }
 
-impl HasPosition for Corner {
+impl HasPosition for PlanarVertex {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
@@ -41,11 +41,11 @@ pub fn planar_triangles(
 ) -> Vec<[usize; 3]> {
     // Vertices in one place are one.
     let mut placed: HashMap<[u64; 2], usize> = HashMap::new();
-    let mut corners: Vec<Corner> = Vec::new();
+    let mut corners: Vec<PlanarVertex> = Vec::new();
     let mut corner_of = |number: usize| {
         let at = points[number];
         *placed.entry(at.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-            corners.push(Corner { at, number });
+            corners.push(PlanarVertex { at, number });
             corners.len() - 1
         })
     };
@@ -67,7 +67,7 @@ pub fn planar_triangles(
     }
     let mut crossed = false;
     let made =
-        ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| {
+        ConstrainedDelaunayTriangulation::<PlanarVertex>::try_bulk_load_cdt(corners, edges, |_| {
             crossed = true
         });
     let Ok(mut net) = made else { return Vec::new() };
@@ -75,7 +75,7 @@ pub fn planar_triangles(
         return Vec::new();
     }
     for &number in inner {
-        let corner = Corner { at: points[number], number };
+        let corner = PlanarVertex { at: points[number], number };
         let free = match net.locate(corner.position()) {
             PositionInTriangulation::OnFace(_) => true,
             PositionInTriangulation::OnEdge(e) => !net.is_constraint_edge(e.as_undirected()),
@@ -90,7 +90,7 @@ pub fn planar_triangles(
 
 /// The triangles that an odd number of loop edges part from the outside.
 fn within(
-    net: &ConstrainedDelaunayTriangulation<Corner>,
+    net: &ConstrainedDelaunayTriangulation<PlanarVertex>,
     uses: &HashMap<(usize, usize), u32>,
 ) -> Vec<[usize; 3]> {
     let mut inside: Vec<Option<bool>> = vec![None; net.num_inner_faces() + 1];

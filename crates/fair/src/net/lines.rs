@@ -32,13 +32,13 @@ const ROUNDS: usize = 3;
 const WIDER: [f64; 3] = [1.0, 1.5, f64::INFINITY];
 
 /// Numbers at rising places with room on both sides.
-struct Tube<'a> {
+struct ValueTube<'a> {
     at: &'a [f64],
     values: &'a [f64],
     rooms: &'a [f64],
 }
 
-impl Tube<'_> {
+impl ValueTube<'_> {
     fn low(&self, i: usize, share: f64) -> f64 {
         self.values[i] - share * self.rooms[i]
     }
@@ -212,7 +212,7 @@ impl Network {
             if rooms.iter().any(|r| !r.is_finite()) || rooms.iter().all(|&r| r == 0.0) {
                 continue;
             }
-            let tube = Tube { at: &at[from..=to], values: &values, rooms: &rooms };
+            let tube = ValueTube { at: &at[from..=to], values: &values, rooms: &rooms };
             for (j, sign) in tube.fewest().into_iter().flatten().enumerate() {
                 if sign == 0.0 {
                     continue;
@@ -339,7 +339,7 @@ mod tests {
         let off = |k: usize| noise * ((k * k * 7919 % 1009) as f64 / 504.5 - 1.0);
         let values: Vec<f64> = at.iter().enumerate().map(|(k, &x)| of(x) + off(k)).collect();
         let rooms = vec![noise.max(1e-9) / FITS; at.len()];
-        Tube { at: &at, values: &values, rooms: &rooms }.fewest().unwrap()
+        ValueTube { at: &at, values: &values, rooms: &rooms }.fewest().unwrap()
     }
 
     #[test]

@@ -41,10 +41,10 @@ impl<T: Real> Build<T> for OffsetSurf<T> {
 pub fn parallel<T: Real>(surface: SurfaceRef<T>, distance: T, context: &Context) -> SurfaceRef<T> {
     let edges = inherited::edges(
         &*surface,
-        &Parallel { surface: surface.clone(), distance, edges: Edges::own() },
+        &ParallelSurface { surface: surface.clone(), distance, edges: Edges::own() },
     );
     let nesting = context.nesting.max(surface.depth);
-    SurfaceRef::new(Parallel { surface, distance, edges }, nesting)
+    SurfaceRef::new(ParallelSurface { surface, distance, edges }, nesting)
 }
 
 /// Each direction of the surface is tried at so many places.
@@ -127,13 +127,13 @@ pub fn curvatures<T: Real>(surface: &SurfaceRef<T>, u: f64, v: f64) -> Option<[f
 }
 
 /// The surface beside another one.
-struct Parallel<T: Real> {
+struct ParallelSurface<T: Real> {
     surface: SurfaceRef<T>,
     distance: T,
     edges: Edges<T>,
 }
 
-impl<T: Real> Parallel<T> {
+impl<T: Real> ParallelSurface<T> {
     /// The first surface of a chain of parallels, and the distance from it.
     fn base(&self) -> (&dyn Surface<T>, T) {
         match self.surface.parallel_to() {
@@ -143,7 +143,7 @@ impl<T: Real> Parallel<T> {
     }
 }
 
-impl<T: Real> SurfaceFormula for Parallel<T> {
+impl<T: Real> SurfaceFormula for ParallelSurface<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {

@@ -64,7 +64,7 @@ enum Far {
 
 /// A part of a loop's curve, and a part of the way from the base line to it.
 #[derive(Clone, Copy)]
-struct Piece<'a, T: Real> {
+struct LoopPiece<'a, T: Real> {
     of: LoopCurve<'a, T>,
     along: [T; 2],
     near: f64,
@@ -95,7 +95,7 @@ impl<'a, T: Real> SurfaceIntegral<'a, T> {
         SurfaceSums { area, moment: jet.p * area, cone: jet.p.dot(normal) }
     }
 
-    fn rule(&mut self, piece: &Piece<'a, T>, rules: [usize; 2]) -> SurfaceSums<T> {
+    fn rule(&mut self, piece: &LoopPiece<'a, T>, rules: [usize; 2]) -> SurfaceSums<T> {
         let [along, across] = rules.map(|k| gauss_rule(RULES[k]));
         self.evaluations += along.len() * across.len();
         let reach = piece.along[1] - piece.along[0];
@@ -127,7 +127,7 @@ impl<'a, T: Real> SurfaceIntegral<'a, T> {
     }
 
     /// The piece by these rules, and what rules of fewer points leave.
-    fn ruled(&mut self, mut piece: Piece<'a, T>, rules: [usize; 2]) -> Piece<'a, T> {
+    fn ruled(&mut self, mut piece: LoopPiece<'a, T>, rules: [usize; 2]) -> LoopPiece<'a, T> {
         piece.rules = rules;
         piece.sums = self.rule(&piece, rules);
         piece.errors = [0, 1].map(|k| {
@@ -139,7 +139,7 @@ impl<'a, T: Real> SurfaceIntegral<'a, T> {
     }
 
     /// The piece with the worse of its rules raised, or its halves.
-    fn refined(&mut self, piece: Piece<'a, T>) -> Vec<Piece<'a, T>> {
+    fn refined(&mut self, piece: LoopPiece<'a, T>) -> Vec<LoopPiece<'a, T>> {
         let k = usize::from(piece.errors[1] > piece.errors[0]);
         if piece.rules[k] + 1 < RULES.len() {
             let mut rules = piece.rules;
@@ -230,7 +230,7 @@ fn pieces_of<'a, T: Real>(
     across: usize,
     base: f64,
     place: impl Fn(&CurveRef<T>, f64) -> Option<[f64; 2]>,
-) -> Vec<Piece<'a, T>> {
+) -> Vec<LoopPiece<'a, T>> {
     let breaks = of.curve.breaks();
     let mut cuts: Vec<(f64, T)> = breaks.iter().map(|&t| (t, T::from(t))).collect();
     for (t, axis, line) in crossings(lines, &breaks, |t| place(of.curve, t)) {
@@ -256,7 +256,7 @@ fn pieces_of<'a, T: Real>(
         for (k, &near) in stops.iter().enumerate() {
             let far = stops.get(k + 1).map_or(Far::Loop, |&x| Far::Line(x));
             let sums = SurfaceSums::zero();
-            pieces.push(Piece {
+            pieces.push(LoopPiece {
                 of,
                 along,
                 near,
@@ -273,7 +273,7 @@ fn pieces_of<'a, T: Real>(
 }
 
 /// Refines the worst pieces until their errors are small together.
-fn settle<'a, T: Real>(integral: &mut SurfaceIntegral<'a, T>, pieces: &mut Vec<Piece<'a, T>>) {
+fn settle<'a, T: Real>(integral: &mut SurfaceIntegral<'a, T>, pieces: &mut Vec<LoopPiece<'a, T>>) {
     loop {
         let area = pieces.iter().map(|p| p.sums.area.re()).sum::<f64>().abs();
         let goal = ACCURACY * area;
