@@ -131,7 +131,15 @@ class Store:
     # -- writing ---------------------------------------------------------------------------
 
     def begin(self, facts: Mapping[str, str], keys: Iterator[str] | Sequence[str]) -> None:
-        """Record the definition and the plan, in order."""
+        """Record the definition and the plan.
+
+        Parameters
+        ----------
+        facts
+            The definition: texts by name.
+        keys
+            The keys of all cases, in the order of the plan.
+        """
         with self._named():
             self._db.execute("DELETE FROM cases")
             self._db.executemany(
@@ -141,14 +149,29 @@ class Store:
             self._commit()
 
     def append(self, key: str) -> None:
-        """Add one case at the end of the plan."""
+        """Add one case at the end of the plan.
+
+        Parameters
+        ----------
+        key
+            The case's key.
+        """
         with self._named():
             self._db.execute(
                 "INSERT INTO cases SELECT coalesce(max(position) + 1, 0), ? FROM cases", (key,)
             )
 
     def add(self, outcome: Outcome) -> None:
-        """Record what became of a case; it is on the disk within a quarter of a second."""
+        """Record the outcome of a case.
+
+        It is on the disk with the next one that is recorded a quarter of a second after the last
+        commit, at the latest when the store closes.
+
+        Parameters
+        ----------
+        outcome
+            The case with its state and numbers; it replaces an earlier one of the same key.
+        """
         values: dict[str, Any] = {
             '"key"': outcome.key,
             '"state"': outcome.state,
@@ -179,7 +202,18 @@ class Store:
         self._since = time.monotonic()
 
     def forget(self, states: Sequence[str]) -> int:
-        """Forget the results in these states, so that they are evaluated again; their number."""
+        """Forget results, so that their cases are evaluated again.
+
+        Parameters
+        ----------
+        states
+            The states of the results to forget.
+
+        Returns
+        -------
+        int
+            The number of results forgotten.
+        """
         marks = ", ".join("?" * len(states))
         with self._named():
             return self._db.execute(
@@ -187,7 +221,18 @@ class Store:
             ).rowcount
 
     def collect(self, other: Store) -> int:
-        """Take the results of another store that are not here; their number."""
+        """Take the results of another store that are not here.
+
+        Parameters
+        ----------
+        other
+            The store that the results are read from.
+
+        Returns
+        -------
+        int
+            The number of results taken.
+        """
         taken = 0
         with self._named():
             known = self.known()
@@ -210,7 +255,18 @@ class Store:
             return dict(self._db.execute("SELECT name, value FROM study"))
 
     def find(self, key: str) -> Outcome | None:
-        """The outcome of a case, if it has one."""
+        """The outcome of a case.
+
+        Parameters
+        ----------
+        key
+            The case's key.
+
+        Returns
+        -------
+        Outcome or None
+            ``None`` when the case has no result.
+        """
         return next(self._outcomes("WHERE key = ?", (key,)), None)
 
     def outcomes(self) -> Iterator[Outcome]:
