@@ -330,10 +330,10 @@ def test_patches_of_models(text, options):
 
 def test_a_curve_at_parameters_of_its_own():
     points, at = path(), np.linspace(0, 1, 12) ** 1.3
-    wanted = moldloft.fair(points, 0.01, at=at, ends="position", bends=True, goal="budget")
+    wanted = moldloft.fair(points, 0.01, at=at, goal="budget")
     list_ = "{" + ", ".join(map(number, at)) + "}"
     text = f"{points_text(points)} FairCurve c({names(range(12))}, 0.01"
-    rest = 'measure = "variation", goal = "budget"'
+    rest = 'goal = "budget"'
     m = moldloft.loads(f"{text}, {rest}, at = {list_});")
     t = np.linspace(0, 1, 17)
     here = np.array([m.eval(f"c({x})") for x in t], float)
@@ -543,9 +543,7 @@ def test_a_closed_snake():
     rng = np.random.default_rng(1)
     uv = 0.5 + 0.3 * np.column_stack([np.cos(a), np.sin(a)]) + 0.004 * rng.uniform(-1, 1, (16, 2))
     m = moldloft.loads(snake(uv, 'closed = 1, goal = "fairest"'))
-    wanted = moldloft.fair(
-        uv, 0.01, closed=True, goal="fairest", measure="second", bends=True, spacing="chord"
-    )
+    wanted = moldloft.fair(uv, 0.01, closed=True, goal="fairest", spacing="chord")
     place = np.array([m.eval(f"a{k}") for k in range(16)], float)[:, :2]
     axes = [0, 1] if np.abs(place - uv).max() < 1e-12 else [1, 0]
     t = np.linspace(0, 1, 17)
