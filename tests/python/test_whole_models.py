@@ -33,7 +33,7 @@ def test_a_model_of_which_an_object_failed_has_no_figures(tmp_path: Path) -> Non
     uses = (
         m.mesh,
         m.hydrostatics,
-        lambda: m.equilibrium(3.0),
+        lambda: m.equilibrium(3.0, density="salt"),
         lambda: m.panel_figures(),
         lambda: m.eval("hydrostatics.volume"),
         lambda: m.eval("mesh.volume"),

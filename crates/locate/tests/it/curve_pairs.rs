@@ -19,6 +19,7 @@ impl CurveFormula for Cubic {
         let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
         mix(mix(ab, bc), mix(bc, cd))
     }
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }
 
 fn plane(random: &mut Random, reach: f64) -> Vec3 {
