@@ -249,7 +249,7 @@ MODEL = """
 AbsPoint A(0, 0, 0); AbsPoint B(1, 0.5, 0); AbsPoint C(2, 0.83, 0); AbsPoint D(3, 0.88, 0);
 AbsPoint E(4, 0.81, 0); AbsPoint F(5, 0.49, 0); AbsPoint G(6, 0, 0);
 AbsPoint H(-1, -0.64, 0); AbsPoint I(-2, -1.4, 0); AbsPoint J(-3, -2.3, 0); AbsPoint K(-4, -3.4, 0);
-FairCurve run({K, J, I, H, A}, 0.01);
+FairCurve run({K, J, I, H, A}, 0.01, ends = "position");
 FairCurve keel({A, B, C, D, E, F, G}, 0.2, joins = {run});
 FairNet net({{A, B, C, D, E, F, G}, {A, H, I, J, K}}, 0.05, mode = "faithful", passes = 2);
 curve rough = distc(keel, uniform(0, 1, 9));

@@ -288,7 +288,7 @@ def test_entities_report_how_they_came_out():
     x = np.linspace(0, 10, 24)
     points = np.c_[x, np.sin(x / 3) + 0.02 * rng.uniform(-1, 1, 24), 0 * x]
     model = moldloft.loads(curve_text(points, '0.02, goal = "fairest", measure = "variation"'))
-    faired = moldloft.fair(points, 0.02, as_="fit", goal="fairest", ends="position")
+    faired = moldloft.fair(points, 0.02, as_="fit", goal="fairest")
     for name, expected in (
         ("deviation", faired.deviation_data),
         ("value", faired.value),
