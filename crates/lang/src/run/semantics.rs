@@ -499,9 +499,6 @@ impl<'a> Semantics<'a> {
 
     fn declaration(&mut self, place: &JudgedScope<'_>, ty: (Type, Span), item: &Declarator) {
         let m = place.m;
-        if declared_list(m, ty.0, item).is_some() {
-            return;
-        }
         if let Type::Other(symbol) = ty.0 {
             if self.records.contains_key(&m.names[symbol.0 as usize]) {
                 return;
@@ -511,6 +508,9 @@ impl<'a> Semantics<'a> {
                 .at(ty.1)
                 .suggest(word, moldloft_syntax::sdl::declaring_words());
             return self.say(diagnostic);
+        }
+        if declared_list(m, ty.0, item).is_some() {
+            return;
         }
         let Some(value) = item.value else { return };
         let dims = numbers(m, item.dims);
