@@ -34,9 +34,7 @@ class Twins:
 
     def name(self, kind: str) -> str:
         self.count += 1
-        name = f"{kind[0]}{self.count}"
-        self.kinds[name] = kind
-        return name
+        return f"{kind[0]}{self.count}"
 
     def of(self, kind: str) -> str | None:
         names = [name for name, own in self.kinds.items() if own == kind]
@@ -225,6 +223,8 @@ class Twins:
                 f"farray {name}[] = {{{items}}};",
                 lambda v: v.__setitem__(name, [np.array(f(v), float) for _, f in rows]),
             )
+        # Known to what follows: a declaration does not read its own variable.
+        self.kinds[name] = kind
 
     def assign(self) -> None:
         r = self.random
