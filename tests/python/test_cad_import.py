@@ -6,6 +6,7 @@ import itertools
 import math
 import os
 import random
+import re
 from pathlib import Path
 from typing import Any
 
@@ -297,3 +298,26 @@ def test_an_open_shell_stays_open(tmp_path: Path) -> None:
     found = read(model.write(tmp_path / "again.step")[0], accuracy=1e-9)
     assert found.valid and (found.solids, found.shells, found.closed) == (0, 1, 0)
     assert found.area == pytest.approx(5)
+
+
+def test_the_sixteen_colours_come_back_and_others_become_the_nearest(tmp_path: Path) -> None:
+    from moldloft.cad.importing import program
+
+    text = "".join(
+        f"Line a{k}({{0, 0, {k}}}, {{1, 0, {k}}}); Line b{k}({{0, 1, {k}}}, {{1, 1, {k}}});"
+        f"RuledSurf s{k}(a{k}, b{k}, colour = {k});"
+        for k in range(16)
+    )
+    (path,) = moldloft.loads(text).write(tmp_path / "all.step")
+    source, remarks = program(path)
+    assert remarks == []
+    colours = {patch.name: patch.colour for patch in moldloft.loads(source).mesh().patches}
+    assert colours == {f"s{k}": k for k in range(16)}
+    # The first colour of the file becomes red.
+    path.write_text(
+        re.sub(r"COLOUR_RGB\('',[^)]*\)", "COLOUR_RGB('',1.,0.,0.)", path.read_text(), count=1)
+    )
+    source, remarks = program(path)
+    assert remarks == ["colours become the nearest of the sixteen of a model"]
+    again = [patch.colour for patch in moldloft.loads(source).mesh().patches]
+    assert sorted(again) == sorted([4, *range(1, 16)])

@@ -161,11 +161,27 @@ def _attributes(face: ImportedFace) -> str:
     return text + ");"
 
 
-_EGA = np.array(
-    [[85 * (k >> 3) + 170 * (k >> channel & 1) for channel in (2, 1, 0)] for k in range(16)]
+_PALETTE = np.array(
+    [
+        (70, 77, 87),
+        (58, 102, 173),
+        (63, 143, 92),
+        (47, 151, 163),
+        (184, 74, 64),
+        (148, 85, 156),
+        (166, 119, 61),
+        (182, 188, 196),
+        (114, 125, 137),
+        (120, 165, 224),
+        (128, 196, 142),
+        (120, 200, 206),
+        (227, 130, 116),
+        (202, 143, 208),
+        (230, 195, 98),
+        (222, 226, 231),
+    ]
 )
-_EGA[6, 1] = 85
-"""The sixteen colours of models, sRGB."""
+"""The sixteen colours of models as files hold them, sRGB."""
 
 
 def nearest_colour(rgb: tuple[float, float, float]) -> int:
@@ -181,12 +197,12 @@ def nearest_colour(rgb: tuple[float, float, float]) -> int:
     >>> nearest_colour((1.0, 0.1, 0.0)), nearest_colour((0.0, 0.0, 0.6))
     (4, 1)
     """
-    return int(np.argmin(((_EGA - np.array(rgb) * 255) ** 2).sum(axis=1)))
+    return int(np.argmin(((_PALETTE - np.array(rgb) * 255) ** 2).sum(axis=1)))
 
 
 def _is_own(rgb: tuple[float, float, float]) -> bool:
     """Whether a colour is one of the model's, to the nearest of 256 levels."""
-    return np.array_equal(_EGA[nearest_colour(rgb)], np.rint(np.array(rgb) * 255))
+    return np.array_equal(_PALETTE[nearest_colour(rgb)], np.rint(np.array(rgb) * 255))
 
 
 _POLE = 1e-9
