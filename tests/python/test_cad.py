@@ -280,9 +280,13 @@ def test_dxf_and_3dm_hold_the_same_curves_and_surfaces(tmp_path: Path) -> None:
     surface = thing.Geometry
     if not hasattr(surface, "PointAt"):
         surface = surface.Surfaces[0]
+    # Faces of 3DM have no sense: the surface runs backwards along u, its normal points outwards.
     for u, v in [(0.3, 0.2), (0.7, 0.9)]:
-        p = surface.PointAt(u, v)
-        assert np.abs(np.array([p.X, p.Y, p.Z]) - nurbs(u, v)).max() < 1e-12
+        p, n = (
+            np.array([at.X, at.Y, at.Z]) for at in (surface.PointAt(u, v), surface.NormalAt(u, v))
+        )
+        assert np.abs(p - nurbs(1 - u, v)).max() < 1e-12
+        assert np.abs(n - p / np.linalg.norm(p)).max() < 1e-9
 
 
 def test_adapters_hand_the_panels_over() -> None:
