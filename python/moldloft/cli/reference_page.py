@@ -44,9 +44,10 @@ FUNCTIONS = (
     ),
     (
         "Rows and grids of numbers and points",
-        "list points range stack join reverse swap spread_i spread_j find sort cumsum diff d1 d2 "
-        "dists",
+        "list append points range stack join reverse swap spread_i spread_j find sort cumsum diff d1 "
+        "d2 dists",
     ),
+    ("Texts", "cut replace split trim lower upper number"),
     (
         "Distributions of points",
         "uniform cosine geometric geometric2 d_sinh d_tanh d_tanhx redist count_for first_for "
@@ -76,7 +77,7 @@ FUNCTIONS = (
         "Files",
         "open close read write more next rewind read_p3d read_points read_aerofoil write_p3d "
         "write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh count_p3d "
-        "read_cgns count_cgns names_cgns "
+        "iblank_p3d read_cgns count_cgns names_cgns "
         "write_csv plot",
     ),
 )
