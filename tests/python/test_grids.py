@@ -275,7 +275,7 @@ assert edge.d1 == 7 and max(|edge[1:4] - lower[,1]|) == 0;
         ('write_p3d("a.x", "text");', "nothing to write"),
         ('write_p3d("../a.x", lower);', "outside-folder"),
         ('write_stl("/a.stl", lower);', "outside-folder"),
-        ('write_stl("a.stl", "upside", lower);', "has no option"),
+        ('write_stl("a.stl", "upside", lower);', 'no option "upside"'),
         ('write_stl("a.stl", lower[1,]);', "grids"),
         ('write_cgns("a.cgns", lower[1,]);', "no cells"),
         ('write_vts("a.vts", 3);', "found a number"),
