@@ -23,7 +23,7 @@ BCurve low({a, b, c, d}, degree = 2); BCurve mid({e, f, g}, degree = 2);
 BCurve top({h, i, j}, degree = 2);
 BLoftSurf loft({low, mid, top}, degree = 2, divisions = {8, 8}, orientation = 1);
 TranSurf moved(low, mid, divisions = {8, 8});
-BSurf net({a, b, c, e, f, g, h, i, j}, nu = 3, nv = 3, divisions = {6, 6});
+BSurf net({a, b, c, e, f, g, h, i, j}, nu = 3, nv = 3, divisions = {8, 8});
 """
 ROUND = """
 AbsPoint o(0, 0, 0); AbsPoint p(1, 0, 0); AbsPoint q(0, 0, -1);
@@ -64,7 +64,7 @@ def test_splines_are_exact(tmp_path):
     header, patches = read_high_order(path.read_bytes())
     assert header == ["hull", "1 9.80665", "0 1", "3 1"]
     u = np.linspace(0, 1, 23)
-    # The net faces as the loft does, with which it shares an edge though not its divisions.
+    # The net faces as the loft does, with which it shares an edge and the divisions.
     turned = {"loft": True, "moved": False, "net": True}
     for (name, reverse), patch in zip(turned.items(), patches, strict=True):
         theirs = evaluate(patch, 2 * u - 1, 2 * u - 1)
