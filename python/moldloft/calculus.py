@@ -67,6 +67,11 @@ class CurveCalculus:
         beyond
             Take parameters outside [0, 1] too, where the formula is continued.
 
+        Returns
+        -------
+        ndarray
+            ``(…, 3)``, in the model's unit.
+
         Examples
         --------
         >>> import moldloft
@@ -90,6 +95,11 @@ class CurveCalculus:
             Parameters in [0, 1], of shape ``(…)``.
         beyond
             Take parameters outside [0, 1] too.
+
+        Returns
+        -------
+        ndarray
+            ``(…, 3)``, of length 1 or 0.
         """
         return _unit(self.derivative(t, beyond=beyond))
 
@@ -102,6 +112,11 @@ class CurveCalculus:
             Parameters in [0, 1], of shape ``(…)``.
         beyond
             Take parameters outside [0, 1] too.
+
+        Returns
+        -------
+        ndarray
+            ``(…)``, 0 or more.
 
         Examples
         --------
@@ -144,6 +159,11 @@ class SurfaceCalculus:
         beyond
             Take parameters outside [0, 1] too, where the formula is continued.
 
+        Returns
+        -------
+        ndarray
+            ``(…, 3)``, in the model's unit.
+
         Examples
         --------
         >>> import moldloft
@@ -174,6 +194,11 @@ class SurfaceCalculus:
             Parameters in [0, 1], which are broadcast, of shape ``(…)``.
         beyond
             Take parameters outside [0, 1] too.
+
+        Returns
+        -------
+        ndarray
+            ``(…, 3)``, of length 1 or 0.
         """
         found, shape = self._jets(u, v, beyond)
         return _unit(np.cross(found[1], found[2])).reshape(*shape, 3)
@@ -192,6 +217,11 @@ class SurfaceCalculus:
             Parameters in [0, 1], which are broadcast, of shape ``(…)``.
         beyond
             Take parameters outside [0, 1] too.
+
+        Returns
+        -------
+        tuple of ndarray
+            Two of shape ``(…)``, in 1 over the model's unit.
 
         Examples
         --------

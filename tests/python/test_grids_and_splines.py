@@ -207,7 +207,7 @@ def test_offsets_come_back():
         ("x,y,z\n1,2,nan\n", "a number for waterline"),
         ("x,y,z\n1,2\n", "a number for waterline, found ``"),
         ("x,y,z\n1,-2,0\n", "0 or more"),
-        ("x,y,z\n1,2,0\n1,3,0\n", "another"),
+        ("x,y,z\n1,2,0\n1,2,0\n", "half-breadth 2.0 once at station 1.0, waterline 0.0"),
         ("x,y,z\n1,2,0\n", "has one point"),
     ],
 )
