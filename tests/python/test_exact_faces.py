@@ -136,7 +136,7 @@ def test_faces_keep_their_side_in_every_format(tmp_path: Path) -> None:
             shapes = [o.Geometry for o in rhino.File3dm.Read(str(path)).Objects]
             surfaces = [g for g in shapes if isinstance(g, rhino.NurbsSurface)]
             assert len(surfaces) == 2
-            said = [bool(s.NormalAt(s.Domain(0).Mid, s.Domain(1).Mid).Z > 0) for s in surfaces]
+            said = [bool(s.NormalAt(0.5, 0.5).Z > 0) for s in surfaces]
             assert said == up, (h, k, m, side)
 
 
@@ -161,8 +161,10 @@ def test_calculus_on_arrays() -> None:
         assert np.abs(ball.derivative(u, v, du, dv) - near).max() < 1e-6
     radial = ball(u, v) / 2
     assert np.abs(np.abs((ball.normal(u, v) * radial).sum(axis=-1)) - 1).max() < 1e-12
-    for k in ball.curvature(u, v):
-        assert np.abs(np.abs(k) - 0.5).max() < 1e-9
+    # Where both are equal they are a double root, known to the root of rounding; the sum is exact.
+    both = np.array(ball.curvature(u, v))
+    assert np.abs(np.abs(both) - 0.5).max() < 1e-7
+    assert np.abs(np.abs(both.sum(axis=0)) - 1).max() < 1e-12
     t = rng.uniform(0, 1, 7)
     curve = m["c"]
     assert np.abs(np.linalg.norm(curve.tangent(t), axis=-1) - 1).max() < 1e-14
@@ -184,7 +186,7 @@ def test_meshes_are_bodies(tmp_path: Path) -> None:
     pytest.importorskip("meshio")
     m = moldloft.loads("""
     Model info(units = "m"); Line a({0, 0, -1}, {2, 0, -1}); Line b({0, 1, -1}, {2, 1, -1});
-    set s = set(cuboid({0, 0, -1}, {2, 1, 1}));
+    set s = cuboid({0, 0, -1}, {2, 1, 1});
     SetBody box(s, depth = 3);
     """)
     for ending in ("stl", "obj", "ply", "gdf"):
