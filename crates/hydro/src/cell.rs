@@ -44,6 +44,9 @@ impl FitLimits {
 /// The most cells of a surface.
 const MOST_CELLS: usize = 6000;
 
+/// The same while derivatives decide, too: each of their cells costs several times as much.
+const MOST_CELLS_FOR_SLOPES: usize = 1500;
+
 /// A cell is halved this often at most in one direction.
 const DEEPEST: u32 = 40;
 
@@ -215,6 +218,10 @@ pub(crate) fn cells_of<T: Real>(
     loop {
         match fitted_cells(surface, &frames, reversed, limits) {
             CellFits::Cells(cells) => return Some(cells),
+            // Slopes that rounding hides never come within their limit: the values alone decide then.
+            CellFits::TooMany if T::PARTS > 1 && limits.relative.is_finite() => {
+                limits.relative = f64::INFINITY;
+            }
             CellFits::TooMany => limits = limits.coarser(),
             CellFits::NotFinite => return None,
         }
@@ -306,7 +313,9 @@ fn fitted_cells<T: Real>(
 ) -> CellFits<T> {
     let mut stack: Vec<(CellFrame<'_, T>, [u32; 2])> =
         frames.iter().rev().map(|frame| (*frame, [0, 0])).collect();
-    let most = MOST_CELLS.max(2 * frames.len());
+    let slopes_count = T::PARTS > 1 && limits.relative.is_finite();
+    let most = if slopes_count { MOST_CELLS_FOR_SLOPES } else { MOST_CELLS };
+    let most = most.max(2 * frames.len());
     let mut cells = Vec::new();
     while let Some((frame, depth)) = stack.pop() {
         let Some((fitted, slopes)) = fit(surface, &frame, reversed) else {

@@ -61,6 +61,8 @@ impl<T: Real> SurfaceFormula for CreasedPart<T> {
             closed: [false; 2],
         }]
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 fn part(random: &mut Random) -> CreasedPart<f64> {
@@ -87,10 +89,10 @@ fn part(random: &mut Random) -> CreasedPart<f64> {
 /// The area by Gauss's rule along many lines of t, each cut where it meets a crease.
 fn area_by_lines(part: &CreasedPart<f64>) -> f64 {
     const LINES: usize = 1600;
-    let gauss = crate::gauss::gauss(8);
+    let gauss = moldloft_num::gauss_rule(8);
     let mut sum = 0.0;
     for line in 0..LINES {
-        for &(share, weight) in crate::gauss::gauss(3) {
+        for &(share, weight) in moldloft_num::gauss_rule(3) {
             let s = (line as f64 + share) / LINES as f64;
             let mut ends = vec![0.0, 1.0];
             for axis in 0..2 {
