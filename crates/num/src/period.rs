@@ -183,6 +183,9 @@ mod tests {
             let (s, c) = (libm::sin(self.0 * t), libm::cos(self.0 * t));
             [Vec3::of(c + 1e3, s, 0.0), Vec3::of(-s, c, 0.0) * self.0, Vec3::zero()]
         }
+
+        crate::curve_one_by_one!(f64);
+        crate::curve_facts!(smooth, open, not_rational);
     }
 
     #[test]

@@ -44,8 +44,8 @@ FUNCTIONS = (
     ),
     (
         "Rows and grids of numbers and points",
-        "list append points range stack join reverse swap spread_i spread_j find sort cumsum diff d1 "
-        "d2 dists",
+        "list append points range stack join reverse swap spread_i spread_j find sort cumsum diff "
+        "d1 d2 dists",
     ),
     ("Texts", "cut replace split trim lower upper number"),
     (

@@ -209,8 +209,7 @@ impl<T: Real> CurveRequest<T> {
         let lifted: Vec<Vec3<T>> = one.points.iter().map(|&p| Vec3::lifted(p)).collect();
         let radii: Vec<T> = one.radii.iter().map(|&r| T::from(r)).collect();
         let mut joined = self.clone();
-        let new = |list: &[usize]| list.iter().map(|&k| one.of[k]).collect::<Vec<usize>>();
-        joined.breaks = new(&self.breaks);
+        joined.breaks = self.breaks.iter().map(|&k| one.of[k]).collect();
         joined.shape = self.shape.iter().map(|s| s.renumbered(|k| one.of[k])).collect();
         joined.at = self.at.as_ref().map(|at| {
             let first = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(0);

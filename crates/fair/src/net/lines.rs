@@ -114,7 +114,7 @@ impl ValueTube<'_> {
                 continue;
             }
             let mut signs = vec![0.0; last + 1];
-            let (mut b, mut sign) = (last, if changes % 2 == 0 { first } else { -first });
+            let (mut b, mut sign) = (last, if changes.is_multiple_of(2) { first } else { -first });
             for part in (0..=changes).rev() {
                 let a = ends[part][b]?.1;
                 signs[a + 1..b].fill(sign);

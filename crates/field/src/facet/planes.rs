@@ -171,7 +171,7 @@ impl PlaneSplitter {
                     if side == 0 { [values[i], values[j]] } else { [-values[i], -values[j]] };
                 let (inside, stays) = (here <= self.on, next <= self.on);
                 let (on, ends_on) = (here.abs() <= self.on, next.abs() <= self.on);
-                if inside && !(on && !stays) {
+                if inside && (!on || stays) {
                     part.push((p, along));
                 }
                 if on && !stays {

@@ -95,7 +95,7 @@ pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
 const TURNED_AT: [[f64; 3]; 6] = [
     [0.31, -0.42, 0.17],
     [-1.73, 0.55, 2.61],
-    [3.14, 2.21, -5.3],
+    [3.16, 2.21, -5.3],
     [-0.07, -9.2, 0.93],
     [12.7, 4.4, 31.1],
     [0.61, 0.27, -77.0],
@@ -111,7 +111,7 @@ pub(crate) fn box_of_turns<T: Real>(
     let [x, y, z] = [0, 1, 2].map(|k| coordinates[k].re());
     let turns = TURNED_AT.into_iter().all(|at| {
         let p = Vec3::from(at);
-        let (a, b) = (x.value(p).hypot(y.value(p)), p.x.hypot(p.y));
+        let (a, b) = (libm::hypot(x.value(p), y.value(p)), libm::hypot(p.x, p.y));
         (a - b).abs() <= TURNED * (1.0 + b) && z.value(p) == p.z
     });
     if !turns {
@@ -119,7 +119,7 @@ pub(crate) fn box_of_turns<T: Real>(
     }
     let over = around(&set.re()).ok().flatten()?;
     let far = |k: usize| over.low[k].abs().max(over.high[k].abs());
-    let reach = far(0).hypot(far(1));
+    let reach = libm::hypot(far(0), far(1));
     let low = Vec3::of(-reach, -reach, over.low.z);
     Set::cuboid(low, Vec3::of(reach, reach, over.high.z)).ok()
 }

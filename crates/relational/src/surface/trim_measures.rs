@@ -200,7 +200,7 @@ pub(crate) fn measured<'a, T: Real>(
     let middle = [0, 1].map(|k| T::from(0.5 * (low[k] + high[k])));
     let jet = surface.jet(middle[0], middle[1], Order::First);
     let reach = [jet.u.re().norm() * (high[0] - low[0]), jet.v.re().norm() * (high[1] - low[1])];
-    let across = usize::from(!(reach[0] < reach[1]));
+    let across = usize::from(reach[0].partial_cmp(&reach[1]) != Some(std::cmp::Ordering::Less));
     let mut integral = SurfaceIntegral { surface, across, size: 1.0, evaluations: 0 };
     integral.size =
         [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().fold(f64::MIN_POSITIVE, |size, [i, j]| {

@@ -127,7 +127,10 @@ impl SideGrid {
             .enumerate()
             .flat_map(|(c, p)| (0..p.len()).map(move |k| (c, p[k], p[(k + 1) % p.len()])))
             .collect();
-        let length: f64 = sides.iter().map(|(_, a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
+        let length: f64 = sides
+            .iter()
+            .map(|(_, a, b)| ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt())
+            .sum();
         let cell = (length / sides.len() as f64).max(margin).max(f64::MIN_POSITIVE);
         let mut cells: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
         for (k, &(_, a, b)) in sides.iter().enumerate() {

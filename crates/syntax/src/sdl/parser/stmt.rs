@@ -410,7 +410,8 @@ impl Parser {
                 }
                 continue;
             };
-            for item in self.program[items].to_vec() {
+            let declared = self.program[items].to_vec();
+            for item in declared {
                 if let Some(first) = known.iter().find(|own| own.symbol == item.name.symbol) {
                     let message = format!("two members `{}`", self.symbol_text(item.name.symbol));
                     let diagnostic = Diagnostic::error("duplicate-name", message)
