@@ -296,7 +296,7 @@ impl Export<'_> {
         if self.options.triangles {
             panels.part = Some(panels.triangulated());
         }
-        if panels.faces().is_empty() && !(takes_lines && !lines.is_empty()) {
+        if panels.faces().is_empty() && (!takes_lines || lines.is_empty()) {
             return Err(nothing_shown(self.format.name).into());
         }
         Ok(panels)

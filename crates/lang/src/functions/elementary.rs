@@ -425,7 +425,7 @@ fn hypotenuse<T: Real>(a: T, b: T) -> T {
         return squared(a, b);
     }
     // A power of two, so that scaling is exact.
-    let scale = if size > 1.0 { (-600f64).exp2() } else { 600f64.exp2() };
+    let scale = if size > 1.0 { libm::exp2(-600.0) } else { libm::exp2(600.0) };
     squared(a * scale, b * scale) / scale
 }
 

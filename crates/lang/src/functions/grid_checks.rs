@@ -118,7 +118,7 @@ fn volume(block: &NamedBlock, format: &GridFormat, found: &mut Vec<Diagnostic>) 
 /// The number of cells that are turned over at a corner, and the first of them.
 fn turned(grid: &VolumeGrid<f64>) -> (usize, Option<usize>) {
     let quality = grid.cell_quality();
-    let bad = |(_, [jacobian, _]): &(usize, &[f64; 2])| !(*jacobian > 0.0);
+    let bad = |(_, [jacobian, _]): &(usize, &[f64; 2])| *jacobian <= 0.0 || jacobian.is_nan();
     let count = quality.iter().enumerate().filter(bad).count();
     (count, quality.iter().enumerate().find(bad).map(|(k, _)| k))
 }
@@ -252,7 +252,7 @@ fn lies_on(face: &FaceMesh, other: &FaceMesh) -> Option<f64> {
                 return None;
             }
             let distance = distance_to(p, other);
-            if !(distance <= tolerance) {
+            if distance > tolerance || distance.is_nan() {
                 return None;
             }
             greatest = greatest.max(distance);

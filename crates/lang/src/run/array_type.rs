@@ -47,7 +47,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
             }
             // Three numbers in braces beside a mask are a row.
-            ExprKind::List(items) => 1 + greatest(&m.program[items].to_vec()),
+            ExprKind::List(items) => 1 + greatest(&m.program[items]),
             ExprKind::Binary { left, right, .. } => greatest(&[left, right]),
             ExprKind::Chain(_) => greatest(&parts::of_expression(m, id)),
             ExprKind::Index { base, subs } => self.rank_of_section(m, base, subs),

@@ -264,7 +264,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let name = of.program.name(name.symbol);
         let signature = format!("{name}({})", spelled.join(", "));
         let mut given: Vec<GivenMember<T>> = Vec::new();
-        for (k, arg) in m.program[args].to_vec().into_iter().enumerate() {
+        let written = m.program[args].to_vec();
+        for (k, arg) in written.into_iter().enumerate() {
             let place = m.program[arg.value].span;
             let k = match arg.name {
                 None if k < members.len() => k,
