@@ -212,7 +212,7 @@ fn everything_there_and_back() {
     let file = open_sdl(&turned).convert(ModelFormat::ModelFile).unwrap();
     assert!(file.contains("Units: ft lb\nSymmetry: x\n"), "{file}");
     assert_eq!(open(&file).symmetry(), "x");
-    // The program is canonical but for long lines.
+    // The program is as `fmt` writes it.
     assert_eq!(converted.convert(ModelFormat::Sdl).unwrap(), program);
 }
 

@@ -25,7 +25,9 @@ fn shelf(files: &[(&str, &str)]) -> Box<Shelf> {
 }
 
 fn model(text: &str) -> Document {
-    let files = [("dam.skt", DAM), ("bracket.skt", BRACKET), ("deep/dam.skt", DAM)];
+    // One model has one unit.
+    let bracket = &BRACKET.replace("SET UNITS MM", "SET UNITS FT");
+    let files = [("dam.skt", DAM), ("bracket.skt", bracket), ("deep/dam.skt", DAM)];
     Document::from_text(registry(), shelf(&files), "site.sdl", text)
 }
 
@@ -273,7 +275,10 @@ fn a_sketch_has_the_unit_that_it_states_and_only_one() {
     let open = |text: &str| Document::from_text(registry(), Box::new(NoFiles), "shed.skt", text);
     assert_eq!(open(SHED).units(), "m");
     assert_eq!(open(&SHED.replace("SET UNITS M\n", "SET UNITS FT\n")).units(), "ft");
-    assert_eq!(open(&SHED.replace("SET UNITS M\n", "")).units(), "");
+    let unstated = open(&SHED.replace("SET UNITS M\n", ""));
+    assert_eq!(unstated.units(), "mm");
+    assert_eq!(unstated.assumed_unit().map(|d| d.id), Some("assumed-unit"));
+    assert!(open(SHED).assumed_unit().is_none());
     // The second object is the first under another name, in another unit.
     let other = SHED.replace("SKETCH SHED", "SKETCH BARN").replace("UNITS M\n", "UNITS FT\n");
     let both = open(&format!("{SHED}\n{other}"));

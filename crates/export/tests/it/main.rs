@@ -82,7 +82,7 @@ fn options_are_taken_or_refused() {
             format.lids != Lids::Patches,
             format.immersed,
             !whole,
-            format.holds == Holds::Surfaces,
+            matches!(format.holds, Holds::Surfaces | Holds::Panels | Holds::PanelsAndLines),
         ];
         let mut model = model(if format.holds == Holds::Volumes { BRICK } else { BOX });
         for (options, takes) in all.iter().zip(takes) {

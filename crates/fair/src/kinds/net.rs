@@ -217,8 +217,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             breaks: Self::BREAKS,
         };
         let spaced = super::plain_spacing(&self.spacing, Self::SPACING)?;
-        let by_index = spaced == ParameterSpacing::Uniform && &*self.goal == "near";
-        let budget = if by_index { super::NETWORK_BUDGET } else { super::BUDGET };
+        let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
         constant("share", Self::SHARE, self.share.into_iter())?;
         let goal = super::goal_of(
             &self.goal,

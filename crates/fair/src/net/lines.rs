@@ -282,8 +282,8 @@ impl Network {
             parts.halves = signs.iter().flatten().cloned().collect();
             let mut refused = Vec::new();
             for wider in WIDER {
-                let made =
-                    if wider.is_finite() { parts.within(pull, wider * most) } else { Ok(None) };
+                let most = wider * most;
+                let made = if most.is_finite() { parts.within(pull, most) } else { Ok(None) };
                 match made {
                     Ok(Some(found)) => return Ok((found.optimum, found.weight)),
                     Ok(None) => match parts.solve() {
@@ -294,7 +294,7 @@ impl Network {
                                 .zip(&self.points)
                                 .map(|(p, q)| *p - *q)
                                 .collect();
-                            if !wider.is_finite() || pull.sum_sq(&away) <= wider * most {
+                            if pull.sum_sq(&away) <= most {
                                 return Ok((fairest, 0.0));
                             }
                         }

@@ -7,7 +7,7 @@ use crate::error::check_finite;
 use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided, check_unique,
     moved, rounding,
 };
 use crate::optimum::{Bounded, Optimum, Parts};
@@ -413,11 +413,18 @@ impl Network {
             }
             if self.has_lines(norm) && !pull.is_empty() {
                 let mean = pull.len() as f64 / 3.0;
-                let made = self.by_lines(parts, measure, &pull, share * mean)?;
-                let moved: Vec<_> =
-                    made.optimum.points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+                let used = |points: &[Vec3<f64>]| {
+                    let moved: Vec<_> =
+                        points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+                    pull.sum_sq(&moved) / mean
+                };
+                let mut made = self.by_lines(parts, measure, &pull, f64::INFINITY)?;
+                let fairest_used = used(&made.optimum.points);
+                if let Some(share) = allowed(share, fairest_used, owners.len()) {
+                    made = self.by_lines(parts, measure, &pull, share * mean)?;
+                }
                 let mut found = GoalOptimum::unmoved(&made.optimum.points, 0.0, false);
-                found.used = pull.sum_sq(&moved) / mean;
+                (found.used, found.fairest_used) = (used(&made.optimum.points), fairest_used);
                 found.least = made.optimum.certificate.value;
                 (found.share, found.weight) = (1.0, made.weight);
                 found.optimum = made.optimum;
@@ -492,7 +499,7 @@ impl Network {
                  not known: take the goal \"budget\" or \"fairest\"",
             ));
         }
-        let explained = crate::optimum::goal::allowed(0.0, found.used, owners.len()).is_none();
+        let explained = allowed(0.0, found.used, owners.len()).is_none();
         let free = match goal {
             Goal::Near(share) => found.used > share,
             Goal::Fairest => explained,
@@ -571,7 +578,7 @@ impl Network {
                 sum + off.dot(off) / (tolerances[i] * tolerances[i])
             }) / mean;
             budget =
-                crate::optimum::goal::allowed(share, used, owners.len()).unwrap_or(used) * mean;
+                allowed(share, used, owners.len()).unwrap_or(used) * mean;
         }
         let moving = moving(forces, budget);
         Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))

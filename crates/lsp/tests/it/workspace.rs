@@ -155,7 +155,7 @@ fn a_rename_changes_all_files_and_they_run_as_before() {
         ("lib/foil.sdl", (1, 17), "force", vec!["lib/foil.sdl", "wing.sdl", "tail.sdl"]),
         ("lib/foil.sdl", (1, 41), "surface_area", vec!["lib/foil.sdl", "wing.sdl"]),
         ("keel.sdl", (0, 14), "depth", vec!["keel.sdl", "boat.sdl"]),
-        ("keel.sdl", (1, 50), "upper", vec!["keel.sdl", "boat.sdl"]),
+        ("keel.sdl", (1, 50), "brim", vec!["keel.sdl", "boat.sdl"]),
         ("boat.sdl", (2, 20), "end", vec!["keel.sdl", "boat.sdl"]),
         ("boat.sdl", (1, 12), "fin", vec!["boat.sdl"]),
         ("other.sdl", (1, 8), "raise", vec!["other.sdl"]),

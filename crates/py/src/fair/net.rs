@@ -361,8 +361,7 @@ fn solved<'py>(
     let mode = match mode.as_str() {
         "optimum" => match get::<Option<(String, Option<f64>)>>(options, "goal")? {
             Some(word) => {
-                let by_index = word.0 == "near" && get::<String>(options, "spacing")? == "index";
-                let budget = if by_index { NETWORK_BUDGET } else { SURFACE_BUDGET };
+                let budget = if word.0 == "near" { NETWORK_BUDGET } else { SURFACE_BUDGET };
                 NetworkMode::Toward(goal(&word, budget)?)
             }
             None => NetworkMode::Joint(bound(&get::<String>(options, "bound")?)?),
