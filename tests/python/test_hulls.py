@@ -138,17 +138,20 @@ def test_cylinders_of_one_axis_between_two_planes(seed: int) -> None:
 
 
 def test_what_has_no_hull_in_closed_form_is_refused_by_name() -> None:
-    column = im.Set(im.cylinder((0, 0, 0), (0, 0, 1), 1)) & im.cuboid((-2, -2, 0), (2, 2, 1))
+    pillar = im.Set(im.cylinder((0, 0, 0), (0, 0, 1), 1))
+    flattened = pillar & im.cuboid((-0.5, -2, 0), (2, 2, 1))
     for sets, words in (
         ((im.Set(im.torus((0, 0, 0), (0, 0, 1), 2, 0.5)),), "torus"),
         ((-im.Set(im.sphere((0, 0, 0), 1)),), "outside of a sphere"),
         ((im.Set(im.plane((0, 0, 1), (0, 0, 0))),), "unbounded"),
-        ((column,), "not across its axis"),
+        ((flattened,), "not across its axis"),
     ):
         with pytest.raises(moldloft.Error, match=words):
             im.convex_hull(*sets)
     empty = im.cuboid((0, 0, 0), (1, 1, 1)) & im.cuboid((2, 0, 0), (3, 1, 1))
     assert im.convex_hull(im.nothing(), empty).is_nothing
+    # Sides of the box that are outside of the cylinder are no faces of the body.
+    near(im.convex_hull(pillar & im.cuboid((-2, -2, 0), (2, 2, 1))), np.pi)
 
 
 def test_derivatives_follow_the_balls() -> None:

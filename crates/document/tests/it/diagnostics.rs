@@ -149,7 +149,7 @@ fn tests_of_crates() -> String {
 }
 
 /// Ids that no program alone can raise, or that other tests raise because they take long.
-const ELSEWHERE: [&str; 26] = [
+const ELSEWHERE: [&str; 27] = [
     "silent",
     // Bodies of sketches that lie on each other: tests/python/test_sketch_derivatives.py.
     "no-derivative",
@@ -179,6 +179,8 @@ const ELSEWHERE: [&str; 26] = [
     "no-distribution",
     // Quadrature that does not settle: no solid is known of which it does not.
     "rough-volume",
+    // Kinds refuse what has places that are not finite; a guard of their measures.
+    "no-body",
 ];
 
 /// The ids in the sources of the crates that run programs: a new one must be raised by a case.

@@ -55,6 +55,7 @@ fn measured(su2: &str) -> (f64, Vec<(String, f64)>) {
             markers.push((line[1].to_string(), length.sum()));
         }
     }
+    markers.sort_by(|a, b| a.0.cmp(&b.0));
     (area, markers)
 }
 

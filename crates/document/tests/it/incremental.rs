@@ -326,7 +326,12 @@ fn edited_models_equal_those_from_scratch_at_any_thread_count() {
     assert!(one == run(2), "two threads differ from one");
     assert!(one == run(4), "four threads differ from one");
     let with = |word: &str| one.iter().filter(|text| text.contains(word)).count();
-    let (errors, failed, blocked) = (with("error["), with(": failed"), with(": blocked"));
+    // Random divisions contradict each other nearly always; that is no fault of a statement.
+    let faulty = |text: &&String| {
+        text.lines().any(|l| l.contains("error[") && !l.contains("[divisions-contradict]"))
+    };
+    let errors = one.iter().filter(faulty).count();
+    let (failed, blocked) = (with(": failed"), with(": blocked"));
     let meshed = count - with("has no panels");
     println!(
         "{count} edits: {errors} states with errors, {failed} with failed and {blocked} with blocked objects, {meshed} with panels"

@@ -609,7 +609,7 @@ fn variables_and_formulas_are_computed() {
     document.set(&[("beam".into(), 3.0)]).unwrap();
     let program = document.convert(ModelFormat::Sdl).unwrap();
     assert!(program.contains("param float beam = 3 in [1, 5];\n"), "{program}");
-    assert!(program.contains("float half = beam/2;\n"), "{program}");
+    assert!(program.contains("float half = beam / 2;\n"), "{program}");
     let mut converted = open_sdl(&program);
     assert!(converted.diagnostics().is_empty(), "{program}\n{:?}", converted.diagnostics());
     for text in ["C.x", "D.x", "s(0.3, 0.8).z"] {

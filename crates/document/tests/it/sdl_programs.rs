@@ -535,7 +535,8 @@ fn examples_of_built_in_functions_run() {
     for builtin in &moldloft_lang::BUILTINS {
         let document = run(builtin.example);
         assert!(builtin.example.contains(&format!("{}(", builtin.name)), "{}", builtin.name);
-        assert!(document.diagnostics().is_empty());
+        let found = reported(&document);
+        assert!(found.is_empty(), "{}: {found:?}", builtin.name);
     }
 }
 

@@ -277,7 +277,7 @@ fn a_sketch_has_the_unit_that_it_states_and_only_one() {
     assert_eq!(open(&SHED.replace("SET UNITS M\n", "SET UNITS FT\n")).units(), "ft");
     let unstated = open(&SHED.replace("SET UNITS M\n", ""));
     assert_eq!(unstated.units(), "mm");
-    assert_eq!(unstated.assumed_unit().map(|d| d.id), Some("assumed-unit"));
+    assert!(unstated.assumed_unit().is_some_and(|d| d.id == "assumed-unit"));
     assert!(open(SHED).assumed_unit().is_none());
     // The second object is the first under another name, in another unit.
     let other = SHED.replace("SKETCH SHED", "SKETCH BARN").replace("UNITS M\n", "UNITS FT\n");

@@ -190,14 +190,19 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
         (_, word) => word,
     };
     let called = |part: &FacePart| format!("{} of `{}`", word(part), blocks[part.0].name);
-    let mut seen: Vec<String> = Vec::new();
-    for part in parts.iter().map(called) {
-        if !seen.contains(&part) {
-            seen.push(part);
-        }
-    }
-    if seen.is_empty() {
+    if parts.is_empty() {
         return;
+    }
+    // The faces of each block, once, in their order.
+    let mut seen: Vec<(usize, Vec<&str>)> = Vec::new();
+    for part in parts {
+        if seen.last().is_none_or(|(block, _)| *block != part.0) {
+            seen.push((part.0, Vec::new()));
+        }
+        let faces = &mut seen.last_mut().expect("just seen").1;
+        if !faces.contains(&word(part)) {
+            faces.push(word(part));
+        }
     }
     let meshes: Vec<FaceMesh> = parts
         .iter()
@@ -226,7 +231,11 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
         }
     }
     if !abutting {
-        let message = format!("boundaries without a name: {}", seen.join(", "));
+        let all: Vec<String> = seen
+            .iter()
+            .map(|(block, faces)| format!("{} of `{}`", faces.join(", "), blocks[*block].name))
+            .collect();
+        let message = format!("boundaries without a name: {}", all.join("; "));
         found.push(
             Diagnostic::remark("nameless", message)
                 .help("name them behind the block: \"i1 = inlet inflow, k1 = body wall\""),

@@ -178,8 +178,8 @@ fn option(file: &GridFile<'_>, known: &str) -> Result<bool, Diagnostic> {
         word if word == known => Ok(true),
         word => {
             let expected = if known.is_empty() { "no words" } else { known };
-            Err(Diagnostic::error("unknown-word", format!("there is no option \"{word}\""))
-                .expected(expected.to_string()))
+            let message = format!("`{}` has no option \"{word}\"", file.path);
+            Err(Diagnostic::error("unknown-word", message).expected(expected.to_string()))
         }
     }
 }
