@@ -41,6 +41,14 @@ class Drawn:
         found = (across.derivative(slopes[1]) if slopes[1] else across)(v)
         return np.moveaxis(found, 0, 1)
 
+    def places(self, u: Floats, v: Floats) -> Floats:
+        """The points at pairs of parameters."""
+        along, across = (
+            interpolate.BSpline.design_matrix(at, knots, 3).toarray()
+            for at, knots in zip((u, v), self.knots, strict=True)
+        )
+        return np.einsum("ni,nj,ijk->nk", along, across, self.poles)
+
     def below(self) -> tuple[Floats, Floats, Floats]:
         """Points, u x v and weights of a rule of the part below z = 0, exact for polynomials."""
         places, weights = np.polynomial.legendre.leggauss(10)
@@ -157,20 +165,15 @@ def test_a_hull_is_measured_and_built_upon(seed: int, tmp_path: Path) -> None:
 
     def off(points: Floats) -> float:
         """How far points of the model are from the hull in y, by a search for u at their v."""
-        worst = 0.0
-        for x, y, z in points.tolist():
-            top, bottom = hull.poles[0, 0, 2], hull.poles[0, -1, 2]
-            v = np.array([(top - z) / (top - bottom)])
-            low, high = 0.0, 1.0
-            for _ in range(60):
-                middle = (low + high) / 2
-                if hull.at(np.array([middle]), np.clip(v, 0, 1))[0, 0, 0] < x:
-                    low = middle
-                else:
-                    high = middle
-            at = hull.at(np.array([(low + high) / 2]), np.clip(v, 0, 1))[0, 0]
-            worst = max(worst, float(np.abs(at - (x, y, z)).max()))
-        return worst
+        x, z = points[:, 0], points[:, 2]
+        top, bottom = hull.poles[0, 0, 2], hull.poles[0, -1, 2]
+        v = np.clip((top - z) / (top - bottom), 0, 1)
+        low, high = np.zeros(len(x)), np.ones(len(x))
+        for _ in range(60):
+            middle = (low + high) / 2
+            before = hull.places(middle, v)[:, 0] < x
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return float(np.abs(hull.places((low + high) / 2, v) - points).max())
 
     # Stations and waterlines.
     for x in rng.uniform(0.1, 0.9, 3) * length:
