@@ -63,7 +63,7 @@ pub struct TrimSurf<T: Real> {
 }
 
 /// How far apart, in u or v, ends that should meet may be.
-const MEETING: f64 = 1e-6;
+pub(crate) const MEETING: f64 = 1e-6;
 
 /// The area of the triangles is within this share of that of the surface, unless divisions are stated.
 const AREA_PROMISE: f64 = 1e-3;

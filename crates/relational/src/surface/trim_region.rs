@@ -1,6 +1,6 @@
 //! A region of the parameter plane within polygons, and triangles in it.
 
-use crate::surface::trim::TrimSurf;
+use crate::surface::trim::{MEETING, TrimSurf};
 use crate::surface::trim_density::{Stretch, stretched};
 use moldloft_mesh::planar_triangles;
 use moldloft_num::{Fineness, Order, Real};
@@ -18,6 +18,16 @@ const MARGIN: f64 = 0.55;
 
 /// The most lines of points along u or along v.
 const MAX_LINES: usize = 4000;
+
+/// A loop folds back by at most this much, in parameters: its snakes meet within [`MEETING`], and curves that were fitted
+/// pass their ends by as much.
+const FOLD: f64 = 8.0 * MEETING;
+
+/// The most folds of a loop that are unfolded.
+const MAX_FOLDS: usize = 32;
+
+/// The share of the sides beside an unfolded corner that its vertices take.
+const UNFOLDED: f64 = 1e-3;
 
 /// The parameter plane as it is triangulated, and the lines on which points of the interior are.
 pub(crate) struct TrimPlane {
@@ -110,8 +120,54 @@ fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// A side of a polygon: its loop and its ends.
-type Side = (usize, [f64; 2], [f64; 2]);
+/// A side of a polygon: its loop, the number of its first vertex, and its ends.
+#[derive(Clone, Copy)]
+struct Side {
+    polygon: usize,
+    at: usize,
+    ends: [[f64; 2]; 2],
+}
+
+/// Moves the vertices between two sides of a loop that cross to the crossing, in their order along the loop, where the
+/// loop folds back by no more than [`FOLD`]; false where it does not.
+fn unfold<T: Real>(
+    polygons: &mut [Vec<[f64; 2]>],
+    cycles: &[Vec<Place<T>>],
+    [a, b]: [Side; 2],
+) -> bool {
+    if a.polygon != b.polygon {
+        return false;
+    }
+    let (polygon, places) = (&mut polygons[a.polygon], &cycles[a.polygon]);
+    let count = polygon.len();
+    // The vertices from the end of one side to the start of the other, either way round.
+    let between = |from: Side, to: Side| (from.at, (to.at + count - from.at) % count);
+    let extent = |(from, steps): (usize, usize)| {
+        let first = places[(from + 1) % count].map(T::re);
+        let away = (1..=steps).map(|k| {
+            let p = places[(from + k) % count].map(T::re);
+            (p[0] - first[0]).abs().max((p[1] - first[1]).abs())
+        });
+        away.fold(0.0, f64::max)
+    };
+    let ways = [between(a, b), between(b, a)];
+    let (from, steps) = if extent(ways[0]) <= extent(ways[1]) { ways[0] } else { ways[1] };
+    if extent((from, steps)) > FOLD {
+        return false;
+    }
+    let ([p, q], [r, s]) = (a.ends, b.ends);
+    let (over, under) = (cross(r, s, p), cross(r, s, q));
+    let share = over / (over - under);
+    let middle = [0, 1].map(|k| p[k] + share * (q[k] - p[k]));
+    let (before, after) = (polygon[from], polygon[(from + steps + 1) % count]);
+    for k in 1..=steps {
+        let off = (2.0 * k as f64 - 1.0 - steps as f64) / steps as f64;
+        let toward = if off < 0.0 { before } else { after };
+        let by = UNFOLDED * off.abs();
+        polygon[(from + k) % count] = [0, 1].map(|i| middle[i] + by * (toward[i] - middle[i]));
+    }
+    true
+}
 
 /// Sides by the cells of a square grid that they pass.
 struct SideGrid {
@@ -125,15 +181,18 @@ impl SideGrid {
         let sides: Vec<Side> = polygons
             .iter()
             .enumerate()
-            .flat_map(|(c, p)| (0..p.len()).map(move |k| (c, p[k], p[(k + 1) % p.len()])))
+            .flat_map(|(polygon, p)| {
+                let ends = move |k: usize| [p[k], p[(k + 1) % p.len()]];
+                (0..p.len()).map(move |at| Side { polygon, at, ends: ends(at) })
+            })
             .collect();
         let length: f64 = sides
             .iter()
-            .map(|(_, a, b)| ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt())
+            .map(|Side { ends: [a, b], .. }| ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt())
             .sum();
         let cell = (length / sides.len() as f64).max(margin).max(f64::MIN_POSITIVE);
         let mut cells: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
-        for (k, &(_, a, b)) in sides.iter().enumerate() {
+        for (k, &Side { ends: [a, b], .. }) in sides.iter().enumerate() {
             // In steps of a cell along the side, with a cell on each side.
             let steps =
                 ((b[0] - a[0]).abs().max((b[1] - a[1]).abs()) / cell).ceil().max(1.0) as usize;
@@ -155,12 +214,13 @@ impl SideGrid {
     }
 
     /// The first two sides that cross.
-    fn crossing(&self) -> Option<(Side, Side)> {
+    fn crossing(&self) -> Option<[Side; 2]> {
         let mut found: Option<(u32, u32)> = None;
         for slot in self.cells.values() {
             for (i, &k) in slot.iter().enumerate() {
                 for &l in &slot[i + 1..] {
-                    let ((_, a, b), (_, p, q)) = (self.sides[k as usize], self.sides[l as usize]);
+                    let ([a, b], [p, q]) =
+                        (self.sides[k as usize].ends, self.sides[l as usize].ends);
                     let crosses = cross(a, b, p) * cross(a, b, q) < 0.0
                         && cross(p, q, a) * cross(p, q, b) < 0.0;
                     if crosses && found.is_none_or(|f| (k, l) < f) {
@@ -169,7 +229,7 @@ impl SideGrid {
                 }
             }
         }
-        found.map(|(k, l)| (self.sides[k as usize], self.sides[l as usize]))
+        found.map(|(k, l)| [k, l].map(|k| self.sides[k as usize]))
     }
 
     /// Whether all sides are at least `margin`, at most a cell, away.
@@ -177,7 +237,7 @@ impl SideGrid {
         let [x, y] = p.map(|x| (x / self.cell).floor() as i64);
         let near = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
         near.filter_map(|key| self.cells.get(&key)).flatten().all(|&k| {
-            let (_, a, b) = self.sides[k as usize];
+            let [a, b] = self.sides[k as usize].ends;
             distance(a, b, p) >= margin
         })
     }
@@ -194,11 +254,18 @@ pub(crate) struct TrimRegion {
 impl TrimRegion {
     /// The region within loops, the outer one counter-clockwise and the holes clockwise.
     pub fn new<T: Real>(cycles: &[Vec<Place<T>>], plane: TrimPlane) -> Result<Self, CallError> {
-        let polygons: Vec<Vec<[f64; 2]>> = cycles
+        let mut polygons: Vec<Vec<[f64; 2]>> = cycles
             .iter()
             .map(|c| c.iter().map(|p| plane.forward(p.map(T::re))).collect())
             .collect();
-        let grid = SideGrid::new(&polygons, plane.margin);
+        let mut grid = SideGrid::new(&polygons, plane.margin);
+        for _ in 0..MAX_FOLDS {
+            let Some(sides) = grid.crossing() else { break };
+            if !unfold(&mut polygons, cycles, sides) {
+                break;
+            }
+            grid = SideGrid::new(&polygons, plane.margin);
+        }
         let region = Self { plane, polygons, grid };
         for (k, polygon) in region.polygons.iter().enumerate().skip(1) {
             let [x, y] = polygon[0];
@@ -208,9 +275,9 @@ impl TrimRegion {
                 return Err(region.crossed(what, format!("(u, v) = ({u}, {v})")));
             }
         }
-        if let Some(((c, a, _), (d, ..))) = region.grid.crossing() {
-            let place = cycles[c].iter().find(|p| region.plane.forward(p.map(T::re)) == a);
-            let [u, v] = place.map_or([f64::NAN; 2], |p| p.map(T::re));
+        if let Some([a, b]) = region.grid.crossing() {
+            let (c, d) = (a.polygon, b.polygon);
+            let [u, v] = cycles[c][a.at].map(T::re);
             let what = if c == d { "itself".into() } else { format!("loop {}", d + 1) };
             let what = format!("loop {} crosses {what}", c + 1);
             return Err(region.crossed(what, format!("near (u, v) = ({u}, {v})")));
