@@ -122,7 +122,7 @@ fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
 
 /// A side of a polygon: its loop, the number of its first vertex, and its ends.
 #[derive(Clone, Copy)]
-struct Side {
+struct LoopSide {
     polygon: usize,
     at: usize,
     ends: [[f64; 2]; 2],
@@ -133,7 +133,7 @@ struct Side {
 fn unfold<T: Real>(
     polygons: &mut [Vec<[f64; 2]>],
     cycles: &[Vec<Place<T>>],
-    [a, b]: [Side; 2],
+    [a, b]: [LoopSide; 2],
 ) -> bool {
     if a.polygon != b.polygon {
         return false;
@@ -141,7 +141,7 @@ fn unfold<T: Real>(
     let (polygon, places) = (&mut polygons[a.polygon], &cycles[a.polygon]);
     let count = polygon.len();
     // The vertices from the end of one side to the start of the other, either way round.
-    let between = |from: Side, to: Side| (from.at, (to.at + count - from.at) % count);
+    let between = |from: LoopSide, to: LoopSide| (from.at, (to.at + count - from.at) % count);
     let extent = |(from, steps): (usize, usize)| {
         let first = places[(from + 1) % count].map(T::re);
         let away = (1..=steps).map(|k| {
@@ -171,28 +171,30 @@ fn unfold<T: Real>(
 
 /// Sides by the cells of a square grid that they pass.
 struct SideGrid {
-    sides: Vec<Side>,
+    sides: Vec<LoopSide>,
     cell: f64,
     cells: HashMap<(i64, i64), Vec<u32>>,
 }
 
 impl SideGrid {
     fn new(polygons: &[Vec<[f64; 2]>], margin: f64) -> Self {
-        let sides: Vec<Side> = polygons
+        let sides: Vec<LoopSide> = polygons
             .iter()
             .enumerate()
             .flat_map(|(polygon, p)| {
                 let ends = move |k: usize| [p[k], p[(k + 1) % p.len()]];
-                (0..p.len()).map(move |at| Side { polygon, at, ends: ends(at) })
+                (0..p.len()).map(move |at| LoopSide { polygon, at, ends: ends(at) })
             })
             .collect();
         let length: f64 = sides
             .iter()
-            .map(|Side { ends: [a, b], .. }| ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt())
+            .map(|LoopSide { ends: [a, b], .. }| {
+                ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt()
+            })
             .sum();
         let cell = (length / sides.len() as f64).max(margin).max(f64::MIN_POSITIVE);
         let mut cells: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
-        for (k, &Side { ends: [a, b], .. }) in sides.iter().enumerate() {
+        for (k, &LoopSide { ends: [a, b], .. }) in sides.iter().enumerate() {
             // In steps of a cell along the side, with a cell on each side.
             let steps =
                 ((b[0] - a[0]).abs().max((b[1] - a[1]).abs()) / cell).ceil().max(1.0) as usize;
@@ -214,7 +216,7 @@ impl SideGrid {
     }
 
     /// The first two sides that cross.
-    fn crossing(&self) -> Option<[Side; 2]> {
+    fn crossing(&self) -> Option<[LoopSide; 2]> {
         let mut found: Option<(u32, u32)> = None;
         for slot in self.cells.values() {
             for (i, &k) in slot.iter().enumerate() {
