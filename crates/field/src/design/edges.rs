@@ -6,7 +6,7 @@
 use super::terms::BodyTerms;
 use crate::expr::blend::fillet;
 use crate::expr::form::Form;
-use crate::expr::interval::{Interval, sides as sides_of};
+use crate::expr::interval::{octants, sides as sides_of};
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use std::collections::VecDeque;
@@ -98,15 +98,7 @@ impl EdgeSpace {
             {
                 return true;
             }
-            for corner in 0..8 {
-                pending.push_back([0, 1, 2].map(|axis| {
-                    let middle = sides[axis].middle();
-                    match corner >> axis & 1 {
-                        0 => Interval::new(sides[axis].low, middle),
-                        _ => Interval::new(middle, sides[axis].high),
-                    }
-                }));
-            }
+            pending.extend(octants(&sides));
         }
         false
     }

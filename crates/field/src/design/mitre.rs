@@ -6,7 +6,7 @@
 use super::edges::on_both;
 use super::grown;
 use super::terms::BodyTerms;
-use crate::expr::interval::{Interval, sides as sides_of};
+use crate::expr::interval::{octants, sides as sides_of};
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use std::collections::VecDeque;
@@ -91,15 +91,7 @@ fn points_of(faces: &[Primitive; 2], rest: &Set, over: &Box3) -> Vec<Vec3> {
                 }
             }
         }
-        for corner in 0..8 {
-            pending.push_back([0, 1, 2].map(|axis| {
-                let middle = sides[axis].middle();
-                match corner >> axis & 1 {
-                    0 => Interval::new(sides[axis].low, middle),
-                    _ => Interval::new(middle, sides[axis].high),
-                }
-            }));
-        }
+        pending.extend(octants(&sides));
     }
     out
 }

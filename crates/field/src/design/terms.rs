@@ -5,7 +5,7 @@
 //! points is left out, and so is every face of a term without which it still is part of the body. What grows a body, or cuts
 //! its edges, does so term by term.
 
-use crate::expr::interval::{Interval, sides as sides_of};
+use crate::expr::interval::{Interval, octants, sides as sides_of};
 use crate::expr::tape::ExprTape;
 use crate::query::separation::is_void;
 use crate::set::body::surfaces_of;
@@ -347,16 +347,7 @@ fn holds_in(set: &Set, over: &Box3) -> bool {
         if is_deep(&tape, &sides, over, &mut values) {
             return true;
         }
-        for corner in 0..8 {
-            let half = [0, 1, 2].map(|axis| {
-                let middle = sides[axis].middle();
-                match corner >> axis & 1 {
-                    0 => Interval::new(sides[axis].low, middle),
-                    _ => Interval::new(middle, sides[axis].high),
-                }
-            });
-            pending.push_back((half, tape.clone()));
-        }
+        pending.extend(octants(&sides).map(|half| (half, tape.clone())));
     }
     false
 }

@@ -320,6 +320,19 @@ impl Mul for Interval {
     }
 }
 
+/// The eight halves of a box along all three axes; bit k of the number is the upper half along axis k.
+pub(crate) fn octants(sides: &[Interval; 3]) -> [[Interval; 3]; 8] {
+    std::array::from_fn(|corner| {
+        [0, 1, 2].map(|axis| {
+            let middle = sides[axis].middle();
+            match corner >> axis & 1 {
+                0 => Interval::new(sides[axis].low, middle),
+                _ => Interval::new(middle, sides[axis].high),
+            }
+        })
+    })
+}
+
 /// The three sides of a box.
 pub(crate) fn sides(b: &Box3) -> [Interval; 3] {
     [0, 1, 2].map(|k| Interval { low: b.low[k], high: b.high[k] })

@@ -2,7 +2,7 @@
 
 use super::foot;
 use super::separation::{Gauge, proved as separation, suggested};
-use crate::expr::interval::{Interval, sides};
+use crate::expr::interval::{Interval, octants, sides};
 use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
 use crate::set::Membership;
 use crate::set::body::SurfacedSet;
@@ -236,16 +236,7 @@ pub fn distance(
         };
         let k = usize::from(size(1) > size(0));
         let old = &parts[k];
-        for corner in 0..8 {
-            let half = [0, 1, 2].map(|axis| {
-                let side = old.sides[axis];
-                let middle = side.middle();
-                if corner >> axis & 1 == 0 {
-                    Interval::new(side.low, middle)
-                } else {
-                    Interval::new(middle, side.high)
-                }
-            });
+        for half in octants(&old.sides) {
             let Some(new) = part(k, half, &old.tape) else { continue };
             let mut pair = parts.clone();
             pair[k] = new;
