@@ -89,6 +89,8 @@ def test_odd_texts(ran: Callable[..., Done], tmp_path: Path, name: str, command:
     # A text that does not run may be canonical all the same; without a body there is no flotation.
     if not sound and (command != "fmt" or name in ("Latin-1", "NUL")):
         assert done.returncode == 1 and error
+    elif command == "build" and name in ("empty", "blanks"):
+        assert done.returncode == 1 and "there are no panels to write" in error
     elif command not in ("hydro", "render"):
         assert done.returncode == 0, error
     # What is written into a pipe is the text itself.
@@ -97,8 +99,6 @@ def test_odd_texts(ran: Callable[..., Done], tmp_path: Path, name: str, command:
     if command == "check" and sound:
         count = 0 if name in ("empty", "blanks") else 7
         assert f"{count} object" in out
-    if command == "build" and name in ("empty", "blanks"):
-        assert "it has no objects" in error
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"], ids=["LF", "CR LF", "CR"])

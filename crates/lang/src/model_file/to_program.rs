@@ -34,8 +34,7 @@ pub fn to_program(
     registry: &Registry,
     evaluation: &Evaluation<f64>,
 ) -> String {
-    let text = ToProgram { source, registry, evaluation }.text();
-    moldloft_syntax::sdl::format(&text).unwrap_or(text)
+    ToProgram { source, registry, evaluation }.text()
 }
 
 /// True for what stands in the way of writing a model in the other form: an error that is not of an object
