@@ -60,5 +60,5 @@ pub use text::{TextError, read_fidget, read_libfive};
 
 pub use kinds::body::Pieces;
 pub use kinds::read::{field_value, primitive_of, set_of, set_value};
-pub use kinds::region::around;
 pub use kinds::rows;
+pub use query::bounds::around;

@@ -13,7 +13,6 @@ use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
-use crate::curve::near::is_gated;
 use crate::curve::thinning::CurvesBesideData;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
@@ -62,6 +61,12 @@ impl DataOptions {
     pub fn of(measure: Measure, goal: Goal) -> Self {
         let (conditions, shape) = (Vec::new(), ShapeConstraints::default());
         Self { measure, goal, conditions, shape, bends: true, accuracy: 1e-9 }
+    }
+
+    /// Whether counts say which curve on the way to the fairest is taken.
+    pub(super) fn is_gated(&self) -> bool {
+        let jumps = matches!(self.measure, Measure::Jumps | Measure::JumpLengths);
+        !self.bends && !jumps && matches!(self.goal, Goal::Near(_) | Goal::Budget(_))
     }
 }
 
@@ -395,12 +400,12 @@ impl InterpolationSpace {
 pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairError> {
     let job = data.job()?;
     if !options.shape.is_empty() {
-        if is_gated(options) {
+        if options.is_gated() {
             return data.gated_shape(options, &job);
         }
         return data.under_shape(options, &job);
     }
-    if is_gated(options) {
+    if options.is_gated() {
         return Ok(data.gated(options, &job, None)?.1);
     }
     let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);

@@ -15,7 +15,7 @@ use crate::interrogate::shape::{self, Sample};
 use crate::interrogate::soft_counts::SoftCounts;
 use crate::optimum::Parts;
 use crate::optimum::goal::Goal;
-use crate::{FairError, InterpolationSpace, Measure, SparseRows};
+use crate::{FairError, InterpolationSpace, SparseRows};
 use moldloft_num::Vec3;
 
 /// Steps of the integral from the goal's budget to what the fairest takes, and back to the lengths.
@@ -312,12 +312,6 @@ impl Data {
     }
 }
 
-/// Whether counts say which curve on the way to the fairest is taken.
-pub(super) fn is_gated(options: &DataOptions) -> bool {
-    let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
-    !options.bends && !jumps && matches!(options.goal, Goal::Near(_) | Goal::Budget(_))
-}
-
 /// Fairs data as [`fair_data`] does; where their parameters follow the turns it may do so with
 /// others, nearer to the lengths.
 ///
@@ -328,7 +322,7 @@ pub(super) fn fair_turned<'a>(
     options: &DataOptions,
     turned: Option<TurnedFrom<'a>>,
 ) -> Result<Relaid, FairError> {
-    if turned.is_none() || !is_gated(options) || !options.shape.is_empty() {
+    if turned.is_none() || !options.is_gated() || !options.shape.is_empty() {
         return Ok((None, fair_data(data, options)?));
     }
     let job = data.job()?;

@@ -190,7 +190,7 @@ pub fn fillet_sets<T: Real>(
     let mut choice = EdgeSelection::new(edges);
     let both = a.clone() | b.clone();
     let plain = both.re();
-    let over = crate::kinds::region::around(&plain).ok().flatten();
+    let over = crate::query::bounds::around(&plain).ok().flatten();
     let space = EdgeSpace { over, beside: plain.complement() };
     let terms = [BodyTerms::of(a, false)?, BodyTerms::of(b, false)?];
     let mut out = both;
@@ -213,7 +213,7 @@ fn edges_cut<T: Real>(
 ) -> Result<Set<T>, FieldError> {
     let mut choice = EdgeSelection::new(edges);
     let plain = set.re();
-    let over = crate::kinds::region::around(&plain).ok().flatten();
+    let over = crate::query::bounds::around(&plain).ok().flatten();
     let space = EdgeSpace { over, beside: plain };
     let outside = BodyTerms::of(set, true)?;
     let mut out = set.clone();

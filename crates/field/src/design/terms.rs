@@ -216,7 +216,7 @@ impl TermSpace {
         literals: &[Option<Leaf<T>>],
         outside: bool,
     ) -> Result<Self, FieldError> {
-        let over = match crate::kinds::region::around(set) {
+        let over = match crate::query::bounds::around(set) {
             Ok(Some(over)) => over,
             Ok(None) | Err(FieldError::Unbounded { .. }) => about(set),
             Err(e) => return Err(e),

@@ -86,7 +86,7 @@ pub struct Facets {
     pub(crate) about: Vec3,
     /// How many cells the surface passes through.
     pub cells: usize,
-    /// Side of a cell.
+    /// Side of a cell; of a body of planes alone, its shortest edge.
     pub step: f64,
     /// How many blocks of 8 x 8 x 8 cells hold the surface.
     pub blocks: usize,

@@ -646,7 +646,11 @@ fn finished(
             .map_err(broken)?;
     }
     let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
-    let step = super::shortest(over).1;
+    let side = super::shortest(over).1;
+    let points = mesh.positions();
+    let edges = mesh.faces().iter().flat_map(|f| [0, 1, 2].map(|k| [f[k], f[(k + 1) % 3]]));
+    let step =
+        edges.map(|[a, b]| points[a as usize].distance(points[b as usize])).fold(side, f64::min);
     Ok(Facets {
         mesh,
         own_leaves: own_leaves(&body.compiled),
@@ -662,6 +666,6 @@ fn finished(
         step,
         blocks: 0,
         computed: 0,
-        memory: Memory { grid: Grid::new(over, step)?, blocks: Arc::default() },
+        memory: Memory { grid: Grid::new(over, side)?, blocks: Arc::default() },
     })
 }

@@ -2,9 +2,10 @@
 
 use super::body::options;
 use super::read::{SetArgument, fault, primitive_of, set_of};
-use super::region::{Region, around, region};
+use super::region::{Region, region};
 use crate::facet::{Facets, Resolution};
 use crate::measure::curved::{self, Curved};
+use crate::query::bounds::around;
 use crate::query::foot;
 use crate::{
     FacetMemo, FieldError, IntegralOptions, Lifter, Membership, Moments, Primitive, Set, bracket,

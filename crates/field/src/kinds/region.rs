@@ -1,7 +1,8 @@
 //! The box over which a set is looked at.
 
 use super::read::fault;
-use crate::{Set, bounds};
+use crate::Set;
+use crate::query::bounds::around;
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{CallError, FieldId, Point};
 
@@ -29,10 +30,6 @@ pub struct Region<T> {
     pub corners: Option<[Vec3<T>; 2]>,
 }
 
-/// By which part of its size a box that was found is widened, so that nothing lies in its faces. The three
-/// differ, and are no simple fractions, so that the grid falls on no symmetry.
-const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
-
 /// The box that was given, or one found around the set: the arguments of the set and of the second corner.
 ///
 /// # Errors
@@ -54,72 +51,4 @@ pub fn region<T: Real>(
             .expected("a set with points in it, or a box")
             .in_field(of)),
     }
-}
-
-/// No side of a box around sheets and wires is less than this of the longest: four cells where those
-/// are a sixteenth of it.
-const LEAST_SIDE: f64 = 0.25;
-
-/// A box around a set, a little wider; `None` for an empty set.
-///
-/// # Errors
-/// A set without end.
-pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
-    let mut accuracy = 0.5;
-    let mut found = bounds(set, accuracy)?;
-    // To a hundredth of its size.
-    while let Some(over) = found {
-        let size = over.diagonal();
-        if accuracy <= 0.01 * size || accuracy < 1e-9 {
-            break;
-        }
-        accuracy = if size < 4.0 * accuracy { accuracy / 16.0 } else { 0.01 * size };
-        found = bounds(set, accuracy)?;
-    }
-    Ok(found.map(|mut over| {
-        let sides = [0, 1, 2].map(|k| over.high[k] - over.low[k]);
-        let size = sides.into_iter().fold(0.0, f64::max).max(1e-9);
-        // Sheets and wires have no thickness of their own, but the cells about them have.
-        let thin = set.leaves().iter().any(|leaf| leaf.primitive.is_sheet());
-        let more = Vec3::from([0, 1, 2].map(|k| {
-            let missing = if thin { 0.5 * (LEAST_SIDE * size - sides[k]) } else { 0.0 };
-            missing.max(WIDENED[k] * size)
-        }));
-        over.low -= more;
-        over.high += more;
-        over
-    }))
-}
-
-/// Where coordinates are compared to see whether they only turn, and how well they agree, of their size.
-const TURNED_AT: [[f64; 3]; 6] = [
-    [0.31, -0.42, 0.17],
-    [-1.73, 0.55, 2.61],
-    [3.16, 2.21, -5.3],
-    [-0.07, -9.2, 0.93],
-    [12.7, 4.4, 31.1],
-    [0.61, 0.27, -77.0],
-];
-const TURNED: f64 = 1e-9;
-
-/// The box about the z axis in which a set stays when its coordinates are replaced by ones that keep heights and distances from
-/// the axis; `None` for others, and for a set without end.
-pub(crate) fn box_of_turns<T: Real>(
-    set: &Set<T>,
-    coordinates: &[crate::Primitive<T>; 3],
-) -> Option<Set<f64>> {
-    let [x, y, z] = [0, 1, 2].map(|k| coordinates[k].re());
-    let turns = TURNED_AT.into_iter().all(|at| {
-        let p = Vec3::from(at);
-        let (a, b) = (libm::hypot(x.value(p), y.value(p)), libm::hypot(p.x, p.y));
-        (a - b).abs() <= TURNED * (1.0 + b) && z.value(p) == p.z
-    });
-    if !turns {
-        return None;
-    }
-    let over = around(&set.re()).ok().flatten()?;
-    let far = |k: usize| over.low[k].abs().max(over.high[k].abs());
-    let reach = libm::hypot(far(0), far(1));
-    let low = Vec3::of(-reach, -reach, over.low.z);
-    Set::cuboid(low, Vec3::of(reach, reach, over.high.z)).ok()
 }

@@ -560,7 +560,7 @@ impl<T: Real> Set<T> {
     pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Self {
         let leaf = |p: &Primitive<T>| Self::of_leaf(&p.remapped(coordinates));
         let made = self.rebuilt(&leaf, false, &Self::combined);
-        match crate::kinds::region::box_of_turns(self, coordinates) {
+        match crate::query::bounds::box_of_turns(self, coordinates) {
             Some(within) => made & within.constant(),
             None => made,
         }

@@ -12,5 +12,6 @@ pub(crate) mod format;
 mod grid_checks;
 mod grid_files;
 pub(crate) mod grid_formats;
+pub(crate) mod grid_values;
 pub mod plots;
 mod shape_measures;

@@ -1,5 +1,6 @@
 //! `plot`: curves, surfaces and blocks of a program as a picture, PNG or SVG by the ending of the file's name.
 
+use crate::functions::grid_values::grid_of;
 use crate::run::usage::spent;
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
@@ -211,7 +212,7 @@ fn gather(
             }
         }
         value => {
-            let Ok(grid) = crate::functions::grid_files::grid_of(value, name) else { return };
+            let Ok(grid) = grid_of(value, name) else { return };
             let bounds = Box3::around(grid.points());
             if (bounds.high - bounds.low).norm().is_normal() {
                 grids.push(grid);

@@ -1,7 +1,7 @@
 //! Runs a program: declarations of variables.
 
+use crate::run::declared_lists::declared_list;
 use crate::run::interpreter::Interpreter;
-use crate::run::records::declared_list;
 use crate::source::module::Module;
 use crate::source::scope::{Binding, ScopedBinding};
 use crate::value::initialised::Known;

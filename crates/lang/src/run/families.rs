@@ -7,20 +7,7 @@ use crate::run::interpreter::Interpreter;
 use moldloft_arrays::halved;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{CallError, Row, Scalar, Value};
-use std::collections::HashMap;
 use std::sync::Arc;
-
-/// The numbers that `refined` and `refined_step` gave, by their bits, and what they are in the coarse run.
-pub(crate) struct RefinedNumbers<T> {
-    pub counts: HashMap<u64, f64>,
-    pub steps: HashMap<u64, T>,
-}
-
-impl<T> Default for RefinedNumbers<T> {
-    fn default() -> Self {
-        Self { counts: HashMap::new(), steps: HashMap::new() }
-    }
-}
 
 /// The places of the steps among the arguments of a distribution, and whether these are cells rather than slopes.
 fn steps_of(name: &str) -> Option<(&'static [usize], bool)> {

@@ -8,8 +8,8 @@
 
 use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
+use crate::run::declared_lists::declared_list;
 use crate::run::parts::{self, StatementParts};
-use crate::run::records::declared_list;
 use crate::run::unused;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::source::scope::RecordAt;

@@ -245,12 +245,15 @@ impl SketchSession {
         Ok(())
     }
 
-    fn draw_strokes(&mut self, strokes: &[crate::format::dxf::Stroke]) -> Result<(), CommandError> {
+    fn draw_strokes(
+        &mut self,
+        strokes: &[crate::format::page_shapes::Stroke],
+    ) -> Result<(), CommandError> {
         let ends = strokes.iter().flatten();
         let size = ends.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()));
         self.check_page(size, strokes.len())?;
         let drawing = self.active_mut()?.draw();
-        let (points, lines) = crate::format::dxf::draw(drawing, strokes, 1e-6 * size);
+        let (points, lines) = crate::format::page_shapes::draw(drawing, strokes, 1e-6 * size);
         self.out.push(CommandReply::note(format!("{points} points and {lines} lines")));
         Ok(())
     }

@@ -22,9 +22,9 @@ mod typed;
 pub mod verbs;
 pub mod words;
 
+pub use crate::solid::feature::foreign;
 pub use error::CommandError;
 pub use no_body::no_body;
-pub use others::foreign;
 pub(crate) use session::Picture;
 pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};
 pub use subject::{ReplySubject, Suggestion};

@@ -1,9 +1,10 @@
 //! Numbers of other objects in expressions: in an object that has no such name, `A.W` is the number W of the object A.
 
 use super::session::{SessionState, SketchSession};
+use crate::solid::feature::foreign;
 use crate::solid::merge::identifier;
 use crate::{DimensionExpr, SketchObject, numbers};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Numbers of other objects by the names that an object reads.
@@ -81,20 +82,6 @@ impl SketchSession {
 /// The name of an object in expressions, folded.
 fn key(object: &SketchObject) -> String {
     identifier(&object.name).to_ascii_lowercase()
-}
-
-/// The names of numbers of other objects that the expressions of one read, folded.
-pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
-    let values = object.variables.values().map(|v| &v.value);
-    let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
-    let sizes = object.curves.values().flat_map(|c| c.radius.iter().chain(c.semi.iter().flatten()));
-    let feature = object.feature.iter();
-    let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
-    let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
-    let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
-    // What its operands read is read by it.
-    let inner = feature.flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
-    own.chain(inner).filter(|n| n.contains('.') && !object.has_name(n)).collect()
 }
 
 /// All expressions of an object.

@@ -1,12 +1,15 @@
 //! Shapes of another program's drawing: strokes, and arcs and circles as the curves that a sketch draws into the
 //! corners of lines.
 
-use crate::Drawing;
-use crate::format::dxf::{Stroke, draw};
 use crate::solid::curve::{CurveKind, SketchCurve};
-use crate::{DimensionExpr, PointId, SketchObject, Variable};
+use crate::{
+    DimensionExpr, Drawing, DrawnLine, DrawnPoint, LineTypeSource, PointId, SketchObject, Variable,
+};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// A straight stroke on the page.
+pub type Stroke = [[f64; 2]; 2];
 
 /// Angles up to this part of a radian make lines go on straight.
 const STRAIGHT: f64 = 1e-6;
@@ -252,3 +255,46 @@ fn add_curve(
 
 /// A full turn.
 pub(crate) const TURN: f64 = TAU;
+
+/// Adds strokes to a drawing, ends within `tolerance` being one point; the numbers of new points and
+/// lines.
+pub fn draw(drawing: &mut Drawing, strokes: &[Stroke], tolerance: f64) -> (usize, usize) {
+    let cell = |x: f64| (x / (2.0 * tolerance.max(f64::MIN_POSITIVE))).round() as i64;
+    let mut known: std::collections::BTreeMap<[i64; 2], Vec<PointId>> = Default::default();
+    for (&id, p) in &drawing.points {
+        known.entry([cell(p.u), cell(p.v)]).or_default().push(id);
+    }
+    let (mut points, mut lines) = (0, 0);
+    let mut next_point = drawing.next_point().0;
+    let mut next_line = drawing.next_line().0;
+    let mut joined: std::collections::BTreeSet<(PointId, PointId)> =
+        drawing.lines.values().map(|l| (l.p.min(l.q), l.p.max(l.q))).collect();
+    for stroke in strokes {
+        let [p, q] = stroke.map(|[u, v]| {
+            let [i, j] = [cell(u), cell(v)];
+            let around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [i + a, j + b]));
+            let near = around.filter_map(|c| known.get(&c)).flatten().copied().find(|id| {
+                let p = drawing.points[id];
+                (p.u - u).abs().max((p.v - v).abs()) <= tolerance
+            });
+            near.unwrap_or_else(|| {
+                let id = PointId(next_point);
+                next_point += 1;
+                points += 1;
+                drawing.points.insert(id, DrawnPoint { u, v });
+                known.entry([i, j]).or_default().push(id);
+                id
+            })
+        });
+        if p != q && joined.insert((p.min(q), p.max(q))) {
+            let id = crate::LineId(next_line);
+            next_line += 1;
+            lines += 1;
+            let line =
+                DrawnLine { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
+            drawing.lines.insert(id, line);
+            drawing.type_by_slope(id);
+        }
+    }
+    (points, lines)
+}

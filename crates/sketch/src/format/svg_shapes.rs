@@ -1,7 +1,7 @@
 //! The shapes of an SVG picture: lines, polygons, rectangles, circles, ellipses, and paths of lines and arcs.
 
 use crate::format::page_shapes::PageShapes;
-use crate::format::svg_transform::SvgTransform;
+use crate::format::svg_transform::{SvgTransform, numbers};
 
 /// Reads the shapes of an SVG text; v runs up, as on the page of a sketch.
 ///
@@ -139,38 +139,6 @@ fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> 
         other => shapes.leave_out(other),
     }
     Ok(())
-}
-
-/// Numbers with blanks or commas between them, or none where the next begins with a sign or point.
-pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    let mut out = Vec::new();
-    let mut word = String::new();
-    let mut flush = |word: &mut String| -> Result<(), String> {
-        if !word.is_empty() {
-            let x: Option<f64> = word.parse().ok().filter(|x: &f64| x.is_finite());
-            out.push(x.ok_or_else(|| format!("`{word}` is not a number"))?);
-            word.clear();
-        }
-        Ok(())
-    };
-    for c in text.chars() {
-        let exponent = word.ends_with(['e', 'E']);
-        match c {
-            ',' => flush(&mut word)?,
-            c if c.is_whitespace() => flush(&mut word)?,
-            '+' | '-' if !exponent => {
-                flush(&mut word)?;
-                word.push(c);
-            }
-            '.' if word.contains('.') || word.contains(['e', 'E']) => {
-                flush(&mut word)?;
-                word.push(c);
-            }
-            c => word.push(c),
-        }
-    }
-    flush(&mut word)?;
-    Ok(out)
 }
 
 /// A path; its Bézier curves are left out, and counted.

@@ -35,7 +35,7 @@ impl SvgTransform {
             let (name, after) = rest.split_once('(').ok_or_else(wrong)?;
             let (inside, after) = after.split_once(')').ok_or_else(wrong)?;
             rest = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
-            let n = super::svg_shapes::numbers(inside)?;
+            let n = numbers(inside)?;
             let turned = |degrees: f64| {
                 let (s, c) = (libm::sin(degrees.to_radians()), libm::cos(degrees.to_radians()));
                 SvgTransform([c, s, -s, c, 0.0, 0.0])
@@ -88,4 +88,36 @@ impl SvgTransform {
             *into.left_out.entry(kind).or_default() += count;
         }
     }
+}
+
+/// Numbers with blanks or commas between them, or none where the next begins with a sign or point.
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let mut out = Vec::new();
+    let mut word = String::new();
+    let mut flush = |word: &mut String| -> Result<(), String> {
+        if !word.is_empty() {
+            let x: Option<f64> = word.parse().ok().filter(|x: &f64| x.is_finite());
+            out.push(x.ok_or_else(|| format!("`{word}` is not a number"))?);
+            word.clear();
+        }
+        Ok(())
+    };
+    for c in text.chars() {
+        let exponent = word.ends_with(['e', 'E']);
+        match c {
+            ',' => flush(&mut word)?,
+            c if c.is_whitespace() => flush(&mut word)?,
+            '+' | '-' if !exponent => {
+                flush(&mut word)?;
+                word.push(c);
+            }
+            '.' if word.contains('.') || word.contains(['e', 'E']) => {
+                flush(&mut word)?;
+                word.push(c);
+            }
+            c => word.push(c),
+        }
+    }
+    flush(&mut word)?;
+    Ok(out)
 }

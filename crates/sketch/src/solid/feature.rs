@@ -13,7 +13,6 @@ use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
-use crate::command::foreign;
 use crate::feature::{EdgeBlend, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
@@ -603,4 +602,18 @@ fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
     };
     let size = farthest.norm_sq();
     size > 0.0 && arms.iter().all(|a| a.dot(*farthest) >= -1e-9 * size)
+}
+
+/// The names of numbers of other objects that the expressions of one read, folded.
+pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
+    let values = object.variables.values().map(|v| &v.value);
+    let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
+    let sizes = object.curves.values().flat_map(|c| c.radius.iter().chain(c.semi.iter().flatten()));
+    let feature = object.feature.iter();
+    let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
+    let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
+    let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
+    // What its operands read is read by it.
+    let inner = feature.flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
+    own.chain(inner).filter(|n| n.contains('.') && !object.has_name(n)).collect()
 }
