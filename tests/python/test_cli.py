@@ -171,8 +171,10 @@ def test_files_are_what_their_names_say(cli, tmp_path):
         assert "PNG" in cli("render", "a.sdl", "-o", name, status=1).stderr
         assert not (tmp_path / name).exists()
     (tmp_path / "a.gdf").write_text("title")
-    assert "not a model" in cli("convert", "a.gdf", status=1).stderr
-    assert "not a model" in cli("check", "a.gdf", status=1).stderr
+    (tmp_path / "a.png").write_bytes(b"\x89PNG")
+    for command in ("convert", "check"):
+        assert "expected ULEN and GRAV" in cli(command, "a.gdf", status=1).stderr
+        assert "not a model" in cli(command, "a.png", status=1).stderr
 
 
 def test_check_states_the_line_that_joins(cli, tmp_path):

@@ -173,7 +173,7 @@ def test_wrong_arguments_are_named(tmp_path: Path) -> None:
         ("name", lambda: m.__getitem__(np.zeros(3))),
         ("path", lambda: grids.read_aerofoil([5, 5])),
         ("folder", lambda: moldloft.Sketch(3)),
-        ("tol", lambda: fairing.fair(np.zeros((9, 2)), "x")),
+        ("tol", lambda: fairing.fair(np.arange(18).reshape(9, 2), "x")),
         ("name", lambda: s.sdl(len)),
         ("path", lambda: s.save(None)),
     ]
