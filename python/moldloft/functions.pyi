@@ -5630,7 +5630,7 @@ def write_su2(
     -----
     In the language::
 
-        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2("b.su2", b, "k1 = floor wall");
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2("b.su2", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
     """
     ...
 def write_gmsh(
@@ -5659,7 +5659,7 @@ def write_gmsh(
     -----
     In the language::
 
-        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh("b.msh", b, "k1 = floor wall");
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh("b.msh", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
     """
     ...
 def write_blockmesh(
@@ -5688,7 +5688,7 @@ def write_blockmesh(
     -----
     In the language::
 
-        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh("blockMeshDict", b, "k1 = floor wall");
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh("blockMeshDict", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
     """
     ...
 def write_csv(
