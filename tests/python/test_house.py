@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -57,8 +58,21 @@ def test_the_oldest_tools_are_stated_alike():
     python = re.search(r'python = "([\d.]+)"', manifest)[1]
     assert f'rust-version = "{rust}"' in (ROOT / "Cargo.toml").read_text()
     assert f'requires-python = ">={python}"' in (ROOT / "pyproject.toml").read_text()
-    readme = (ROOT / "README.md").read_text()
-    assert f"Rust {rust}" in readme and f"Python {python}" in readme
+    for page in ("README.md", "CONTRIBUTING.md", "docs/development.md"):
+        assert f"Rust {rust} or newer, Python {python} or newer" in (ROOT / page).read_text(), page
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    versions = [name for name in project["project"]["classifiers"] if "Python :: 3." in name]
+    assert versions[0].endswith(f":: {python}")
+    compact = python.replace(".", "")
+    assert project["tool"]["ruff"]["target-version"] == f"py{compact}"
+    assert project["tool"]["mypy"]["python_version"] == python
+    assert f"abi3-py{compact}" in (ROOT / "crates" / "py" / "Cargo.toml").read_text()
+    assert f"python-abi3 {python}.*" in (ROOT / "conda" / "recipe.yaml").read_text()
+    locked = (ROOT / "requirements" / "README.md").read_text()
+    assert set(re.findall(r"--python-version (\S+)", locked)) == {python}
+    for job in ("ci.yml", "release.yml"):
+        text = (ROOT / ".github" / "workflows" / job).read_text()
+        assert f'python-version: "{python}"' in text, job
 
 
 def test_the_readme_s_model_runs(tmp_path: Path, monkeypatch):
