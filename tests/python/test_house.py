@@ -150,3 +150,14 @@ def test_one_type_for_each_name() -> None:
             declared.setdefault(found[1], set()).add(str(path.relative_to(ROOT)))
     doubled = {name: sorted(paths) for name, paths in declared.items() if len(paths) > 1}
     assert not doubled
+
+
+def test_coverage_is_by_crate(tmp_path: Path):
+    record = "SF:/a/crates/{}/src/lib.rs\nLF:{}\nLH:{}\nend_of_record\n"
+    lines = [("num", 10, 9), ("io", 5, 5), ("io", 5, 2), ("registry-derive", 9, 0)]
+    (tmp_path / "lcov.info").write_text("".join(record.format(*line) for line in lines))
+    command = [sys.executable, str(ROOT / "tools" / "coverage.py"), str(tmp_path / "lcov.info")]
+    low = subprocess.run(command, capture_output=True, text=True)
+    assert low.returncode == 1 and low.stderr == "below 80 %: io 70.0 %\n"
+    assert "| `num` | 10 | 90.0 % |" in low.stdout
+    assert subprocess.run([*command, "--least", "70"], capture_output=True).returncode == 0
