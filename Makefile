@@ -1,4 +1,5 @@
-# `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
+# `make demo` needs only Rust and Python (.ci/manifest.toml states the oldest); the workbench's page needs Node.js besides. CI runs
+# `make test`.
 #
 # The tests run a development build of the extension, which shares all that it compiles with the Rust tests and checks its own
 # assertions, so that nothing is compiled twice; `make optimised` and `pip install .` build what users get.
@@ -37,9 +38,16 @@ help: ## this list
 
 setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and everything that the tests need
 
+# An older one finds no package in the locked requirements, and pip's words do not say why.
+OLDEST_PYTHON := $(shell sed -n 's/^python = "\(.*\)"/\1/p' .ci/manifest.toml)
+OLD_PYTHON = import sys; oldest = '$(OLDEST_PYTHON)'; sys.version_info >= tuple(map(int, oldest.split('.'))) or sys.exit( \
+	'%s: expected Python %s or newer, found %s; another one: make PYTHON=python%s VENV=.venv%s' \
+	% (sys.executable, oldest, sys.version.split()[0], oldest, oldest))
+
 # The virtual environment with the package of this checkout: as the tests need it or, for a first look, without any optimisation,
 # which takes a quarter of the time to build.
 define INSTALL
+@$$(test -x $(BIN)/python && echo $(BIN)/python || echo $(PYTHON)) -c "$(OLD_PYTHON)"
 @test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 @echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
 @$(PIP) install --require-hashes --requirement requirements/build.txt

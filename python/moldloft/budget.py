@@ -38,7 +38,8 @@ class Limits(NamedTuple):
     objects
         Objects of one model.
     seconds
-        Time of one run, one mesh, one measure; ``inf`` for no limit.
+        Time of one run, one mesh, one measure; ``inf`` where none is stated: work on one set has
+        10 s of processor time then, and CAD files have theirs.
     """
 
     memory: int

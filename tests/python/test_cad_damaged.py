@@ -328,10 +328,10 @@ import moldloft
 from moldloft.cad import apart, importing
 begun = apart._Worker._begun
 def ended(self):
-    process = begun(self)
-    process.kill()
-    process.wait()
-    return process
+    child = begun(self)
+    child._process.kill()
+    child._process.wait()
+    return child
 apart._Worker._begun = ended
 try:
     importing.program(sys.argv[1])

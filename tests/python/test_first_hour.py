@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -208,13 +206,3 @@ def test_no_quoted_wording_is_left(wording: str) -> None:
         if wording in re.sub(r"\s*\n\s*(?://[/!]? ?)?", " ", path.read_text(encoding="utf-8"))
     ]
     assert not found
-
-
-def test_the_interpreter_starts_at_once() -> None:
-    """Beyond Python's own start: modules are counted in `test_house.py`, here is the whole."""
-    spent = []
-    for code in ("pass", "import moldloft"):
-        child = [sys.executable, "-c", f"{code}\nimport time; print(time.process_time())"]
-        spent.append(float(subprocess.run(child, capture_output=True, text=True).stdout))
-    # 0.03 s were measured; ten times as much would be felt.
-    assert spent[1] - spent[0] < 0.3

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -57,8 +58,21 @@ def test_the_oldest_tools_are_stated_alike():
     python = re.search(r'python = "([\d.]+)"', manifest)[1]
     assert f'rust-version = "{rust}"' in (ROOT / "Cargo.toml").read_text()
     assert f'requires-python = ">={python}"' in (ROOT / "pyproject.toml").read_text()
-    readme = (ROOT / "README.md").read_text()
-    assert f"Rust {rust}" in readme and f"Python {python}" in readme
+    for page in ("README.md", "CONTRIBUTING.md", "docs/development.md"):
+        assert f"Rust {rust} or newer, Python {python} or newer" in (ROOT / page).read_text(), page
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    versions = [name for name in project["project"]["classifiers"] if "Python :: 3." in name]
+    assert versions[0].endswith(f":: {python}")
+    compact = python.replace(".", "")
+    assert project["tool"]["ruff"]["target-version"] == f"py{compact}"
+    assert project["tool"]["mypy"]["python_version"] == python
+    assert f"abi3-py{compact}" in (ROOT / "crates" / "py" / "Cargo.toml").read_text()
+    assert f"python-abi3 {python}.*" in (ROOT / "conda" / "recipe.yaml").read_text()
+    locked = (ROOT / "requirements" / "README.md").read_text()
+    assert set(re.findall(r"--python-version (\S+)", locked)) == {python}
+    for job in ("ci.yml", "release.yml"):
+        text = (ROOT / ".github" / "workflows" / job).read_text()
+        assert f'python-version: "{python}"' in text, job
 
 
 def test_the_readme_s_model_runs(tmp_path: Path, monkeypatch):
@@ -136,3 +150,14 @@ def test_one_type_for_each_name() -> None:
             declared.setdefault(found[1], set()).add(str(path.relative_to(ROOT)))
     doubled = {name: sorted(paths) for name, paths in declared.items() if len(paths) > 1}
     assert not doubled
+
+
+def test_coverage_is_by_crate(tmp_path: Path):
+    record = "SF:/a/crates/{}/src/lib.rs\nLF:{}\nLH:{}\nend_of_record\n"
+    lines = [("num", 10, 9), ("io", 5, 5), ("io", 5, 2), ("registry-derive", 9, 0)]
+    (tmp_path / "lcov.info").write_text("".join(record.format(*line) for line in lines))
+    command = [sys.executable, str(ROOT / "tools" / "coverage.py"), str(tmp_path / "lcov.info")]
+    low = subprocess.run(command, capture_output=True, text=True)
+    assert low.returncode == 1 and low.stderr == "below 80 %: io 70.0 %\n"
+    assert "| `num` | 10 | 90.0 % |" in low.stdout
+    assert subprocess.run([*command, "--least", "70"], capture_output=True).returncode == 0

@@ -258,6 +258,28 @@ outputs = ["twice"]
     assert not counted or counted[0] < count
 
 
+def test_a_result_is_in_the_file_at_once(tmp_path: Path):
+    path = tmp_path / "s.sqlite"
+    made = study.Outcome("k", "done", "", "", 0.1, {"a": 1.0}, {"b": 2.0})
+    with study.Store(path, writing=True) as kept:
+        kept.begin({}, ["k", "l"])
+        kept.add(made)
+        assert known(path) == 1
+        kept.forget(["done"])
+        assert known(path) == 0
+        # What comes from another store comes whole or not at all.
+        other = study.Store(tmp_path / "t.sqlite", writing=True)
+        other.add(made)
+        monkey = [made, None]
+        other.outcomes = lambda: iter(monkey)  # type: ignore[method-assign]
+        with pytest.raises(AttributeError):
+            kept.collect(other)
+        assert known(path) == 0
+        monkey.pop()
+        assert kept.collect(other) == known(path) == 1
+        other.close()
+
+
 def known(store: Path) -> int:
     try:
         with study.Store(store) as kept:

@@ -12,14 +12,17 @@ mod confine;
 mod frames;
 mod machine;
 mod memory;
+mod portion;
 
 pub use confine::confine;
 pub use frames::{LONGEST_FRAME, read_frame, write_frame};
 pub use machine::usual_memory;
 pub use memory::{BesideHeap, Counting, FLUSH, RESERVE, beside, held, settle};
+pub use portion::SET_SECONDS;
 
-use std::sync::OnceLock;
+use portion::Portion;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// The limits of a run.
@@ -32,7 +35,7 @@ pub struct Limits {
     pub steps: u64,
     /// Objects of a model.
     pub objects: u64,
-    /// Seconds of one request: a run, a mesh, a measure.
+    /// Seconds of one request: a run, a mesh, a measure. Without a limit, work on a set still has [`SET_SECONDS`].
     pub seconds: f64,
 }
 
@@ -156,14 +159,16 @@ impl std::error::Error for Spent {}
 #[derive(Debug, Default)]
 pub struct Budget {
     cancelled: AtomicBool,
-    /// When the time is over, in nanoseconds after [`origin`]; 0 for never.
+    /// When the time is over, in nanoseconds after [`elapsed`]'s beginning; 0 for never.
     deadline: AtomicU64,
+    /// What a part of the work has, of whose budget.
+    portion: Option<Portion>,
 }
 
-/// The moment from which deadlines count.
-fn origin() -> Instant {
+/// Time since the moment from which deadlines count.
+fn elapsed() -> Duration {
     static ORIGIN: OnceLock<Instant> = OnceLock::new();
-    *ORIGIN.get_or_init(Instant::now)
+    ORIGIN.get_or_init(Instant::now).elapsed()
 }
 
 /// Time that is counted; it ends with this.
@@ -190,7 +195,21 @@ impl Budget {
 
     /// True after [`Budget::cancel`].
     pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        let above = || self.portion.as_ref().is_some_and(|portion| portion.whole.is_cancelled());
+        self.cancelled.load(Ordering::Relaxed) || above()
+    }
+
+    /// A budget for the work on one set: a part of this one and, where no time is stated, of [`SET_SECONDS`].
+    #[must_use]
+    pub fn for_set(self: &Arc<Self>) -> Arc<Self> {
+        // A page in a browser has no clock here; its host ends the engine.
+        match limits().seconds.is_finite() || cfg!(target_family = "wasm") {
+            true => self.clone(),
+            false => Arc::new(Self {
+                portion: Some(Portion::new(self.clone(), SET_SECONDS)),
+                ..Self::default()
+            }),
+        }
     }
 
     /// A request begins, until the answer is dropped: its time is counted, where time is limited, and memory is kept back
@@ -199,7 +218,7 @@ impl Budget {
         memory::enter();
         let seconds = limits().seconds;
         if let Ok(allowed) = Duration::try_from_secs_f64(seconds) {
-            let end = origin().elapsed() + allowed;
+            let end = elapsed() + allowed;
             let end = u64::try_from(end.as_nanos()).unwrap_or(0);
             self.deadline.store(end.max(1), Ordering::Relaxed);
         }
@@ -212,12 +231,15 @@ impl Budget {
     /// [`Spent`] once it was cancelled, or memory or time are used up.
     #[inline]
     pub fn poll(&self) -> Result<(), Spent> {
-        if self.is_cancelled() {
+        if self.cancelled.load(Ordering::Relaxed) {
             return Err(Spent::Cancelled);
+        }
+        if let Some(portion) = &self.portion {
+            return portion.poll();
         }
         self.grow(0)?;
         let deadline = self.deadline.load(Ordering::Relaxed);
-        if deadline > 0 && origin().elapsed().as_nanos() > u128::from(deadline) {
+        if deadline > 0 && elapsed().as_nanos() > u128::from(deadline) {
             return Err(Spent::Time { allowed: limits().seconds });
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! What the machine leaves to a process: its memory, and the limits that the system sets.
 
 use crate::Limits;
+use std::time::Duration;
 
 /// The most memory that a program takes unasked.
 const MOST: u64 = 8 << 30;
@@ -27,6 +28,17 @@ fn control_group() -> Option<u64> {
 
 fn address_space() -> Option<u64> {
     number_after(&std::fs::read_to_string("/proc/self/limits").ok()?, "Max address space")
+}
+
+/// How long the process has had a processor, all threads together; known on Linux alone.
+pub(crate) fn processor_time() -> Option<Duration> {
+    /// What the kernel counts in, on every machine.
+    const TICK: Duration = Duration::from_millis(10);
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The name of the program may hold anything, but its parenthesis is the last; user and system time follow.
+    let (_, fields) = text.rsplit_once(')')?;
+    let mut ticks = fields.split_whitespace().skip(11).map(str::parse::<u32>);
+    Some(TICK * (ticks.next()?.ok()?.checked_add(ticks.next()?.ok()?)?))
 }
 
 /// Bytes that the heap may have under the system's limit of address space, beside `held` that it has: three quarters of

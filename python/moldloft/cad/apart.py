@@ -7,13 +7,8 @@ named, and left out; of IGES files it is an error.
 from __future__ import annotations
 
 import atexit
-import contextlib
-import json
 import math
 import os
-import signal
-import struct
-import subprocess
 import sys
 import threading
 import time
@@ -26,9 +21,9 @@ from moldloft.budget import limits
 from moldloft.cad import needed
 from moldloft.cad.occt import Imported, ImportedFace, cad_bytes, of_part
 from moldloft.cad.part21 import StepText
+from moldloft.child_process import ChildProcess, ProcessEnd, bounded, serve
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
-from moldloft.pipes import broken_pipes_raise
 
 __all__ = ["read"]
 
@@ -149,77 +144,36 @@ class _Worker:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: ChildProcess | None = None
 
-    def ask(self, request: dict[str, Any]) -> bytes | str:
+    def ask(self, request: dict[str, Any]) -> dict[str, Any] | str:
         """What it answers, or how it ended."""
-        message = json.dumps(request).encode()
         with self._lock:
-            for _ in range(2):
+            while True:
                 process = self._process
-                old = process is not None and process.poll() is None
-                if process is None or not old:
+                if process is None or not process.alive:
                     process = self._process = self._begun()
-                answer = self._answered(process, message, request["clock"], request["seconds"])
-                # It may have ended by itself just then.
-                if isinstance(answer, bytes) or not old or process.returncode != 0:
+                old = process.answered
+                answer = process.ask(request, request["clock"])
+                # One that nobody had asked for a while may have ended by itself just then.
+                if not isinstance(answer, ProcessEnd):
                     return answer
-            return answer
+                self._process = None
+                if not old or (answer.asked and answer.status != 0):
+                    return self._said(answer, request)
 
-    def _begun(self) -> subprocess.Popen[bytes]:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "moldloft.cad.apart"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
-        atexit.register(process.kill)
+    def _begun(self) -> ChildProcess:
+        process = ChildProcess("moldloft.cad.apart", quiet=True)
+        atexit.register(process.end)
         return process
 
-    def _answered(
-        self, process: subprocess.Popen[bytes], message: bytes, seconds: float, allowed: float
-    ) -> bytes | str:
-        assert process.stdin is not None and process.stdout is not None
-        late = threading.Event()
-
-        def end() -> None:
-            late.set()
-            process.kill()
-
-        timer = threading.Timer(seconds, end)
-        timer.daemon = True
-        timer.start()
-        try:
-            with broken_pipes_raise():
-                process.stdin.write(struct.pack("<Q", len(message)) + message)
-                process.stdin.flush()
-            head = process.stdout.read(8)
-            if len(head) == 8:
-                (length,) = struct.unpack("<Q", head)
-                body = process.stdout.read(length)
-                if len(body) == length:
-                    return body
-        except BrokenPipeError:
-            pass
-        except BaseException:
-            process.kill()
-            raise
-        finally:
-            timer.cancel()
-        process.wait()
-        self._process = None
-        # What was not written is tried once more.
-        with broken_pipes_raise(), contextlib.suppress(OSError):
-            process.stdin.close()
-        process.stdout.close()
-        if late.is_set():
-            return f"OCCT was ended: it took longer than {seconds:g} s"
-        number = -process.returncode
-        if number == getattr(signal, "SIGXCPU", None):
+    def _said(self, end: ProcessEnd, request: dict[str, Any]) -> str:
+        if end.late:
+            return f"OCCT was ended: it took longer than {request['clock']:g} s"
+        if end.by == "SIGXCPU":
+            allowed = request["seconds"]
             return f"OCCT was ended: it took longer than {allowed:g} s of processor time"
-        known = number in {*signal.Signals}
-        name = signal.Signals(number).name if known else f"status {process.returncode}"
-        return f"OCCT ended over the file ({name})"
+        return f"OCCT ended over the file ({end.by})"
 
 
 _worker = _Worker()
@@ -239,13 +193,12 @@ def _asked(
         "seconds": spending.left,
         "clock": spending.clock,
     }
-    sent = _worker.ask(request)
-    if isinstance(sent, str):
+    answer = _worker.ask(request)
+    if isinstance(answer, str):
         # What ended over the file is known by its time; a part that took all leaves none.
-        ended = sent.startswith("OCCT ended")
+        ended = answer.startswith("OCCT ended")
         spending.left -= max(_LEAST, _children() - before) if ended else spending.left
-        return sent
-    answer: dict[str, Any] = json.loads(sent)
+        return answer
     spending.left -= answer["seconds"]
     if "refused" in answer:
         raise FileError(answer["refused"].replace(request["path"], request["called"]))
@@ -323,47 +276,13 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     return {"faces": faces, "curves": curves, "remarks": found.remarks}
 
 
-def _bounded(memory: int, seconds: float) -> None:
-    """Bounds what this process takes from now on, where the system can."""
-    try:
-        import resource
-    except ImportError:
-        return
-    _, most = resource.getrlimit(resource.RLIMIT_AS)
-    held = memory if most == resource.RLIM_INFINITY else min(memory, most)
-    resource.setrlimit(resource.RLIMIT_AS, (held, most))
-    # Should nobody wait for it any more.
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    until = math.ceil(used.ru_utime + used.ru_stime + seconds)
-    resource.setrlimit(resource.RLIMIT_CPU, (until, resource.getrlimit(resource.RLIMIT_CPU)[1]))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def _main() -> None:
-    # What OCCT prints goes nowhere.
-    answers = os.dup(1)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with os.fdopen(answers, "wb") as target:
-        while True:
-            timer = threading.Timer(_IDLE, os._exit, (0,))
-            timer.daemon = True
-            timer.start()
-            head = sys.stdin.buffer.read(8)
-            timer.cancel()
-            if len(head) < 8:
-                # OCCT's own destructors are not waited for.
-                os._exit(0)
-            (length,) = struct.unpack("<Q", head)
-            request = json.loads(sys.stdin.buffer.read(length))
-            began = time.process_time()
-            _bounded(request["memory"], request["seconds"])
-            found = _answer(request)
-            answer = json.dumps({**found, "seconds": time.process_time() - began}).encode()
-            target.write(struct.pack("<Q", len(answer)) + answer)
-            target.flush()
+def _timed(request: dict[str, Any]) -> dict[str, Any]:
+    """What is read, with the processor time that it took."""
+    began = time.process_time()
+    bounded(request["memory"], request["seconds"])
+    found = _answer(request)
+    return {**found, "seconds": time.process_time() - began}
 
 
 if __name__ == "__main__":
-    _main()
+    serve(_timed, _IDLE)

@@ -10,7 +10,7 @@ from moldloft.arguments import explain
 from moldloft.implicit.fields import Field
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing import Self
 
 __all__ = ["Edged"]
 

@@ -10,8 +10,9 @@ import numpy as np
 from moldloft.arguments import explain
 
 if TYPE_CHECKING:
+    from typing import Self
+
     from numpy.typing import ArrayLike, NDArray
-    from typing_extensions import Self
 
     Floats = NDArray[np.float64]
     Triple = Sequence[float]

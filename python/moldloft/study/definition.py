@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -240,15 +241,6 @@ def read(path: str | os.PathLike[str]) -> Study:
 
 
 def _parsed(place: Path) -> dict[str, Any]:
-    try:
-        import tomllib
-    except ImportError:
-        try:
-            import tomli as tomllib
-        except ImportError:
-            raise Error(
-                "Python 3.10 reads TOML with tomli: pip install 'moldloft[study]'"
-            ) from None
     try:
         found: dict[str, Any] = tomllib.loads(read_text(place))
         return found

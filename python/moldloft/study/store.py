@@ -6,11 +6,11 @@ stopped goes on where it was, and equal points of several plans are evaluated on
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import os
 import sqlite3
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,9 +31,6 @@ __all__ = ["Outcome", "Results", "Store"]
 
 #: The layout of the file; others are refused.
 SCHEMA_VERSION = 1
-
-#: Results are committed after so many seconds at the latest: what a kill may cost.
-COMMIT_SECONDS = 0.25
 
 PENDING = "pending"
 """The state of a case that was not evaluated."""
@@ -79,7 +76,6 @@ class Store:
     def __init__(self, path: str | os.PathLike[str], *, writing: bool = False) -> None:
         self.path = Path(path)
         self._lock: Lock | None = None
-        self._since = time.monotonic()
         if writing:
             self._lock = Lock(
                 self.path.with_name(f".{self.path.name}.lock"), f"the study `{self.path}`"
@@ -126,7 +122,18 @@ class Store:
                 """
             )
         self._columns = {row[1] for row in self._db.execute("PRAGMA table_info(results)")}
-        self._db.execute("BEGIN")
+
+    @contextlib.contextmanager
+    def _at_once(self) -> Iterator[None]:
+        """Everything within is written together, or nothing."""
+        with self._named():
+            self._db.execute("BEGIN")
+            try:
+                yield
+            except BaseException:
+                self._db.execute("ROLLBACK")
+                raise
+            self._db.execute("COMMIT")
 
     # -- writing ---------------------------------------------------------------------------
 
@@ -140,13 +147,12 @@ class Store:
         keys
             The keys of all cases, in the order of the plan.
         """
-        with self._named():
+        with self._at_once():
             self._db.execute("DELETE FROM cases")
             self._db.executemany(
                 "INSERT INTO cases VALUES (?, ?)", ((k, key) for k, key in enumerate(keys))
             )
             self._db.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", facts.items())
-            self._commit()
 
     def append(self, key: str) -> None:
         """Add one case at the end of the plan.
@@ -162,10 +168,7 @@ class Store:
             )
 
     def add(self, outcome: Outcome) -> None:
-        """Record the outcome of a case.
-
-        It is on the disk with the next one that is recorded a quarter of a second after the last
-        commit, at the latest when the store closes.
+        """Record the outcome of a case; the end of this process does not lose it.
 
         Parameters
         ----------
@@ -193,13 +196,6 @@ class Store:
             self._db.execute(
                 f"INSERT OR REPLACE INTO results ({names}) VALUES ({marks})", list(values.values())
             )
-            if time.monotonic() - self._since > COMMIT_SECONDS:
-                self._commit()
-
-    def _commit(self) -> None:
-        self._db.execute("COMMIT")
-        self._db.execute("BEGIN")
-        self._since = time.monotonic()
 
     def forget(self, states: Sequence[str]) -> int:
         """Forget results, so that their cases are evaluated again.
@@ -234,7 +230,7 @@ class Store:
             The number of results taken.
         """
         taken = 0
-        with self._named():
+        with self._at_once():
             known = self.known()
             for outcome in other.outcomes():
                 if outcome.key not in known:
@@ -322,12 +318,10 @@ class Store:
         )
 
     def close(self) -> None:
-        """Commits and releases the file."""
+        """Releases the file."""
         try:
             if hasattr(self, "_db"):
                 with self._named():
-                    if self._db.in_transaction:
-                        self._db.execute("COMMIT")
                     self._db.close()
         finally:
             if self._lock is not None:

@@ -8,23 +8,17 @@ case only.
 from __future__ import annotations
 
 import atexit
-import contextlib
-import json
 import os
 import shutil
-import signal
-import struct
-import subprocess
-import sys
 import tempfile
 import threading
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
-from moldloft.pipes import broken_pipes_raise
+from moldloft.child_process import ChildProcess, ProcessEnd
 
-__all__ = ["CRASHED", "TIMED_OUT", "end_workers", "evaluate_apart", "frame", "install"]
+__all__ = ["CRASHED", "TIMED_OUT", "end_workers", "evaluate_apart", "install"]
 
 TIMED_OUT = "timed out"
 CRASHED = "crashed"
@@ -33,84 +27,21 @@ CRASHED = "crashed"
 STARTUP_SECONDS = 60.0
 
 
-class CaseWorker:
-    """A process that evaluates cases one after the other."""
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "moldloft.study.worker"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-        )
-        self._used = False
-
-    def ask(self, request: Mapping[str, Any]) -> dict[str, Any] | None:
-        """The answer; a failure when the process ended; None when it had ended before."""
-        process, seconds = self._process, float(request["seconds"])
-        assert process.stdin is not None and process.stdout is not None
-        late = threading.Event()
-
-        def end() -> None:
-            late.set()
-            process.kill()
-
-        # The first case also waits for the start.
-        timer = threading.Timer(seconds + (0 if self._used else STARTUP_SECONDS), end)
-        timer.daemon = True
-        timer.start()
-        sent = False
-        try:
-            message = json.dumps(request).encode()
-            with broken_pipes_raise():
-                process.stdin.write(struct.pack("<Q", len(message)) + message)
-                process.stdin.flush()
-            sent = True
-            body = frame(process.stdout)
-            if body is not None:
-                self._used = True
-                found: dict[str, Any] = json.loads(body)
-                return found
-        except (BrokenPipeError, ValueError):
-            pass
-        finally:
-            timer.cancel()
-        process.kill()
-        process.wait()
-        if late.is_set():
-            return {
-                "state": TIMED_OUT,
-                "id": "timed-out",
-                "message": f"the case took longer than {seconds:g} s",
-                "seconds": seconds,
-            }
-        if self._used and (not sent or process.returncode == 0):
-            return None
-        number = -process.returncode
-        how = (
-            signal.Signals(number).name
-            if number in {*signal.Signals}
-            else f"status {process.returncode}"
-        )
-        return {
-            "state": CRASHED,
-            "id": "crashed",
-            "message": f"the process of the case ended ({how})",
-            "seconds": 0.0,
-        }
-
-    @property
-    def alive(self) -> bool:
-        """Whether the process lives."""
-        return self._process.poll() is None
-
-    def kill(self) -> None:
-        """Ends the process."""
-        self._process.kill()
-        self._process.wait()
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with broken_pipes_raise(), contextlib.suppress(OSError):
-                    pipe.close()
+def _case(end: ProcessEnd, seconds: float) -> dict[str, Any]:
+    """What became of a case over which its process ended."""
+    late = {
+        "state": TIMED_OUT,
+        "id": "timed-out",
+        "message": f"the case took longer than {seconds:g} s",
+        "seconds": seconds,
+    }
+    crashed = {
+        "state": CRASHED,
+        "id": "crashed",
+        "message": f"the process of the case ended ({end.by})",
+        "seconds": 0.0,
+    }
+    return late if end.late else crashed
 
 
 #: Models whose files were sent here, by digest: paths of the model and of its folder.
@@ -140,8 +71,8 @@ def install(digest: str, files: Mapping[str, bytes], model: str) -> None:
     _installed[digest] = {"model": str(root / model), "root": str(root)}
 
 
-_idle: list[CaseWorker] = []
-_busy: set[CaseWorker] = set()
+_idle: list[ChildProcess] = []
+_busy: set[ChildProcess] = set()
 _guard = threading.Lock()
 _owner = os.getpid()
 
@@ -171,23 +102,28 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
                 _owner = os.getpid()
             worker = _idle.pop() if _idle else None
         if worker is not None and not worker.alive:
-            worker.kill()
+            worker.end()
             continue
-        worker = worker or CaseWorker()
+        worker = worker or ChildProcess("moldloft.study.worker")
         with _guard:
             _busy.add(worker)
-        answer = None
+        seconds, old = float(request["seconds"]), worker.answered
+        answer: dict[str, Any] | ProcessEnd | None = None
         try:
-            answer = worker.ask(request)
+            # The first case also waits for the start.
+            answer = worker.ask(request, seconds + (0 if old else STARTUP_SECONDS))
         finally:
             with _guard:
                 _busy.discard(worker)
-                if worker.alive and answer is not None:
+                if isinstance(answer, dict):
                     _idle.append(worker)
                 else:
-                    worker.kill()
-        if answer is not None:
+                    worker.end()
+        if isinstance(answer, dict):
             return answer
+        # One that nobody had asked for a while may have ended by itself just then.
+        if answer.late or not old or (answer.asked and answer.status != 0):
+            return _case(answer, seconds)
 
 
 def end_workers() -> None:
@@ -195,18 +131,8 @@ def end_workers() -> None:
     with _guard:
         if _owner == os.getpid():
             for worker in (*_idle, *_busy):
-                worker.kill()
+                worker.end()
         _idle.clear()
 
 
 atexit.register(end_workers)
-
-
-def frame(source: BinaryIO | Any) -> bytes | None:
-    """The next message of a pipe; None at its end."""
-    head = source.read(8)
-    if len(head) < 8:
-        return None
-    (length,) = struct.unpack("<Q", head)
-    body: bytes = source.read(length)
-    return body if len(body) == length else None

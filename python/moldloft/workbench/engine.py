@@ -106,11 +106,11 @@ class Engine:
         await self._send(request)
         try:
             return await asyncio.wait_for(asyncio.shield(reading := self._reading()), self._budget)
-        except asyncio.TimeoutError:
+        except TimeoutError:
             await self._send(_CANCEL)
         try:
             return await asyncio.wait_for(reading, 2.0)
-        except asyncio.TimeoutError:
+        except TimeoutError:
             await self.end()
             raise EngineLostError(f"no answer within {self._budget:g} s") from None
 

@@ -119,7 +119,7 @@ class Outbox:
             self._last = len(data)
             try:
                 await asyncio.wait_for(self._send(data), seconds)
-            except asyncio.TimeoutError:
+            except TimeoutError:
                 self._give_up(f"it took nothing for {seconds:.0f} s")
                 return
             except Exception:

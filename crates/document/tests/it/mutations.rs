@@ -4,7 +4,6 @@
 use crate::common::{Random, ids, open, reported, rounds};
 use moldloft_registry::Value;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 /// The words of all texts of the corpus, and the texts.
 fn corpus() -> Vec<String> {
@@ -64,7 +63,6 @@ fn damaged_programs_neither_panic_nor_hang() {
         "P",
     ];
     let mut document = open("");
-    let mut slowest = Duration::ZERO;
     for round in 0..rounds(4_000) {
         let mut text = random.pick(&cases).clone();
         if random.chance(30) {
@@ -86,10 +84,8 @@ fn damaged_programs_neither_panic_nor_hang() {
             }
         }
         let text = words.concat();
-        let start = Instant::now();
         document.set_text(&text);
         let _ = document.panelled();
-        slowest = slowest.max(start.elapsed());
         assert!(!ids(&document).iter().any(|id| id == "internal-error"), "round {round}\n{text}");
         let mut again = open(&text);
         assert_eq!(reported(&document), reported(&again), "round {round}\n{text}");
@@ -109,6 +105,4 @@ fn damaged_programs_neither_panic_nor_hang() {
             assert!(x >= 0.0 || x.is_nan(), "round {round}: {x}\n{text}");
         }
     }
-    println!("slowest {slowest:?}");
-    assert!(slowest < Duration::from_secs(20), "{slowest:?}");
 }

@@ -9,9 +9,9 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Group, Kind, Point, TriangleBody, Value};
 use std::sync::Arc;
 
-/// Facets of that resolution, which stop when the model does.
+/// Facets of that resolution, which stop when the model does or a set has taken its time.
 pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
-    FacetOptions { budget: context.budget.clone(), ..FacetOptions::new(resolution) }
+    FacetOptions { budget: context.budget.for_set(), ..FacetOptions::new(resolution) }
 }
 
 /// The surface of a set as triangles: a mesh like any other.

@@ -38,7 +38,7 @@ fn moments<T: Real>(
 ) -> Result<Moments<T>, FieldError> {
     let measure = IntegralOptions {
         agreement: accuracy.map(T::re),
-        budget: context.budget.clone(),
+        budget: context.budget.for_set(),
         ..IntegralOptions::default()
     };
     let found = mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?;

@@ -47,8 +47,8 @@ impl PySet {
         work: impl FnOnce(&Set, Arc<Budget>) -> Result<R, FieldError> + Send + 'static,
     ) -> PyResult<R> {
         let budget = Arc::<Budget>::default();
-        let (set, flag) = (self.inner.clone(), budget.clone());
-        let outcome = interruptible(py, &budget, move || work(&set, flag))?;
+        let (set, part) = (self.inner.clone(), budget.for_set());
+        let outcome = interruptible(py, &budget, move || work(&set, part))?;
         finished(py, &self.slots, outcome)
     }
 }

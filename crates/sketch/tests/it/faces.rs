@@ -366,15 +366,12 @@ fn polytope(planes: &[(Vec3, f64)]) -> (Vec<Vec3>, Vec<[usize; 2]>, f64) {
 
 /// A plate with a grid of blind pockets: many cells, no brute force.
 #[test]
-fn a_plate_with_many_pockets_is_fast() {
+fn a_plate_with_many_pockets() {
     let solid = |[x, y, z]: [i64; 3]| z < 1 || x % 2 == 0 || y % 2 == 0;
     let (vertices, edges) = voxel_edges([13, 13, 2], &solid);
     assert!(edges.len() >= 420, "{}", edges.len());
-    let start = std::time::Instant::now();
     let fitted = fit(&vertices, &edges);
-    let elapsed = start.elapsed();
     let found = only(&fitted);
     assert!((found.volume - (2.0 * 169.0 - 36.0)).abs() < 1e-8);
     assert!(fitted.cells > 18, "{}", fitted.cells);
-    println!("{} edges, {} cells: {elapsed:?}", edges.len(), fitted.cells);
 }

@@ -1,0 +1,195 @@
+"""A process of Python that answers requests, one after the other, and may end over one.
+
+Requests and answers are JSON, each behind its length; only answers come from the process's standard
+output, whatever its libraries print.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+from moldloft.pipes import broken_pipes_raise
+
+__all__ = ["ChildProcess", "ProcessEnd", "bounded", "serve"]
+
+_HEAD = struct.Struct("<Q")
+
+
+@dataclass(frozen=True)
+class ProcessEnd:
+    """How a process ended instead of answering."""
+
+    status: int
+    """Its return code; below zero the number of a signal."""
+    late: bool
+    """Whether it was ended, for it had taken longer than the answer was waited for."""
+    asked: bool
+    """Whether it had taken the request."""
+
+    @property
+    def by(self) -> str:
+        """The name of the signal, or the status."""
+        known = -self.status in {*signal.Signals}
+        return signal.Signals(-self.status).name if known else f"status {self.status}"
+
+
+class ChildProcess:
+    """A process that runs a module, whose main part is :func:`serve`.
+
+    Parameters
+    ----------
+    module
+        The module's full name.
+    quiet
+        Whether its standard error goes nowhere.
+    """
+
+    def __init__(self, module: str, *, quiet: bool = False) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL if quiet else None,
+        )
+        self.answered = False
+        """Whether it has answered a request."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process lives."""
+        return self._process.poll() is None
+
+    def ask(self, request: Mapping[str, Any], seconds: float) -> dict[str, Any] | ProcessEnd:
+        """The answer to a request, or how the process ended over it.
+
+        Parameters
+        ----------
+        request
+            What JSON holds.
+        seconds
+            How long an answer is waited for; the process is ended then.
+
+        Returns
+        -------
+        dict or ProcessEnd
+            What the process made of the request.
+        """
+        source, target = self._process.stdout, self._process.stdin
+        assert source is not None and target is not None
+        late = threading.Event()
+
+        def end() -> None:
+            late.set()
+            self._process.kill()
+
+        timer = threading.Timer(seconds, end)
+        timer.daemon = True
+        timer.start()
+        asked = False
+        try:
+            with broken_pipes_raise():
+                _write(target, request)
+            asked = True
+            answer = _read(source)
+            if answer is not None:
+                self.answered = True
+                return answer
+        except (BrokenPipeError, ValueError):
+            pass
+        except BaseException:
+            self._process.kill()
+            raise
+        finally:
+            timer.cancel()
+        self.end()
+        return ProcessEnd(self._process.returncode, late.is_set(), asked)
+
+    def end(self) -> None:
+        """Ends the process and closes its pipes; one that is ending by itself keeps its status."""
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                with broken_pipes_raise(), contextlib.suppress(OSError):
+                    pipe.close()
+
+
+def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> None:
+    """Answer the requests of the process that began this one, until it asks no more.
+
+    Parameters
+    ----------
+    answer
+        What makes an answer of a request.
+    idle
+        Seconds without a request after which the process ends.
+    """
+    answers = os.dup(1)
+    os.dup2(2, 1)
+    # Ctrl-C is for the process that asks.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with os.fdopen(answers, "wb") as target:
+        while True:
+            timer = threading.Timer(idle, os._exit, (0,))
+            timer.daemon = True
+            timer.start()
+            request = _read(sys.stdin.buffer)
+            timer.cancel()
+            if request is None:
+                # Destructors of libraries are not waited for.
+                os._exit(0)
+            _write(target, answer(request))
+
+
+def bounded(memory: int, seconds: float = math.inf) -> None:
+    """Bounds what this process takes from now on, where the system can.
+
+    Parameters
+    ----------
+    memory
+        Bytes of address space.
+    seconds
+        Processor time; the system ends the process after it.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    held = memory if most == resource.RLIM_INFINITY else min(memory, most)
+    resource.setrlimit(resource.RLIMIT_AS, (held, most))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if math.isfinite(seconds):
+        until = math.ceil(time.process_time() + seconds)
+        resource.setrlimit(resource.RLIMIT_CPU, (until, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+
+
+def _write(target: BinaryIO | Any, message: Mapping[str, Any]) -> None:
+    body = json.dumps(message).encode()
+    target.write(_HEAD.pack(len(body)) + body)
+    target.flush()
+
+
+def _read(source: BinaryIO | Any) -> dict[str, Any] | None:
+    """The next message; None at the end, which may be within one."""
+    head = source.read(_HEAD.size)
+    if len(head) < _HEAD.size:
+        return None
+    (length,) = _HEAD.unpack(head)
+    body = source.read(length)
+    if len(body) < length:
+        return None
+    found: dict[str, Any] = json.loads(body)
+    return found
