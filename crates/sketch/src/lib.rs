@@ -94,7 +94,7 @@ pub use feature::{
 };
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::script;
-pub use format::{dxf, export, json, json_format};
+pub use format::{dxf, export, json, json_format, page_shapes};
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject, results};
 pub use solid::body_tree::{BodyTree, body_tree};

@@ -6,7 +6,7 @@ pub mod export;
 pub(crate) mod hidden_lines;
 pub mod json;
 pub mod json_format;
-pub(crate) mod page_shapes;
+pub mod page_shapes;
 pub(crate) mod painted_faces;
 pub(crate) mod script;
 pub(crate) mod svg;

@@ -1,7 +1,8 @@
 //! Lines of DXF files.
 
 use moldloft_sketch::Drawing;
-use moldloft_sketch::dxf::{draw, dxf_shapes};
+use moldloft_sketch::dxf::dxf_shapes;
+use moldloft_sketch::page_shapes::draw;
 
 #[test]
 fn lines_and_polylines() {
