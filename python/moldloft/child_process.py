@@ -77,14 +77,14 @@ class ChildProcess:
         Parameters
         ----------
         request
-            What JSON holds.
+            A message of JSON.
         seconds
             How long an answer is waited for; the process is ended then.
 
         Returns
         -------
         dict or ProcessEnd
-            What the process made of the request.
+            The message of the process, or its end.
         """
         source, target = self._process.stdout, self._process.stdin
         assert source is not None and target is not None
@@ -132,7 +132,7 @@ def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> No
     Parameters
     ----------
     answer
-        What makes an answer of a request.
+        Makes the answer of a request.
     idle
         Seconds without a request after which the process ends.
     """

@@ -161,7 +161,7 @@ pub struct Budget {
     cancelled: AtomicBool,
     /// When the time is over, in nanoseconds after [`elapsed`]'s beginning; 0 for never.
     deadline: AtomicU64,
-    /// What a part of the work has, of whose budget.
+    /// The time of a part of the work, and the budget of the whole; none for the whole.
     portion: Option<Portion>,
 }
 

@@ -30,9 +30,9 @@ fn address_space() -> Option<u64> {
     number_after(&std::fs::read_to_string("/proc/self/limits").ok()?, "Max address space")
 }
 
-/// How long the process has had a processor, all threads together; known on Linux alone.
+/// Processor time of the process, all threads together; known on Linux alone.
 pub(crate) fn processor_time() -> Option<Duration> {
-    /// What the kernel counts in, on every machine.
+    /// The unit of the file, on every machine.
     const TICK: Duration = Duration::from_millis(10);
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
     // The name of the program may hold anything, but its parenthesis is the last; user and system time follow.

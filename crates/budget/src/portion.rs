@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(20);
 pub(crate) struct Portion {
     pub whole: Arc<Budget>,
     allowed: Duration,
-    /// What the process had used of the processor when the part began; none where the system does not say it.
+    /// Processor time of the process when the part began; none where the system does not say it.
     before: Option<Duration>,
     /// When the part may be over, in nanoseconds; the processor's time is looked at then.
     due: AtomicU64,

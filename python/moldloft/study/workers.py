@@ -28,7 +28,7 @@ STARTUP_SECONDS = 60.0
 
 
 def _case(end: ProcessEnd, seconds: float) -> dict[str, Any]:
-    """What became of a case over which its process ended."""
+    """The answer for a case over which its process ended."""
     late = {
         "state": TIMED_OUT,
         "id": "timed-out",

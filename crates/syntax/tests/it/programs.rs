@@ -1,4 +1,4 @@
-//! Whole programs: speed of parsing, edits of literals, odd shapes, and random programs through the formatter.
+//! Whole programs: edits of literals, odd shapes, and random programs through the formatter.
 
 use crate::random::RandomText;
 use moldloft_diag::FileId;
