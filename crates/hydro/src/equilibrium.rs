@@ -1,7 +1,7 @@
 //! The attitude in which a body of given mass floats at rest.
 
 use crate::body::Body;
-use crate::figures::displaced;
+use crate::figures::{Displaced, displaced};
 use crate::hydrostatics::Symmetry;
 use crate::{Attitude, Flotation, Water, flotation};
 use moldloft_num::{Real, Vec3, solve_dense};
@@ -164,7 +164,7 @@ pub fn equilibrium<T: Real>(
     let exact = EquilibriumProblem { body, water, loading, free, count, size };
     let off = exact.residual(fixed);
     let mut unknowns = fixed;
-    if let Some(step) = problem.step(at, |r| off[r]) {
+    if let Some(step) = problem.step(&problem.slopes(at), off) {
         for (&k, dx) in problem.free.iter().zip(step) {
             unknowns[k] += if tight { dx } else { dx - dx.re() };
         }
@@ -242,12 +242,13 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let (mut low, mut high) = (lowest, highest + 1e-9 * self.size);
         // Beyond its rim an open body gains nothing: it is full there.
         let full = turned.lowest_rim().map_or(high, |z| z.min(high));
-        let most = volume(full).0.max(volume(high).0) + wanted;
+        let when_full = volume(full).0;
+        let most = if full < high { when_full.max(volume(high).0) } else { when_full } + wanted;
         if wanted > most * (1.0 + 1e-12) {
             let rim = (full < high).then_some([trim, heel]);
             return Err(FloatError::Sinks { mass: self.loading.mass, most: most * density, rim });
         }
-        if volume(full).0 >= 0.0 {
+        if when_full >= 0.0 {
             high = full;
         }
         let mut z = 0.5 * (low + high);
@@ -282,10 +283,11 @@ impl<'m> EquilibriumProblem<'m, f64> {
     /// A xf, Ipp + V n.B, Ipq; d/dheel are c A yf, c Ipq - s V ey.B, c Iqq + V (s ex.B + c n.B), with c and s of the
     /// trim.
     pub(crate) fn slopes(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
-        let attitude = Attitude::of(at);
-        let turned = attitude.turned(self.body);
-        let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
-        let sums = displaced(&turned, at[0], [g.x, g.y], self.count);
+        self.slopes_of(at, &self.displacement(at))
+    }
+
+    fn slopes_of(&self, at: [f64; 3], found: &Displacement<f64>) -> [[f64; 3]; 3] {
+        let Displacement { sums, centre: g } = found;
         let v = sums.forms[2];
         let [a, ax, ay, axx, axy, ayy] = sums.plane;
         let (px, qy) = (ax + a * g.x, ay + a * g.y);
@@ -312,11 +314,10 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 
     /// The Newton step of the free unknowns against the residuals `off`.
-    fn step<T: Real>(&self, at: [f64; 3], off: impl Fn(usize) -> T) -> Option<Vec<T>> {
-        let slopes = self.slopes(at);
+    fn step<T: Real>(&self, slopes: &[[f64; 3]; 3], off: [T; 3]) -> Option<Vec<T>> {
         let entries = self.free.iter().flat_map(|&r| self.free.iter().map(move |&c| (r, c)));
         let mut matrix: Vec<T> = entries.map(|(r, c)| T::from(slopes[r][c])).collect();
-        let mut step: Vec<T> = self.free.iter().map(|&r| -off(r)).collect();
+        let mut step: Vec<T> = self.free.iter().map(|&r| -off[r]).collect();
         solve_dense(&mut matrix, &mut step).ok()?;
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
@@ -349,11 +350,13 @@ impl<'m> EquilibriumProblem<'m, f64> {
     fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
         let height = self.size;
         let mut at = from;
-        let mut residual = self.residual(at);
+        // Residual and slopes come from the same integrals, which are all that takes time.
+        let mut here = self.displacement(at);
+        let mut residual = self.residual_of(&here);
         let mut worst = self.worst(residual);
         let mut steps = 0;
         while worst > TIGHT && steps < MOST_STEPS {
-            let Some(step) = self.step(at, |k| residual[k]) else { break };
+            let Some(step) = self.step(&self.slopes_of(at, &here), residual) else { break };
             let mut share: f64 = 1.0;
             for (&k, dx) in self.free.iter().zip(&step) {
                 let most = if k == 0 { 0.25 * height } else { LARGEST_TURN };
@@ -366,10 +369,11 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 for (&k, dx) in self.free.iter().zip(&step) {
                     next[k] += share * dx;
                 }
-                let found = self.residual(next);
+                let there = self.displacement(next);
+                let found = self.residual_of(&there);
                 let off = self.worst(found);
                 if off < worst {
-                    (at, residual, worst, better) = (next, found, off, true);
+                    (at, here, residual, worst, better) = (next, there, found, off, true);
                     break;
                 }
                 share *= 0.5;
@@ -435,17 +439,31 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 }
 
+/// What the body displaces at an attitude.
+struct Displacement<T> {
+    /// The centre of gravity in the level axes.
+    centre: Vec3<T>,
+    /// The integrals, about the vertical through it, so that a far origin costs no digits.
+    sums: Displaced<T>,
+}
+
 impl<T: Real> EquilibriumProblem<'_, T> {
-    /// What is missing to rest: (V - V0) / V0, and the moments of volume about the centre of gravity
-    /// over V0 and the diagonal.
-    fn residual(&self, unknowns: [T; 3]) -> [T; 3] {
+    fn displacement(&self, unknowns: [T; 3]) -> Displacement<T> {
         let attitude = Attitude::of(unknowns);
         let turned = attitude.turned(self.body);
+        let centre = attitude.earth_from(self.loading.centre.unwrap_or_default());
+        let sums = displaced(&turned, attitude.level, [centre.x, centre.y], self.count);
+        Displacement { centre, sums }
+    }
+
+    fn residual(&self, unknowns: [T; 3]) -> [T; 3] {
+        self.residual_of(&self.displacement(unknowns))
+    }
+
+    /// What is missing to rest: (V - V0) / V0, and the moments of volume about the centre of gravity
+    /// over V0 and the diagonal.
+    fn residual_of(&self, Displacement { sums, .. }: &Displacement<T>) -> [T; 3] {
         let wanted = self.loading.mass / self.water.density;
-        let centre = self.loading.centre.unwrap_or_default();
-        // Moments about the centre of gravity, so that a far origin costs no digits.
-        let g = attitude.earth_from(centre);
-        let sums = displaced(&turned, attitude.level, [g.x, g.y], self.count);
         let arm = wanted * self.size;
         [sums.forms[2] / wanted - 1.0, sums.moment.x / arm, sums.moment.y / arm]
     }
