@@ -508,7 +508,7 @@ impl<'a> Crossing<'a> {
         let mut step = first;
         // The stations since the last seam or crease: the two before tell where the next one is.
         let mut since = 0;
-        let mut lines = None;
+        let lines = self.lines();
         while all.len() < MOST_STATIONS {
             let last = *all.last().expect("it begins with one");
             // Not more than a tenth of a surface at once.
@@ -544,10 +544,8 @@ impl<'a> Crossing<'a> {
                         && s.x.distance(ahead) < near
                 });
             let Some(next) = next else {
-                let lines = lines.get_or_insert_with(|| self.lines());
-                if let Some(both) = self.crease(lines, &last, guess) {
-                    let skipped = both[0].x.distance(last.x) <= 1e-12 * self.size;
-                    all.extend(&both[usize::from(skipped)..]);
+                if let Some(both) = self.crease(&lines, &last, guess, sign) {
+                    self.extend_over_crease(&mut all, both);
                     since = 0;
                     continue;
                 }
@@ -566,6 +564,11 @@ impl<'a> Crossing<'a> {
                     }
                     continue;
                 };
+                if let Some(both) = self.crease(&lines, &last, station.q, sign) {
+                    self.extend_over_crease(&mut all, both);
+                    since = 0;
+                    continue;
+                }
                 if station.x.distance(last.x) > 1e-12 * self.size {
                     all.push(station);
                 }
@@ -599,10 +602,19 @@ impl<'a> Crossing<'a> {
                 if before < 0.0 && after >= 0.0 && near && last.tangent.dot(start.tangent) > 0.5 {
                     let same = (0..n).all(|k| (last.q[k] - start.q[k]).abs() < 0.3);
                     if same {
+                        if let Some(both) = self.crease(&lines, &last, start.q, sign) {
+                            self.extend_over_crease(&mut all, both);
+                        }
                         all.push(start);
                         return (all, BranchEnd::Closed);
                     }
                 }
+            }
+            if let Some(both) = self.crease(&lines, &last, next.q, sign) {
+                // A bend that the step did not notice: what leads on is on one side of it.
+                self.extend_over_crease(&mut all, both);
+                since = 0;
+                continue;
             }
             let turn = next.tangent.distance(last.tangent);
             all.push(next);
@@ -641,13 +653,22 @@ impl<'a> Crossing<'a> {
         normal(-SAME_POINT).dot(normal(SAME_POINT)) < CREASE
     }
 
+    /// Both stations at a crease, the first but where it is the last of the branch already.
+    fn extend_over_crease(&self, branch: &mut Vec<TracePoint>, both: [TracePoint; 2]) {
+        let near = |last: &TracePoint| both[0].x.distance(last.x) <= 1e-12 * self.size;
+        let skipped = branch.last().is_some_and(near);
+        branch.extend(&both[usize::from(skipped)..]);
+    }
+
     /// The place on the way to `ahead` at which a surface is creased, so that the branch turns there:
-    /// two stations with the tangents of both sides.
+    /// two stations with the tangents of both sides. It is in front of `from`: the way to a guess may
+    /// lead back over a crease that the branch has passed.
     fn crease(
         &self,
         lines: &[(usize, f64)],
         from: &TracePoint,
         ahead: Unknowns,
+        sign: f64,
     ) -> Option<[TracePoint; 2]> {
         let share = |&(k, x): &(usize, f64)| (x - from.q[k]) / (ahead[k] - from.q[k]);
         let mut on_way: Vec<&(usize, f64)> =
@@ -672,7 +693,8 @@ impl<'a> Crossing<'a> {
             let (before, after) = (side(-1.0)?, side(1.0)?);
             let turned = before.tangent.dot(after.tangent) < CREASE;
             let smooth = before.tangent.dot(from.tangent) > LARGEST_TURN;
-            (turned && smooth && at[..self.unknowns()].iter().all(inside))
+            let onward = sign * (x - from.x).dot(from.tangent) >= -1e-12 * self.size;
+            (turned && smooth && onward && at[..self.unknowns()].iter().all(inside))
                 .then_some([before, after])
         })
     }

@@ -410,9 +410,8 @@ fn set_up<T: Real>(
             .filter_map(|i| {
                 let (a, b) = (&branch.stations[i], &branch.stations[i + 1]);
                 let chord = b.x - a.x;
-                let share = ((x - a.x).dot(chord) / chord.norm_sq()).clamp(0.0, 1.0);
+                let (share, away) = nearest_on_chord(a, b, x);
                 let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
-                let away = (a.x + chord * share).distance(x);
                 (away <= 0.3 * chord.norm() + context.tolerance).then_some((away, i, guess))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
@@ -725,14 +724,19 @@ fn cut_before(branch: &mut Branch, station: &TracePoint) {
     }
 }
 
+/// The share of the chord between two stations at which it is nearest to a place, and how far away;
+/// at a crease both stations are one place.
+fn nearest_on_chord(a: &TracePoint, b: &TracePoint, x: Vec3) -> (f64, f64) {
+    let chord = b.x - a.x;
+    let length = chord.norm_sq();
+    let share = if length > 0.0 { ((x - a.x).dot(chord) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (share, (a.x + chord * share).distance(x))
+}
+
 /// The last station before the given one.
 fn position(branch: &Branch, station: &TracePoint) -> usize {
-    let away = |i: &usize| {
-        let (a, b) = (&branch.stations[*i], &branch.stations[*i + 1]);
-        let chord = b.x - a.x;
-        let share = ((station.x - a.x).dot(chord) / chord.norm_sq()).clamp(0.0, 1.0);
-        (a.x + chord * share).distance(station.x)
-    };
+    let away =
+        |i: &usize| nearest_on_chord(&branch.stations[*i], &branch.stations[*i + 1], station.x).1;
     let last = branch.stations.len().saturating_sub(1);
     (0..last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }

@@ -65,11 +65,31 @@ pub(super) struct PieceFit {
 }
 
 /// The length per y at a point of the intersection across from the guide's: with (X - c) . c' = 0,
-/// X' . c' = c' . c' - (X - c) . c''.
-fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> T {
+/// X' . c' = c' . c' - (X - c) . c''. `None` where the point is so far from the guide that it moves
+/// back as the guide goes on; the tangent may have either sense.
+fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> Option<T> {
     let [c, d, dd] = [c, d, dd].map(Vec3::<T>::lifted);
-    let speed = (d.dot(d) - (x - c).dot(dd)) / d.dot(tangent);
-    if speed.re() < 0.0 { -speed } else { speed }
+    let (advance, along) = (d.dot(d) - (x - c).dot(dd), d.dot(tangent));
+    let along = if along.re() < 0.0 { -along } else { along };
+    (advance.re() > 0.0 && along.re() > 0.0).then(|| advance / along)
+}
+
+/// True when a stretch leads from one end to the other in the sense of its tangents at both.
+fn runs_on(a: &TracePoint, b: &TracePoint) -> bool {
+    let chord = b.x - a.x;
+    chord.dot(a.tangent) > 0.0 && chord.dot(b.tangent) > 0.0
+}
+
+/// The unknowns between two stations, from their values and rates at both.
+fn between(a: &TracePoint, b: &TracePoint, y: f64) -> Unknowns {
+    let chord = a.x.distance(b.x);
+    let (s, r) = (0.5 + 0.5 * y, 0.5 - 0.5 * y);
+    std::array::from_fn(|k| {
+        a.q[k] * (r * r * (1.0 + 2.0 * s))
+            + a.rate[k] * (chord * r * r * s)
+            + b.q[k] * (s * s * (3.0 - 2.0 * s))
+            - b.rate[k] * (chord * s * s * r)
+    })
 }
 
 /// The matrix of [`to_powers`].
@@ -86,25 +106,14 @@ impl PieceFit {
         let ends = [*a, *b];
         let (a, b) = (&a.station, &b.station);
         let guide = cubic(a, b);
-        // The unknowns between, from their values and rates at both ends.
-        let chord = a.x.distance(b.x);
-        let between = |y: f64| -> Unknowns {
-            let (s, r) = (0.5 + 0.5 * y, 0.5 - 0.5 * y);
-            std::array::from_fn(|k| {
-                a.q[k] * (r * r * (1.0 + 2.0 * s))
-                    + a.rate[k] * (chord * r * r * s)
-                    + b.q[k] * (s * s * (3.0 - 2.0 * s))
-                    - b.rate[k] * (chord * s * s * r)
-            })
-        };
         let found = |y: f64, guess: Unknowns| {
             let jet = on_guide(&guide, y);
             let station = crossing.station_across(guess, jet[0], jet[1].normalized()?)?;
-            Some((station.q, speed(jet, station.x, station.tangent)))
+            Some((station.q, speed(jet, station.x, station.tangent)?))
         };
         let (mut at, mut speeds) = ([[0.0; 4]; NODES], [0.0; NODES]);
         for k in 0..NODES {
-            (at[k], speeds[k]) = found(node(k), between(node(k)))?;
+            (at[k], speeds[k]) = found(node(k), between(a, b, node(k)))?;
         }
         let (places, fit) = (powers(matrix, &at), powers_of(matrix, &speeds));
         let near = |y: f64, speed: f64| {
@@ -157,10 +166,17 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
         let mut a = pair[0];
         let mut open = vec![(pair[1], 0)];
         while let Some((b, halvings)) = open.pop() {
-            let (fit, good) = PieceFit::new(crossing, &matrix, &a, &b)?;
+            if !runs_on(&a.station, &b.station) {
+                return None;
+            }
+            let fit = PieceFit::new(crossing, &matrix, &a, &b);
+            let good = fit.as_ref().is_some_and(|(_, good)| *good);
             let middle = || {
-                let [c, d, _] = on_guide(&fit.guide, 0.0);
-                let guess = guess(&powers(&matrix, &fit.at), 0.0);
+                let [c, d, _] = on_guide(&cubic(&a.station, &b.station), 0.0);
+                let guess = match &fit {
+                    Some((fit, _)) => guess(&powers(&matrix, &fit.at), 0.0),
+                    None => between(&a.station, &b.station, 0.0),
+                };
                 let mut m = crossing.station_across(guess, c, d.normalized()?)?;
                 if m.tangent.dot(a.station.tangent) < 0.0 {
                     m.tangent = -m.tangent;
@@ -171,7 +187,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
             match (!good && halvings < MOST_HALVINGS).then(middle).flatten() {
                 Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
                 None => {
-                    all.push(PieceFit { seam, ..fit });
+                    all.push(PieceFit { seam, ..fit?.0 });
                     (a, seam) = (b, false);
                 }
             }
@@ -195,7 +211,7 @@ pub(super) fn laid<T: Real>(
         let jet = on_guide(&fit.guide, y);
         let q = both.unknowns(&fit.guide, fit.at[k], T::from(y))?;
         let along = both.along(q, jet[1], Order::First)?;
-        speeds[k] = speed(jet, along.x, along.tangent);
+        speeds[k] = speed(jet, along.x, along.tangent)?;
         xs[k] = along.x;
     }
     let powers_of_speed = powers_of(&matrix, &speeds);

@@ -3,6 +3,7 @@
 mod chebyshev;
 mod closed_forms;
 mod common;
+mod creased_cuts;
 mod curves;
 mod degenerate;
 mod facts;
