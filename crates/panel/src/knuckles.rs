@@ -14,6 +14,9 @@ const TURN: f64 = 1e-5;
 /// before and after it.
 pub(crate) const ASIDE: f64 = 1e-9;
 
+/// Breaks nearer than this are one: those of opposite sides, each found by a search of its own.
+const SAME_KNUCKLE: f64 = 4.0 * ASIDE;
+
 /// Each break is tried at so many places along it.
 const TRIALS: usize = 5;
 
@@ -24,7 +27,10 @@ pub(crate) fn knuckles(surface: &dyn Surface<f64>) -> [Vec<f64>; 2] {
     us.retain(|&at| turns(at, along));
     let across = |v| trials().iter().map(|&u| surface.jet(u, v, Order::First).v).collect();
     vs.retain(|&at| turns(at, across));
-    [us, vs]
+    [us, vs].map(|mut all| {
+        all.dedup_by(|next, kept| *next - *kept <= SAME_KNUCKLE);
+        all
+    })
 }
 
 /// The places along a break.

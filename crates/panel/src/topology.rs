@@ -172,8 +172,12 @@ pub(crate) fn solve<'g>(
         None => maker.wish(),
     }
     let divided = maker.divider.solve(&|sum| maker.weights(sum));
-    let remarks = maker.reported(&divided.conflicts, &divided.counts);
-    SolvedTopology { structure: maker.finish(&divided.counts), remarks, measured }
+    let mut remarks = maker.reported(&divided.conflicts, &divided.counts);
+    let structure = maker.finish(&divided.counts);
+    if divided.conflicts.is_empty() {
+        remarks.extend(maker.unexplained(&structure, &divided.counts));
+    }
+    SolvedTopology { structure, remarks, measured }
 }
 
 impl TopologySolver<'_, '_> {
@@ -425,6 +429,23 @@ impl TopologySolver<'_, '_> {
             remarks.push(PanelNote::More(conflicts.len() - MOST_REPORTED));
         }
         remarks
+    }
+
+    /// Edges whose counts do not add up though no sum is contradicted: a crack is never without a word.
+    fn unexplained(&self, structure: &PanelTopology, counts: &[u32]) -> Vec<PanelNote> {
+        let edges = structure.patches.iter().flat_map(|p| (0..4).map(move |k| (p, k)));
+        let loose = edges.filter_map(|(patch, k)| {
+            let EdgeRun::Loose(spans) = &patch.runs[k] else { return None };
+            let intervals = spans.iter().filter_map(|s| s.interval);
+            let pieces = intervals.map(|i| (self.curve(i), counts[self.interval(i)])).collect();
+            Some(PanelNote::Pieces {
+                patch: patch.name.to_string(),
+                along: Self::letter(k % 2),
+                divisions: patch.divisions[k % 2] as u32,
+                pieces,
+            })
+        });
+        loose.take(MOST_REPORTED).collect()
     }
 
     fn letter(direction: usize) -> char {

@@ -712,3 +712,45 @@ fn unlike_knuckles_are_all_rows() {
     let p = panelled(&mut d);
     assert_eq!(p.panelling.remarks().len(), 1, "{:?}", p.panelling.remarks());
 }
+
+/// A strut on a body of revolution over a poly-curve, the seam under the strut: both sides of the part cross the joint at
+/// one parameter, to rounding.
+#[test]
+fn a_seam_joins_beside_its_cut_at_all_values() {
+    let text = "float x0 = 3.5; param float chord = 20 in [14, 24];
+        AbsPoint n(0, 0, 0); AbsPoint n1(0, 0, 1); AbsPoint t1(28, 0, 1); AbsPoint t(28, 0, 0);
+        AbsPoint m1(5, 0, 1); AbsPoint m2(20, 0, 1); AbsPoint q(26, 0, 0.8);
+        BCurve nose({n, n1, m1}, degree = 2); Line mid(m1, m2); BCurve tail({m2, q, t}, degree = 2);
+        PolyCurve profile({nose, mid, tail}, breaks = {0.2, 0.75}); Line axis(n, t);
+        RevSurf torpedo(profile, axis, 0, 2*PI, visible = 0);
+        AbsPoint f0(x0, 0, 3); AbsPoint f1(x0 + 0.3*chord, -0.4, 3); AbsPoint f2(x0 + 0.3*chord, 0.4, 3);
+        AbsPoint f3(x0 + chord, 0, 3);
+        BCurve inner({f0, f1, f3}, degree = 2); BCurve outer({f0, f2, f3}, degree = 2);
+        EdgeSnake e0(1, torpedo); EdgeSnake e1(3, torpedo);
+        XYZRing lead0(e0, \"x\", x0); XYZRing trail0(e0, \"x\", x0 + chord);
+        XYZRing lead1(e1, \"x\", x0); XYZRing trail1(e1, \"x\", x0 + chord);
+        ProjSnake root_a(inner, lead0, \"z=0\", ends = {lead0, trail0});
+        ProjSnake root_b(outer, lead1, \"z=0\", ends = {lead0, trail0});
+        AbsRing a0(e0, 0); AbsRing a1(e0, 1); AbsRing b0(e1, 0); AbsRing b1(e1, 1);
+        SubSnake a_fore(a0, lead0); SubSnake a_aft(trail0, a1);
+        SubSnake b_fore(b0, lead1); SubSnake b_aft(trail1, b1);
+        PolySnake way_a({a_fore, root_a, a_aft}, breaks = {0.2, 0.8});
+        PolySnake way_b({b_fore, root_b, b_aft}, breaks = {0.2, 0.8});
+        SubSurf hull({way_a, torpedo.u1, way_b, torpedo.u0}, divisions = {48, 24});
+        RuledSurf strut_in(root_a, inner, divisions = {\"auto\", 8});
+        RuledSurf strut_out(root_b, outer, divisions = {\"auto\", 8});
+        RuledSurf lid(inner, outer, divisions = {\"auto\", 4});";
+    let mut document = sound(text);
+    let faces = panelled(&mut document).mesh.faces().len();
+    // Values at which both sides differ by rounding, then others.
+    let steps = rounds(400).max(10);
+    let even = (0..=steps).map(|k| 14.0 + 10.0 * k as f64 / steps as f64);
+    for chord in [18.2, 19.325, 20.15, 20.375, 16.5].into_iter().chain(even) {
+        document.set(&[("chord".into(), chord)]).unwrap();
+        let p = panelled(&mut document);
+        let report = p.mesh.report();
+        let open: usize = report.open_loops.len();
+        assert_eq!((report.components, open), (1, 0), "chord {chord}");
+        assert_eq!(p.mesh.faces().len(), faces, "chord {chord}");
+    }
+}

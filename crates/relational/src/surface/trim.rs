@@ -25,7 +25,8 @@ use std::sync::{Arc, OnceLock};
 ///
 /// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
 /// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
-/// by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
+/// by identity. Derivatives of vertices are at fixed parameters of their divisions: where curvature spaces these, vertices
+/// slide along the border besides. Divisions flow over such edges from the one to the other; `rim` states those of each
 /// snake, and a contradiction is reported.
 ///
 /// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
@@ -81,8 +82,9 @@ const DIVISIONS: usize = 12;
 /// How often the turn is made smaller until the area is right.
 const MAX_ROUNDS: usize = 6;
 
-/// The most triangles of a part that is to be made finer.
-const MAX_TRIANGLES: usize = 400_000;
+/// The most points in the box of a part that is divided by curvature alone, and of one whose fineness is asked for.
+const MOST_POINTS: usize = 50_000;
+const MOST_FINE_POINTS: usize = 2_000_000;
 
 impl<T: Real> Build<T> for TrimSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
@@ -120,6 +122,7 @@ impl<T: Real> Build<T> for TrimSurf<T> {
                 cycles: cycles.clone(),
                 inside,
                 fineness,
+                most_points: MOST_POINTS,
                 exact: exact.clone().unwrap_or_default(),
             };
             trimmed.close_loops();
@@ -137,7 +140,7 @@ impl<T: Real> Build<T> for TrimSurf<T> {
             if free && let Some((measures, _)) = trimmed.exact() {
                 let area = measures.area.re();
                 let missed = (facets.of_triangles.area.re() - area).abs() / area;
-                if missed > AREA_PROMISE && !last && facets.triangles.len() < MAX_TRIANGLES {
+                if missed > AREA_PROMISE && !last && facets.triangles.len() < MOST_POINTS {
                     fineness.angle *= (0.8 * AREA_PROMISE / missed).sqrt().clamp(0.25, 0.8);
                     exact = Some(trimmed.exact.clone());
                     continue;
@@ -238,6 +241,7 @@ struct Trimmed<T: Real> {
     /// The net of the surface whose points are inside; none where curvature says.
     inside: Option<[usize; 2]>,
     fineness: Fineness,
+    most_points: usize,
     /// Its measures and an estimate of their error, once they have been asked for.
     exact: OnceLock<Option<(SheetMeasures<T>, f64)>>,
 }
@@ -271,6 +275,7 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
             cycles: self.cycles.clone(),
             inside: None,
             fineness: *fineness,
+            most_points: MOST_FINE_POINTS,
             exact: self.exact.clone(),
         };
         finer.close_loops();
@@ -328,7 +333,9 @@ impl<T: Real> Trimmed<T> {
         }
         let plane = match self.inside {
             Some(net) => TrimPlane::of_net(&self.surface, net),
-            None => TrimPlane::by_curvature(&self.surface, &cycles, &self.fineness),
+            None => {
+                TrimPlane::by_curvature(&self.surface, &cycles, &self.fineness, self.most_points)
+            }
         };
         let region = match TrimRegion::new(&cycles, plane) {
             Ok(region) => region,

@@ -223,12 +223,21 @@ impl Stretch {
         between(&self.sum[k], &self.at[k], x)
     }
 
-    /// Lines along which points of the interior are, on the breaks and about 1 apart between them; at most so many.
-    pub fn lines(&self, k: usize, most: usize) -> Vec<f64> {
+    /// Lines along u and along v at whose crossings the points of the interior are: on the breaks and about 1 apart between
+    /// them, but not so many that there are more than `most` crossings. Where a surface folds its curvature has no bound.
+    pub fn lines(&self, most: usize) -> [Vec<f64>; 2] {
+        let reach = [0, 1].map(|k| self.sum[k][self.sum[k].len() - 1].max(1.0));
+        let coarser = (reach[0] * reach[1] / most as f64).sqrt().max(1.0);
+        // The shorter way keeps a line or more.
+        let shorter = reach[0].min(reach[1]);
+        let coarser =
+            if coarser > shorter { reach[0].max(reach[1]) / most as f64 } else { coarser };
+        [0, 1].map(|k| self.lines_along(k, coarser))
+    }
+
+    fn lines_along(&self, k: usize, coarser: f64) -> Vec<f64> {
         let ends: Vec<f64> =
             self.stops[k].iter().map(|&x| between(&self.at[k], &self.sum[k], x)).collect();
-        let total: f64 = ends[ends.len() - 1] - ends[0];
-        let coarser = (total / most as f64).max(1.0);
         let mut lines = Vec::new();
         for w in ends.windows(2) {
             let n = ((w[1] - w[0]) / coarser - 1e-9).ceil().max(1.0) as usize;

@@ -16,9 +16,6 @@ const NET_MARGIN: f64 = 0.35;
 /// Points inside keep this distance from the rim where the plane is stretched by curvature.
 const MARGIN: f64 = 0.55;
 
-/// The most lines of points along u or along v.
-const MAX_LINES: usize = 4000;
-
 /// A loop folds back by at most this much, in parameters: its snakes meet within [`MEETING`], and curves that were fitted
 /// pass their ends by as much.
 const FOLD: f64 = 8.0 * MEETING;
@@ -50,11 +47,12 @@ impl TrimPlane {
         Self { stretch: Stretching::Scaled(scale), lines: net.map(line), margin }
     }
 
-    /// Parameters stretched by curvature.
+    /// Parameters stretched by curvature, with at most `most` points in the box of the loops.
     pub fn by_curvature<T: Real>(
         surface: &SurfaceRef<T>,
         cycles: &[Vec<Place<T>>],
         fineness: &Fineness,
+        most: usize,
     ) -> Self {
         let polygons: Vec<Vec<[f64; 2]>> =
             cycles.iter().map(|c| c.iter().map(|p| p.map(T::re)).collect()).collect();
@@ -65,7 +63,7 @@ impl TrimPlane {
             }
         }
         let stretch = stretched(fineness, surface, [low, high], |us, v| rows(&polygons, us, v));
-        let lines = [0, 1].map(|k| stretch.lines(k, MAX_LINES));
+        let lines = stretch.lines(most);
         Self { stretch: Stretching::ByCurvature(stretch), lines, margin: MARGIN }
     }
 

@@ -172,8 +172,21 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             return c.values.iter().map(|&value| c.family.height(value, p)).collect();
         }
         Value::Number(x) => return vec![*x],
-        // Those of the rim: how many there are inside may change.
-        Value::Body(m) => m.points.iter().take(8).copied().collect(),
+        // Vertices of the rim: how many there are inside may change. Where curvature spaces them they slide along it, too,
+        // so that those at stated parameters are taken, and the measures of the surface itself.
+        Value::Body(m) => match &m.border {
+            Some(border) => {
+                let even = (0..=5).map(|k| T::from(f64::from(k) / 5.0)).collect::<Vec<_>>();
+                let at = vec![even; border.0.curves().len()];
+                let (body, _) = border.0.divided(&at).expect("an example that can be divided");
+                let measures = border.0.measures().expect("an example with measures");
+                let mut points: Vec<Vec3<T>> = body.points.iter().take(8).copied().collect();
+                points.push(measures.centroid);
+                points.push(Vec3::new(measures.area, measures.volume, T::zero()));
+                points
+            }
+            None => m.points.iter().take(8).copied().collect(),
+        },
         other => panic!("no samples of {other:?}"),
     };
     points.into_iter().flat_map(Vec3::to_array).collect()
