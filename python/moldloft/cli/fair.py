@@ -240,6 +240,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--passes", type=int, help="passes of the faithful mode, which this implies"
     )
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
+    parser.add_argument(
+        "--units",
+        choices=["m", "cm", "mm", "ft", "in"],
+        help="what the numbers of a file of points are in; default: what it states. Splines are "
+        "written with it",
+    )
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
     parser.add_argument(
@@ -529,8 +535,14 @@ class _Points(_Source):
         self.file = file
         self.said: list[str] = list(file.notes)
         self.title = str(file.path)
+        self.unit = file.unit
 
     def fair(self, options: argparse.Namespace) -> Result:
+        if options.units and self.file.unit not in (None, options.units):
+            raise Error(
+                f"--units {options.units}: the numbers of {self.file.path} are in {self.file.unit}"
+            )
+        self.unit = options.units or self.file.unit
         if self.file.offsets and self.file.inches:
             self.said.append(
                 "stations and waterlines that are plain numbers are inches, too: "
@@ -662,7 +674,7 @@ class _Points(_Source):
         return self.said
 
     def facts(self) -> dict[str, Any]:
-        return {"source": self.title, "source_notes": self.said}
+        return {"source": self.title, "source_notes": self.said, "unit": self.unit}
 
     def write(self, result: Any, path: Path) -> Path:
         import numpy as np
@@ -673,7 +685,9 @@ class _Points(_Source):
         _known_ending(path, self.file.path)
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
-            return _commit(path, encoded(curves, path))
+            if self.unit is None and path.suffix.lower() in (".igs", ".iges"):
+                self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
+            return _commit(path, encoded(curves, path, self.unit))
         if hasattr(result, "lists"):
             rows = result.points[self.of_row]
             like: PointFile = self.file
@@ -775,6 +789,8 @@ class _Grids(_Source):
         self.file = file
         count = len(file.grids)
         self.all = options.block is None and count > 1
+        if options.units:
+            raise Error("--units is for files of points")
         if options.seams and not self.all:
             raise Error("--seams: for the blocks of a Plot3D file that are faired together")
         if self.all:
@@ -852,15 +868,19 @@ class _Object(_Source):
     """An object of a model: a curve, a surface, or rows of points."""
 
     def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
+        from moldloft import _core
         from moldloft.fairing.objects import sampled
         from moldloft.loading import load
 
         if isinstance(options.tol, list):
             raise Error("--tol FILE is for points: those of an object are sampled")
+        if options.units:
+            raise Error("--units is for files of points: a model states its own")
         loaded = load(model, library=options.library)
         if options.set:
             loaded.set(dict(options.set))
         self.title = f"{model}:{name}"
+        self.unit = _core.length_unit(loaded._document)[0]
         self.made = sampled(loaded, name, options.tol)
         self.error = self.made.error
 
@@ -905,7 +925,7 @@ class _Object(_Source):
 
         _known_ending(path, None)
         if path.suffix.lower() in SPLINES:
-            return _commit(path, encoded([result.spline], path))
+            return _commit(path, encoded([result.spline], path, self.unit))
         return _commit(path, _encode_curve(result, path, None))
 
 
