@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 import argparse
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -341,7 +342,8 @@ def run(options: argparse.Namespace) -> int:
             from moldloft.fairing.page import write_page
 
             progress.stage(f"writing {options.report}")
-            files.append(write_page(result, options.report, f"Fairing of {source.title}"))
+            title = f"Fairing of {source.title}"
+            files.append(write_page(result, options.report, title, source.stated()))
     data["files"] = [str(f) for f in files]
     if options.json:
         print_json(data)
@@ -405,6 +407,14 @@ class _Source(abc.ABC):
 
     def notes(self) -> list[str]:
         return []
+
+    def stated(self) -> list[tuple[str, str]]:
+        """What a page says besides the result: where it came from, and how to make it again."""
+        import datetime
+
+        command = shlex.join(["moldloft", *sys.argv[1:]])
+        today = datetime.datetime.now().astimezone().date().isoformat()
+        return [("source", self.title), ("command", command), ("date", today)]
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
@@ -644,9 +654,24 @@ class _Points(_Source):
             if error.index is not None and error.index < len(rows):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
-        if self.file.offsets and self.file.moves == 1:
-            self._across(result, rows)
+        if self.file.offsets:
+            result = self._named(result, rows)
+            if self.file.moves == 1:
+                self._across(result, rows)
         return result
+
+    def _named(self, result: NetworkFairing, rows: list[int]) -> NetworkFairing:
+        """With the stations and waterlines of the table for names."""
+        other = 3 - self.file.moves
+        word = "waterline" if other == 2 else "buttock"
+        points = self.file.points[rows]
+        names = []
+        for own in result.lists:
+            first, second = points[own[0]], points[own[1]]
+            station = first[0] == second[0]
+            names.append(f"station {first[0]:g}" if station else f"{word} {first[other]:g}")
+        called = tuple(f"station {p[0]:g}, {word} {p[other]:g}" for p in points)
+        return replace(result, names=tuple(names), point_names=called)
 
     def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
         """One tolerance, or that of each different point."""
@@ -672,6 +697,9 @@ class _Points(_Source):
 
     def notes(self) -> list[str]:
         return self.said
+
+    def stated(self) -> list[tuple[str, str]]:
+        return [*super().stated(), ("unit", self.unit or "not stated")]
 
     def facts(self) -> dict[str, Any]:
         return {"source": self.title, "source_notes": self.said, "unit": self.unit}

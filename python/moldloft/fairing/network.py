@@ -82,6 +82,41 @@ class NetworkFairing:
     whose index is the point's."""
     notes: tuple[str, ...] = ()
     """What the user should know."""
+    names: tuple[str, ...] = ()
+    """What the curves are called, such as ``station 3``; numbers where there are none."""
+    point_names: tuple[str, ...] = ()
+    """What the points are called; numbers where there are none."""
+
+    def name(self, curve: int) -> str:
+        """What a curve is called in messages and pages.
+
+        Parameters
+        ----------
+        curve
+            The curve, from 0.
+        """
+        return self.names[curve] if self.names else f"curve {curve + 1}"
+
+    def point_name(self, point: int) -> str:
+        """What a point is called in messages and pages.
+
+        Parameters
+        ----------
+        point
+            The point, from 0.
+        """
+        return self.point_names[point] if self.point_names else f"point {point + 1}"
+
+    def text(self, finding: Finding) -> str:
+        """The sentence about a finding, with the name of its point.
+
+        Parameters
+        ----------
+        finding
+            One of :attr:`findings`.
+        """
+        number = f"point {finding.index + 1}"
+        return finding.text.replace(number, self.point_name(finding.index), 1)
 
     @property
     def deviation_sampled(self) -> float:
@@ -117,7 +152,13 @@ class NetworkFairing:
             "goal": self.goal,
             "budget_used": self.used,
             "findings": [
-                {"curve": k + 1, "kind": f.kind, "point": f.index + 1, "text": f.text}
+                {
+                    "curve": k + 1,
+                    "name": self.name(k),
+                    "kind": f.kind,
+                    "point": f.index + 1,
+                    "text": self.text(f),
+                }
                 for k, f in self.findings
             ],
             "notes": list(self.notes),
@@ -150,7 +191,7 @@ class NetworkFairing:
             ("certificate", proved),
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
-        said = [f"note: curve {k + 1}, {f.text}" for k, f in self.findings]
+        said = [f"note: {self.name(k)}, {self.text(f)}" for k, f in self.findings]
         said += [f"note: {note}" for note in self.notes]
         return "\n".join([lines_of(rows, tail), *said])
 
