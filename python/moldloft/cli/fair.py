@@ -598,7 +598,6 @@ class _Points(_Source):
         for name, given in (
             ("--as", options.role not in (None, "points")),
             ("--closed", options.closed or options.closed_v),
-            ("--bound curve", options.bound == "curve"),
             ("--breaks auto", options.breaks == "auto"),
             ("--through", options.through),
             ("--tangent", options.tangent),
@@ -647,6 +646,7 @@ class _Points(_Source):
                 breaks=marks,
                 fixed=fixed,
                 motion=_motion(options),
+                bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
             )
