@@ -391,3 +391,47 @@ def test_a_released_point_says_nothing_about_the_curve():
             assert faired.after.inflections == without.after.inflections
             assert faired.after.largest_curvature <= 1.5 * without.after.largest_curvature
             assert np.delete(faired.residuals, k).max() <= 0.005 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("goal", ["near", "fairest"])
+def test_networks_with_breaks_anywhere_have_bounds_all_along(goal):
+    x = np.linspace(0, 1, 9)
+    rng = np.random.default_rng(0)
+    rows = np.r_[np.c_[x, 0.1 * x * (1 - x), 0 * x], np.c_[x, 0.2 * x * (1 - x), 0 * x + 0.3]]
+    rows[:, 1] += rng.uniform(-0.002, 0.002, len(rows))
+    for lines in ([list(range(9))], [list(range(9)), list(range(9, 18))]):
+        for at in range(9):
+            options = {"motion": (0, 1, 0), "breaks": (at,), "goal": goal}
+            made = network(rows, lines, 0.002, **options)
+            assert made.deviation_curves <= made.deviation_curves_certified * (1 + 1e-9)
+            held = network(rows, lines, 0.002, bound="curve", **options)
+            assert held.deviation_curves_certified <= 0.002 * (1 + 1e-9), (at, len(lines))
+            assert held.measure_after >= made.measure_after * (1 - 1e-6) or goal == "near"
+
+
+def test_limits_all_along_the_curves_of_a_hull():
+    """The fairest runs away between points of a hull; under this bound it does not."""
+    for seed in range(20 if SOAK else 2):
+        rng = np.random.default_rng([51, seed])
+        x = np.r_[0, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 8.5, 9, 9.5, 10]
+        z = np.r_[0, 0.1, 0.25, 0.5, 0.75, 1, 1.25]
+        a, b = (v.ravel() for v in np.meshgrid(x, z, indexing="ij"))
+        hull = HULLS["round"](a / 5 - 1, (1.25 - b) / 1.25)
+        read = np.c_[a, hull + rng.uniform(-0.02, 0.02, len(a)), b]
+        at = np.arange(len(a)).reshape(len(x), len(z))
+        lines = [*at.tolist(), *at.T.tolist()]
+        free = network(read, lines, 0.02, motion=(0, 1, 0), goal="fairest")
+        held = network(read, lines, 0.02, motion=(0, 1, 0), goal="fairest", bound="curve")
+        assert held.deviation_curves_certified <= 0.02 * (1 + 1e-9)
+        assert held.measure_before >= held.measure_after >= free.measure_after * (1 - 1e-6)
+        # Sampled by the splines themselves.
+        t = np.linspace(0, 1, 400)
+        far = max(
+            np.linalg.norm(c(t) - o(t), axis=1).max()
+            for c, o in zip(held.curves, held.originals, strict=True)
+        )
+        assert far <= 0.02 * (1 + 1e-9)
+    with pytest.raises(moldloft.Error, match="spacing"):
+        network(read, lines, 0.02, bound="curve", spacing="index")
+    with pytest.raises(moldloft.Error, match="points or curve"):
+        network(read, lines, 0.02, bound="data")

@@ -125,3 +125,26 @@ def test_a_nose_has_teeth_enough():
     tangent = teeth.first / np.linalg.norm(teeth.first, axis=1, keepdims=True)
     turn = np.arccos(np.clip((tangent[1:] * tangent[:-1]).sum(1), -1, 1))
     assert np.degrees(turn.max()) < 5 and len(turn) <= 400
+
+
+def test_a_page_of_a_table_names_its_lines_and_says_where_it_is_from(tmp_path, capsys):
+    from moldloft.cli import main
+
+    x, z = np.linspace(0, 10, 11), [0.2, 0.4, 0.6, 0.8, 1.0, 1.25]
+    rng = np.random.default_rng(0)
+    rows = ["waterline (m);" + ";".join(f"{a:g}" for a in x)]
+    for w in z:
+        y = 0.9 * (1 - (x / 5 - 1) ** 2) * (1 - (1.25 - w) ** 2 / 1.6)
+        y = y + rng.uniform(-0.01, 0.01, len(x))
+        rows.append(f"{w:g};" + ";".join(f"{v:.3f}" for v in y))
+    table, sheet = tmp_path / "hull.csv", tmp_path / "hull.html"
+    table.write_text("\n".join(rows) + "\n")
+    assert main(["fair", str(table), "--tol", "0.01", "--report", str(sheet)]) == 0
+    text = sheet.read_text()
+    for stated in ("station 4", "waterline 0.8", "<th>unit</th><td>m</td>", "<td>0.01</td>"):
+        assert stated in text, stated
+    curves = text[text.index("<h2>Curves") : text.index("<h2>Plan")]
+    assert curves.count("<tr>") == 1 + 17
+    assert moldloft.__version__ in text and "<th>date</th>" in text
+    assert main(["fair", str(table), "--tol", "0.01", "--units", "ft"]) != 0
+    assert "are in m" in capsys.readouterr().err

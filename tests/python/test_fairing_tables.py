@@ -334,3 +334,117 @@ def test_heights_at_buttocks(cli, tmp_path):
     out = read_points(tmp_path / "out.csv")
     assert (out.table[:, :2] == file.table[:, :2]).all()
     assert 0 < np.abs(out.table - file.table).max() <= 0.005 * (1 + 1e-12)
+
+
+STATIONS = [
+    (0, [0, 0.3, 0.6, 0.8, 0.9]),
+    (1, [0.5, 0.8, 1.1, 1.3, 1.4]),
+    (2, [0.9, 1.2, 1.5, 1.7, 1.8]),
+    (3, [1.1, 1.4, 1.7, 1.9, 2.0]),
+    (4, [1.2, 1.5, 1.8, 2.0, 2.1]),
+]
+LEVELS = [0.5, 1, 1.5, 2, 2.5]
+
+
+def as_matrix(corner, heads, label="{:g}", sign=","):
+    rows = [sign.join([label.format(s), *map(str, row)]) for s, row in STATIONS]
+    return "\n".join([sign.join([corner, *heads]), *rows]) + "\n"
+
+
+def as_list(names, row, by_levels=False):
+    cells = [(s, w, y) for s, ys in STATIONS for w, y in zip(LEVELS, ys, strict=True)]
+    if by_levels:
+        cells.sort(key=lambda cell: (cell[1], cell[0]))
+    return "\n".join([names, *(row(*cell) for cell in cells)]) + "\n"
+
+
+NUMBERS = [f"{w:g}" for w in LEVELS]
+PLAIN = "{0},{1},{2}".format
+OFFICE_FORMS = {
+    "matrix": (as_matrix("station", NUMBERS), 1, None),
+    "capital": (as_matrix("Station", NUMBERS), 1, None),
+    "labels": (as_matrix("St.", [f"WL {w}" for w in NUMBERS], "St {:g}"), 1, None),
+    "labels in metres": (as_matrix("station", [f"WL {w} m" for w in NUMBERS]), 1, "m"),
+    "heads in metres": (as_matrix("station", [f"{w} m" for w in NUMBERS]), 1, "m"),
+    "corner in mm": (as_matrix("station (mm)", NUMBERS), 1, "mm"),
+    "tabs": (as_matrix("station", NUMBERS, sign="\t"), 1, None),
+    "pipes": (as_matrix("station", NUMBERS, sign="|"), 1, None),
+    "title": ("Hull 123 half-breadths\n" + as_matrix("station", NUMBERS), 1, None),
+    "comment": ("# Hull 123\n" + as_matrix("station", NUMBERS), 1, None),
+    "x, z, y": (as_list("x,z,y", PLAIN), 1, None),
+    "words": (as_list("station,waterline,half-breadth", PLAIN), 1, None),
+    "by levels": (as_list("station,waterline,half-breadth", PLAIN, by_levels=True), 1, None),
+    "words with axes": (as_list("station_x,waterline_z,half_breadth_y", PLAIN), 1, None),
+    "numbers beside": (
+        as_list("station_index,station_x,waterline_z,half_breadth_y", "{0},{0},{1},{2}".format),
+        1,
+        None,
+    ),
+    "decimal commas": (
+        as_list(
+            "Station;Waterline;Half breadth",
+            lambda s, w, y: f"{s:.1f};{w:.1f};{y:.1f}".replace(".", ","),
+        ),
+        1,
+        None,
+    ),
+    "mm": (
+        as_list(
+            "station (mm),waterline (mm),half-breadth (mm)",
+            lambda s, w, y: f"{1000 * s:.0f},{1000 * w:.0f},{1000 * y:.0f}",
+        ),
+        1000,
+        "mm",
+    ),
+}
+
+
+@pytest.mark.parametrize("form", OFFICE_FORMS)
+def test_forms_of_one_table_are_the_same_offsets(form, tmp_path):
+    text, scale, unit = OFFICE_FORMS[form]
+    path = tmp_path / "t.csv"
+    path.write_text(text)
+    file = read_points(path)
+    wanted = sorted((s, y, w) for s, ys in STATIONS for w, y in zip(LEVELS, ys, strict=True))
+    assert file.offsets and file.unit == unit
+    assert np.abs(np.array(sorted(map(tuple, file.table / scale))) - wanted).max() < 1e-12
+    assert len(file.blocks) == len(STATIONS) + len(LEVELS)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (as_matrix("", NUMBERS), "line 1: a matrix of offsets?"),
+        (as_matrix("station", [*NUMBERS, "sheer"]), "line 1: .* found `sheer`"),
+        (as_matrix("station", ["0.5 m", "1 ft", *NUMBERS[2:]]), "line 1: places in ft and m"),
+        (as_list("station (m),waterline (m),half-breadth (mm)", PLAIN), "columns in m and mm"),
+    ],
+)
+def test_forms_that_say_too_little_are_refused_at_the_cell(text, said, tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text(text)
+    with pytest.raises(FairingError, match=said):
+        read_points(path)
+
+
+def test_a_curve_in_space_is_no_table(tmp_path):
+    t = np.linspace(0, 1, 30)
+    path = tmp_path / "t.csv"
+    rows = [f"{x:.3f},{y:.3f},{z:.3f}" for x, y, z in zip(t, t**2, np.sin(t), strict=True)]
+    path.write_text("x,y,z\n" + "\n".join(rows) + "\n")
+    assert not read_points(path).offsets
+
+
+@pytest.mark.parametrize(("unit", "flag"), [(None, 2), ("m", 6), ("in", 1), ("ft", 4), ("cm", 10)])
+def test_splines_are_written_in_the_unit_of_the_table(unit, flag, tmp_path):
+    from moldloft.fairing import Spline
+    from moldloft.fairing.spline_files import encoded
+
+    x = np.linspace(0, 3, 9)
+    curve = Spline.interpolate(np.c_[x, np.sin(x)])
+    lines = encoded([curve], tmp_path / "o.igs", unit).decode().splitlines()
+    words = "".join(s[:72].rstrip() for s in lines if s[72] == "G").split(",")
+    # The first word is a comma.
+    assert int(words[14]) == flag
+    dxf = encoded([curve], tmp_path / "o.dxf", unit).decode().splitlines()
+    assert ("$INSUNITS" in dxf) == (unit is not None)

@@ -190,7 +190,7 @@ impl fmt::Display for FairError {
                 write!(f, "a closed curve without a tolerance shrinks to a point: give a tolerance")
             }
             Self::Mark { index, count } => {
-                write!(f, "expected marks below {count}, the number of points, found {index}")
+                write!(f, "expected points from 1 to {count}, found {}", index.wrapping_add(1))
             }
             Self::Weight { index, weight } => {
                 write!(f, "weight {} is {weight}, expected a positive number", index + 1)
@@ -199,7 +199,7 @@ impl fmt::Display for FairError {
                 write!(f, "expected {expected} {what}, found {actual}")
             }
             Self::Unsorted { index } => {
-                write!(f, "parameter or knot {index} is not larger than the one before it")
+                write!(f, "parameter or knot {} is not larger than the one before it", index + 1)
             }
             Self::Knots(error) => error.fmt(f),
             Self::Degree { expected, actual } => {

@@ -127,6 +127,7 @@ pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report,
 pub use interrogate::{shape, surface};
 pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
+pub use net::curves::CurvePair;
 pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 import argparse
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -240,6 +241,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--passes", type=int, help="passes of the faithful mode, which this implies"
     )
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
+    parser.add_argument(
+        "--units",
+        choices=["m", "cm", "mm", "ft", "in"],
+        help="what the numbers of a file of points are in; default: what it states. Splines are "
+        "written with it",
+    )
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
     parser.add_argument(
@@ -335,7 +342,8 @@ def run(options: argparse.Namespace) -> int:
             from moldloft.fairing.page import write_page
 
             progress.stage(f"writing {options.report}")
-            files.append(write_page(result, options.report, f"Fairing of {source.title}"))
+            title = f"Fairing of {source.title}"
+            files.append(write_page(result, options.report, title, source.stated()))
     data["files"] = [str(f) for f in files]
     if options.json:
         print_json(data)
@@ -399,6 +407,14 @@ class _Source(abc.ABC):
 
     def notes(self) -> list[str]:
         return []
+
+    def stated(self) -> list[tuple[str, str]]:
+        """What a page says besides the result: where it came from, and how to make it again."""
+        import datetime
+
+        command = shlex.join(["moldloft", *sys.argv[1:]])
+        today = datetime.datetime.now().astimezone().date().isoformat()
+        return [("source", self.title), ("command", command), ("date", today)]
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
@@ -529,8 +545,14 @@ class _Points(_Source):
         self.file = file
         self.said: list[str] = list(file.notes)
         self.title = str(file.path)
+        self.unit = file.unit
 
     def fair(self, options: argparse.Namespace) -> Result:
+        if options.units and self.file.unit not in (None, options.units):
+            raise Error(
+                f"--units {options.units}: the numbers of {self.file.path} are in {self.file.unit}"
+            )
+        self.unit = options.units or self.file.unit
         if self.file.offsets and self.file.inches:
             self.said.append(
                 "stations and waterlines that are plain numbers are inches, too: "
@@ -576,7 +598,6 @@ class _Points(_Source):
         for name, given in (
             ("--as", options.role not in (None, "points")),
             ("--closed", options.closed or options.closed_v),
-            ("--bound curve", options.bound == "curve"),
             ("--breaks auto", options.breaks == "auto"),
             ("--through", options.through),
             ("--tangent", options.tangent),
@@ -625,6 +646,7 @@ class _Points(_Source):
                 breaks=marks,
                 fixed=fixed,
                 motion=_motion(options),
+                bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
             )
@@ -632,9 +654,24 @@ class _Points(_Source):
             if error.index is not None and error.index < len(rows):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
-        if self.file.offsets and self.file.moves == 1:
-            self._across(result, rows)
+        if self.file.offsets:
+            result = self._named(result, rows)
+            if self.file.moves == 1:
+                self._across(result, rows)
         return result
+
+    def _named(self, result: NetworkFairing, rows: list[int]) -> NetworkFairing:
+        """With the stations and waterlines of the table for names."""
+        other = 3 - self.file.moves
+        word = "waterline" if other == 2 else "buttock"
+        points = self.file.points[rows]
+        names = []
+        for own in result.lists:
+            first, second = points[own[0]], points[own[1]]
+            station = first[0] == second[0]
+            names.append(f"station {first[0]:g}" if station else f"{word} {first[other]:g}")
+        called = tuple(f"station {p[0]:g}, {word} {p[other]:g}" for p in points)
+        return replace(result, names=tuple(names), point_names=called)
 
     def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
         """One tolerance, or that of each different point."""
@@ -661,8 +698,11 @@ class _Points(_Source):
     def notes(self) -> list[str]:
         return self.said
 
+    def stated(self) -> list[tuple[str, str]]:
+        return [*super().stated(), ("unit", self.unit or "not stated")]
+
     def facts(self) -> dict[str, Any]:
-        return {"source": self.title, "source_notes": self.said}
+        return {"source": self.title, "source_notes": self.said, "unit": self.unit}
 
     def write(self, result: Any, path: Path) -> Path:
         import numpy as np
@@ -673,7 +713,9 @@ class _Points(_Source):
         _known_ending(path, self.file.path)
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
-            return _commit(path, encoded(curves, path))
+            if self.unit is None and path.suffix.lower() in (".igs", ".iges"):
+                self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
+            return _commit(path, encoded(curves, path, self.unit))
         if hasattr(result, "lists"):
             rows = result.points[self.of_row]
             like: PointFile = self.file
@@ -775,6 +817,8 @@ class _Grids(_Source):
         self.file = file
         count = len(file.grids)
         self.all = options.block is None and count > 1
+        if options.units:
+            raise Error("--units is for files of points")
         if options.seams and not self.all:
             raise Error("--seams: for the blocks of a Plot3D file that are faired together")
         if self.all:
@@ -852,15 +896,19 @@ class _Object(_Source):
     """An object of a model: a curve, a surface, or rows of points."""
 
     def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
+        from moldloft import _core
         from moldloft.fairing.objects import sampled
         from moldloft.loading import load
 
         if isinstance(options.tol, list):
             raise Error("--tol FILE is for points: those of an object are sampled")
+        if options.units:
+            raise Error("--units is for files of points: a model states its own")
         loaded = load(model, library=options.library)
         if options.set:
             loaded.set(dict(options.set))
         self.title = f"{model}:{name}"
+        self.unit = _core.length_unit(loaded._document)[0]
         self.made = sampled(loaded, name, options.tol)
         self.error = self.made.error
 
@@ -905,7 +953,7 @@ class _Object(_Source):
 
         _known_ending(path, None)
         if path.suffix.lower() in SPLINES:
-            return _commit(path, encoded([result.spline], path))
+            return _commit(path, encoded([result.spline], path, self.unit))
         return _commit(path, _encode_curve(result, path, None))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import narrowed, points_of, radii, refuse_repeats
-from moldloft.fairing.asked import index_of, spacing_of
+from moldloft.fairing.asked import index_of
 from moldloft.fairing.faired import Fairing
 from moldloft.fairing.report import Finding, Numbers
 from moldloft.fairing.spline import Spline
@@ -20,33 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
-
-
-def laid(
-    before: Floats, after: Floats, degree: int, spacing: Any, closed: bool, breaks: Sequence[int]
-) -> tuple[Spline, Spline, float, float]:
-    """The splines through points before and after on the same knots.
-
-    Also how far these are apart: certified by their control points, and sampled.
-    """
-    word, way = spacing_of(spacing)
-    core, at, _ = _core.Spline.interpolate(before, degree, word, closed, list(breaks), way)
-    first = Spline._of(core)
-    low, high = first.domain
-    own = np.asarray(first.knots)
-    if len(first.control_points) == len(before) and first.closed == closed:
-        period = high - low if closed else None
-        second, _ = Spline._fit(
-            after, degree, own, None, None, closed, period, "chord", np.asarray(at)
-        )
-        moved = second.control_points - first.control_points
-        certified = float(np.linalg.norm(moved, axis=1).max())
-    else:
-        core, _, _ = _core.Spline.interpolate(after, degree, word, closed, list(breaks), way)
-        second = Spline._of(core)
-        certified = float("nan")
-    a, b = first.samples(16).points, second.samples(16).points
-    return first, second, certified, float(np.linalg.norm(a - b, axis=1).max())
 
 
 @dataclass

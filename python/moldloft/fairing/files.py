@@ -62,6 +62,8 @@ class PointFile:
     """What reading it showed."""
     inches: bool = False
     """Whether lengths were in feet, inches and eighths; they are inches here."""
+    unit: str | None = None
+    """The unit of length that the file states, of feet, inches and eighths inches."""
     comma: bool = False
     """Whether numbers had decimal commas."""
     offsets: bool = False
@@ -122,7 +124,15 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
             rows = np.array(offsets)
             comma = any("," in where.lines[k][a:b] for k, a, b in where.places)
             file = PointFile(
-                path, rows, lines, [range(len(rows))], [], None, None, said, inches, comma
+                path,
+                rows,
+                lines,
+                [range(len(rows))],
+                [],
+                notes=said,
+                inches=inches,
+                unit="in" if inches else where.unit,
+                comma=comma,
             )
             file.moves = 2 if where.heights else 1
             return replace(_as_offsets(file), matrix=where)
@@ -145,6 +155,7 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         halves,
         made.notes + notes,
         made.inches,
+        "in" if made.inches else made.unit,
         made.comma,
     )
     file.moves = 2 if made.heights else 1

@@ -14,7 +14,6 @@ from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii, too_large
 from moldloft.fairing.asked import EXACT, goal_of, only_data, spacing_of
-from moldloft.fairing.control import laid
 from moldloft.fairing.findings import along_lines
 from moldloft.fairing.report import Finding, certificate_of, claims_optimum, lines_of
 from moldloft.fairing.spline import Spline
@@ -64,15 +63,14 @@ class NetworkFairing:
     deviation_curves: float
     """The largest distance of a curve from its original, found by sampling: between points a curve
     may swing a little farther than they moved."""
+    deviation_curves_certified: float
+    """No curve is farther from its original than this anywhere."""
     value: float
     """The measure of the result, as the certificate has it."""
     gap: float
     """No network within the tolerance measures less than ``value - gap``."""
     seconds: float
     """Time of the fairing."""
-    deviation_curves_certified: float = float("nan")
-    """No curve is farther from its original than this anywhere; not a number where a curve's pieces
-    are too short for a proof."""
     goal: str = "fairest"
     """Which of the networks within the tolerance was wanted."""
     used: float | None = None
@@ -82,6 +80,41 @@ class NetworkFairing:
     whose index is the point's."""
     notes: tuple[str, ...] = ()
     """What the user should know."""
+    names: tuple[str, ...] = ()
+    """What the curves are called, such as ``station 3``; numbers where there are none."""
+    point_names: tuple[str, ...] = ()
+    """What the points are called; numbers where there are none."""
+
+    def name(self, curve: int) -> str:
+        """What a curve is called in messages and pages.
+
+        Parameters
+        ----------
+        curve
+            The curve, from 0.
+        """
+        return self.names[curve] if self.names else f"curve {curve + 1}"
+
+    def point_name(self, point: int) -> str:
+        """What a point is called in messages and pages.
+
+        Parameters
+        ----------
+        point
+            The point, from 0.
+        """
+        return self.point_names[point] if self.point_names else f"point {point + 1}"
+
+    def text(self, finding: Finding) -> str:
+        """The sentence about a finding, with the name of its point.
+
+        Parameters
+        ----------
+        finding
+            One of :attr:`findings`.
+        """
+        number = f"point {finding.index + 1}"
+        return finding.text.replace(number, self.point_name(finding.index), 1)
 
     @property
     def deviation_sampled(self) -> float:
@@ -117,7 +150,13 @@ class NetworkFairing:
             "goal": self.goal,
             "budget_used": self.used,
             "findings": [
-                {"curve": k + 1, "kind": f.kind, "point": f.index + 1, "text": f.text}
+                {
+                    "curve": k + 1,
+                    "name": self.name(k),
+                    "kind": f.kind,
+                    "point": f.index + 1,
+                    "text": self.text(f),
+                }
                 for k, f in self.findings
             ],
             "notes": list(self.notes),
@@ -150,7 +189,7 @@ class NetworkFairing:
             ("certificate", proved),
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
-        said = [f"note: curve {k + 1}, {f.text}" for k, f in self.findings]
+        said = [f"note: {self.name(k)}, {self.text(f)}" for k, f in self.findings]
         said += [f"note: {note}" for note in self.notes]
         return "\n".join([lines_of(rows, tail), *said])
 
@@ -180,6 +219,7 @@ def network(
     breaks: Sequence[int] = (),
     fixed: Sequence[int] | str = "corners",
     motion: Any = "ball",
+    bound: str = "points",
     passes: int = 1,
     steps: int | None = None,
     original: ArrayLike | None = None,
@@ -221,6 +261,10 @@ def network(
         ``"ends"``, ``"none"``, or numbers.
     motion
         As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone.
+    bound
+        ``"points"``: the tolerance is that of the points, between which a curve may swing farther;
+        ``"curve"``: no curve is farther from its original than the smaller tolerance of the two
+        points next to it, all along. Of the optimum at parameters.
     passes, steps
         Of the faithful mode; sweeps.
     original
@@ -260,6 +304,13 @@ def network(
         only_data(goal)
     word_spaced, spaced_way = spacing_of(spacing)
     index = mode != "optimum" or word_spaced == "index"
+    if bound not in ("points", "curve"):
+        raise FairingError(f"a bound is one on points or curve, not `{bound}`")
+    if bound == "curve" and index:
+        raise FairingError(
+            "a bound all along the curves is for the optimum of curves at parameters: "
+            "take another spacing than `index`"
+        )
     count = len(data)
     lists: list[tuple[list[int], bool]] = []
     marked = {_number(b, count) for b in breaks}
@@ -300,7 +351,7 @@ def network(
     stay = stay and _core.are_exact(data, lists, sorted(marked))
     web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
     word, way = direction(motion)
-    faired, reported = web.fair(
+    faired, pairs, reported = web.fair(
         {
             "tolerance": [0.0] * count if stay else radii(tol, count),
             "motion": word,
@@ -308,7 +359,7 @@ def network(
             "fixed": still,
             "measure": measure,
             "mode": mode,
-            "bound": "points",
+            "bound": bound,
             "spacing": "index" if index else word_spaced,
             "spacing_direction": spaced_way,
             "goal": wanted if mode == "optimum" else None,
@@ -321,19 +372,11 @@ def network(
     if stay:
         # Which network is the fairest was not asked.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
-    pairs = []
-    for (own, closed), own_marks in zip(lists, marks, strict=True):
-        spaced = "index" if index else spacing
-        try:
-            pairs.append(laid(data[own], faired[own], degree, spaced, closed, own_marks))
-        except FairingError:
-            # The coordinate does not rise along this curve.
-            pairs.append(laid(data[own], faired[own], degree, "chord", closed, own_marks))
     seconds = time.perf_counter() - started
     return NetworkFairing(
         points=narrowed(faired, width),
-        curves=tuple(p[1] for p in pairs),
-        originals=tuple(p[0] for p in pairs),
+        curves=tuple(Spline._of(p[1]) for p in pairs),
+        originals=tuple(Spline._of(p[0]) for p in pairs),
         data=data,
         lists=tuple(tuple(o + o[:1]) if c else tuple(o) for o, c in lists),
         tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),

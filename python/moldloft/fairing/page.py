@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft._core import __version__
 from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.fairing.drawing import (
@@ -320,7 +321,14 @@ def _bends(fairing: Fairing) -> str:
     return _figure(picture, f"Curvature along the curve, {how}: before orange, after blue.")
 
 
-def _points(data: Floats, after: Floats, off: Floats, tol: float | None, wrong: set[int]) -> str:
+def _points(
+    data: Floats,
+    after: Floats,
+    off: Floats,
+    tol: float | None,
+    wrong: set[int],
+    called: list[str] | None = None,
+) -> str:
     """Every point: as given, as faired, the distance and its share of the tolerance."""
     width = 2 if np.ptp(data[:, 2]) == 0 and not data[:, 2].any() else 3
     names = "xyz"[:width]
@@ -330,7 +338,8 @@ def _points(data: Floats, after: Floats, off: Floats, tol: float | None, wrong: 
     rows = []
     rounding = 1e-14 * float(np.abs(data).max(initial=0.0))
     for k, (p, q, d) in enumerate(zip(data, after, off, strict=True)):
-        cells = [str(k + 1), *(_number(float(x), rounding) for x in (*p[:width], *q[:width]))]
+        name = str(k + 1) if called is None else called[k]
+        cells = [name, *(_number(float(x), rounding) for x in (*p[:width], *q[:width]))]
         cells.append(f"{d:.3g}" if d > rounding else "0")
         if tol:
             cells.append(f"{100 * d / tol:.0f} %")
@@ -373,6 +382,25 @@ def _of_curve(fairing: Fairing) -> list[str]:
     return parts
 
 
+def _curves(fairing: NetworkFairing, pairs: list[tuple[Spline, Spline]], off: Floats) -> str:
+    """Every curve: its inflections and monotone pieces, and where it moved most."""
+    head = ["curve", "inflections", "faired", "monotone pieces", "faired", "largest move", "at"]
+    if fairing.tol:
+        head.append("of the tolerance")
+    rows = []
+    for k, (before, after) in enumerate(pairs):
+        own = list(fairing.lists[k])
+        most = own[int(np.argmax(off[own]))]
+        counts = [before.inflections(), after.inflections()]
+        counts += [before.monotone_pieces(), after.monotone_pieces()]
+        cells = [fairing.name(k), *map(str, counts), f"{off[most]:.3g}"]
+        cells.append(fairing.point_name(most) if off[most] > 0 else "")
+        if fairing.tol:
+            cells.append(f"{100 * off[most] / fairing.tol:.0f} %")
+        rows.append(("", cells))
+    return _table(head, rows)
+
+
 def _of_network(fairing: NetworkFairing) -> list[str]:
     data, after = fairing.data, _three(fairing.points)
     if fairing.points.shape[1] == 2:
@@ -381,15 +409,19 @@ def _of_network(fairing: NetworkFairing) -> list[str]:
         views = [("Plan", (0, 1)), ("Profile", (0, 2)), ("Body plan", (1, 2))]
     wrong = {f.index for _, f in fairing.findings if f.kind == "outlier"}
     pairs = list(zip(fairing.originals, fairing.curves, strict=True))
-    parts = []
+    parts = ["<h2>Curves</h2>", _curves(fairing, pairs, np.linalg.norm(after - data, axis=1))]
     for name, axes in views:
         if min(float(np.ptp(data[:, c])) for c in axes) > 0:
             parts += [f"<h2>{name}</h2>", _moved(data, after, fairing.tol, pairs, axes, wrong)]
             parts.append(_combs(pairs, axes))
     off = np.linalg.norm(after - data, axis=1)
-    parts += ["<h2>Points</h2>", _points(data, after, off, fairing.tol, wrong)]
+    names = [fairing.point_name(k) for k in range(len(data))] if fairing.point_names else None
+    parts += ["<h2>Points</h2>", _points(data, after, off, fairing.tol, wrong, names)]
     if fairing.findings:
-        said = "".join(f"<li>curve {k + 1}: {escape(f.text)}</li>" for k, f in fairing.findings)
+        said = "".join(
+            f"<li>{escape(fairing.name(k))}: {escape(fairing.text(f))}</li>"
+            for k, f in fairing.findings
+        )
         parts += ["<h2>Findings</h2>", f"<ul>{said}</ul>"]
     return parts
 
@@ -446,7 +478,9 @@ def _surface(
 
 
 def page(
-    fairing: Fairing | NetworkFairing | SurfaceFairing | PatchesFairing, title: str = "Fairing"
+    fairing: Fairing | NetworkFairing | SurfaceFairing | PatchesFairing,
+    title: str = "Fairing",
+    facts: Sequence[tuple[str, str]] = (),
 ) -> str:
     """The HTML page of a fairing; it needs no other file and no network.
 
@@ -457,6 +491,9 @@ def page(
         :func:`moldloft.fairing.patches` returned.
     title
         Its heading.
+    facts
+        What stands below the heading besides the version of the program: names and values, such as
+        the file, its unit and the command.
 
     Returns
     -------
@@ -475,18 +512,27 @@ def page(
         parts = _of_surface(fairing)
     else:
         parts = _of_patches(fairing)
-    facts: Any = str(fairing)
+    report: Any = str(fairing)
+    stated = [*facts, ("tolerance", _tolerance(fairing)), ("program", f"Moldloft {__version__}")]
+    head = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in stated)
     return (
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>'
         f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style>'
-        f"<h1>{escape(title)}</h1><pre>{escape(facts)}</pre>" + "".join(parts) + "</html>\n"
+        f'<h1>{escape(title)}</h1><table class="facts">{head}</table>'
+        f"<pre>{escape(report)}</pre>" + "".join(parts) + "</html>\n"
     )
+
+
+def _tolerance(fairing: Any) -> str:
+    tol = getattr(fairing, "tol", None)
+    return "none" if tol is None else f"{tol:.6g}"
 
 
 def write_page(
     fairing: Fairing | NetworkFairing | SurfaceFairing | PatchesFairing,
     path: str | PathLike[str],
     title: str = "Fairing",
+    facts: Sequence[tuple[str, str]] = (),
 ) -> Path:
     """Writes :func:`page` into a file, all of it or nothing.
 
@@ -497,7 +543,9 @@ def write_page(
     path
         The file.
     title
-        A title, for formats that have one.
+        Its heading.
+    facts
+        See :func:`page`.
 
     Returns
     -------
@@ -509,7 +557,9 @@ def write_page(
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):
         raise Error(f"a page is .html, not `{path}`")
-    return commit(path.parent, [Output(path.name, page(fairing, title).encode())], make=False)[0]
+    return commit(
+        path.parent, [Output(path.name, page(fairing, title, facts).encode())], make=False
+    )[0]
 
 
 explain(globals())

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft.arguments import explain
+from moldloft.cad.dxf import UNITS
 from moldloft.errors import FairingError
 
 if TYPE_CHECKING:
@@ -24,8 +25,15 @@ SPLINES = (".igs", ".iges", ".dxf", ".json")
 """Endings of files that hold the splines themselves."""
 
 
-def encoded(curves: Sequence[Spline], path: Path) -> bytes:
+_IGES_UNITS = {"in": (1, "INCH"), "mm": (2, "MM"), "ft": (4, "FT"), "m": (6, "M"), "cm": (10, "CM")}
+"""Flags and names of units in IGES."""
+
+
+def encoded(curves: Sequence[Spline], path: Path, unit: str | None = None) -> bytes:
     """The curves in the format that the ending of ``path`` names.
+
+    ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES says millimetres, as it
+    has no word for that; DXF and JSON say nothing.
 
     Raises
     ------
@@ -34,11 +42,11 @@ def encoded(curves: Sequence[Spline], path: Path) -> bytes:
     """
     ending = path.suffix.lower()
     if ending in (".igs", ".iges"):
-        return _iges(curves, path.name)
+        return _iges(curves, path.name, unit)
     if ending == ".dxf":
-        return _dxf(curves)
+        return _dxf(curves, unit)
     if ending == ".json":
-        return _json(curves)
+        return _json(curves, unit)
     known = ", ".join((*POINTS, *SPLINES))
     raise FairingError(f"`{path}`: expected an ending of {known}")
 
@@ -49,7 +57,7 @@ def _number(x: float) -> str:
     return text if any(c in text for c in ".en") else text + "."
 
 
-def _json(curves: Sequence[Spline]) -> bytes:
+def _json(curves: Sequence[Spline], unit: str | None) -> bytes:
     def one(curve: Spline) -> dict[str, object]:
         knots, points, weights = curve.open_form()
         return {
@@ -60,10 +68,11 @@ def _json(curves: Sequence[Spline]) -> bytes:
             "weights": weights,
         }
 
-    return (json.dumps({"splines": [one(c) for c in curves]}, indent=1) + "\n").encode()
+    data = {"unit": unit, "splines": [one(c) for c in curves]}
+    return (json.dumps(data, indent=1) + "\n").encode()
 
 
-def _iges(curves: Sequence[Spline], name: str) -> bytes:
+def _iges(curves: Sequence[Spline], name: str, unit: str | None) -> bytes:
     """IGES 5.3, one rational B-spline curve (type 126, form 0) each."""
     directory: list[str] = []
     parameters: list[str] = []
@@ -90,8 +99,16 @@ def _iges(curves: Sequence[Spline], name: str) -> bytes:
     extent = max(float(np.abs(c.control_points).max()) for c in curves)
     words = ["1H,", "1H;", _hollerith("moldloft"), _hollerith(title), _hollerith("moldloft")]
     words += [_hollerith("1"), "32", "38", "6", "308", "15", _hollerith("moldloft"), "1.0"]
-    # Units: none are known, millimetres are what readers assume.
-    words += ["2", "2HMM", "1", "1.0", _hollerith("20000101.000000"), "1.0E-9", _number(extent)]
+    flag, unit_name = _IGES_UNITS[unit or "mm"]
+    words += [
+        str(flag),
+        _hollerith(unit_name),
+        "1",
+        "1.0",
+        _hollerith("20000101.000000"),
+        "1.0E-9",
+        _number(extent),
+    ]
     words += ["", "", "11", "0", _hollerith("20000101.000000")]
     start = ["Spline curves"]
     sections = [("S", start), ("G", _wrapped(words, 72)), ("D", directory), ("P", parameters)]
@@ -129,10 +146,13 @@ def _is_flat(points: np.ndarray) -> tuple[float, float, float] | None:
     return float(n[0]), float(n[1]), float(n[2])
 
 
-def _dxf(curves: Sequence[Spline]) -> bytes:
+def _dxf(curves: Sequence[Spline], unit: str | None) -> bytes:
     """DXF R2000, one SPLINE each."""
     pairs: list[tuple[int, object]] = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER")]
-    pairs += [(1, "AC1015"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES")]
+    pairs += [(1, "AC1015")]
+    if unit is not None:
+        pairs += [(9, "$INSUNITS"), (70, UNITS[unit])]
+    pairs += [(0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES")]
     for k, curve in enumerate(curves):
         knots, points, weights = curve.open_form()
         flat = _is_flat(points)

@@ -13,7 +13,18 @@ from fractions import Fraction
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
 
-__all__ = ["MISSING", "Cells", "Plain", "eighths", "length", "names_axes", "plain", "spans"]
+__all__ = [
+    "MISSING",
+    "SEPARATORS",
+    "Cells",
+    "Plain",
+    "eighths",
+    "length",
+    "names_axes",
+    "plain",
+    "spans",
+    "unit_named",
+]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _SLIP = re.compile(r"[-+.\dOoIl]+")
@@ -35,6 +46,9 @@ _PARTS = {
     "\u215e": (7, 8),
 }
 _FRACTION = re.compile(rf"([-\u2212]?)(\d*)(?:\s*([{''.join(_PARTS)}])|\s+([1-9]\d*)/([1-9]\d*))")
+SEPARATORS = ";\t,|"
+"""What separates cells, the first of these that a line has."""
+
 MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
 
 _AXES = {
@@ -124,6 +138,8 @@ class Plain:
     notes: list[str] = field(default_factory=list)
     inches: bool = False
     """Whether lengths were in feet, inches and eighths."""
+    unit: str | None = None
+    """The unit that the names of columns state: m, cm, mm, ft or in."""
     comma: bool = False
     """Whether numbers had decimal commas."""
     stations: bool = False
@@ -144,6 +160,8 @@ class Cells:
     """Of each number its line, from 0, and where it begins and ends there."""
     heights: bool = False
     """Whether the numbers are heights at buttocks, not half-breadths at waterlines."""
+    unit: str | None = None
+    """The unit that the corner of a matrix or a line before it states."""
 
     def written(self, texts: Sequence[str | None]) -> str:
         """The text with other numbers in its cells, as wide as before where they fit.
@@ -163,14 +181,14 @@ class Cells:
 
 
 def spans(line: str) -> list[tuple[int, int]]:
-    """Where the cells of a line begin and end: between semicolons, tabs or commas, else blanks.
+    """Where the cells of a line begin and end: between :data:`SEPARATORS`, else blanks.
 
     Parameters
     ----------
     line
         A line of a table.
     """
-    sign = next((s for s in (";", "\t", ",") if s in line), None)
+    sign = next((s for s in SEPARATORS if s in line), None)
     if sign is None:
         return [m.span() for m in re.finditer(r"\S+", line)]
     out, at = [], 0
@@ -186,9 +204,9 @@ def spans(line: str) -> list[tuple[int, int]]:
 
 
 def _cells(line: str) -> list[str]:
-    """The cells of a line: between semicolons, tabs or commas, else blanks."""
-    line = line.strip().rstrip(";,\t ")
-    for sign in (";", "\t", ","):
+    """The cells of a line: between what separates them, else blanks."""
+    line = line.strip().rstrip(f"{SEPARATORS} ")
+    for sign in SEPARATORS:
         if sign in line:
             return [c.strip().strip('"').strip() for c in line.split(sign)]
     return line.split()
@@ -293,11 +311,40 @@ def names_axes(line: str) -> bool:
 
 
 def _axis(name: str) -> str | None:
-    name = _UNIT.sub("", name.strip().lower())
-    return _AXES.get(name) or _AXES.get(re.sub(r"[\s-]+", "_", name).rstrip("s"))
+    name = re.sub(r"[\s-]+", "_", _UNIT.sub("", name.strip().lower()))
+    own = _AXES.get(name) or _AXES.get(name.rstrip("s"))
+    if own is None and name[-2:] in ("_x", "_y", "_z"):
+        # As in `waterline_z`.
+        before = _AXES.get(name[:-2])
+        own = before if before == name[-1] else None
+    return own
 
 
 _UNIT = re.compile(r"\s*[(\[]\s*([^)\]]*?)\s*[)\]]$")
+_UNIT_WORDS = {
+    "m": ("m", "metre", "metres", "meter", "meters"),
+    "cm": ("cm", "centimetre", "centimetres", "centimeter", "centimeters"),
+    "mm": ("mm", "millimetre", "millimetres", "millimeter", "millimeters"),
+    "ft": ("ft", "foot", "feet"),
+    "in": ("in", "inch", "inches"),
+}
+
+
+def unit_named(word: str) -> str | None:
+    """The unit of length that a word means: m, cm, mm, ft or in.
+
+    Parameters
+    ----------
+    word
+        A word, as it stands in brackets behind the name of a column.
+
+    Examples
+    --------
+    >>> unit_named("Metres"), unit_named("in."), unit_named("deg")
+    ('m', 'in', None)
+    """
+    bare = word.strip().rstrip(".").lower()
+    return next((unit for unit, words in _UNIT_WORDS.items() if bare in words), None)
 
 
 def _named(lines: list[str], out: Plain) -> list[str]:
@@ -313,6 +360,7 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         raise FairingError(
             f"line {first + 1}: columns in {' and '.join(sorted(units))}: expected one unit"
         )
+    out.unit = next((unit_named(unit) for unit in units), None)
     if {"x", "y"} <= set(plain_names):
         # Beside x and y a station is a number of the section.
         axes = [n if n in ("x", "y", "z") else None for n in plain_names]
@@ -322,8 +370,12 @@ def _named(lines: list[str], out: Plain) -> list[str]:
             raise FairingError(f"line {first + 1}: two columns of {', '.join(names)} are the same")
         return lines
     order = sorted((a, k) for k, a in enumerate(axes) if a)
-    station = any(n.startswith("station") for n in plain_names)
-    out.stations = station and len(known) == 3
+    of_x = plain_names[order[0][1]]
+    out.stations = of_x.startswith("station") and len(known) == 3
+    if not out.stations and set(known) == {"x", "y", "z"}:
+        out.stations = _in_levels(lines[first + 1 :], [k for _, k in order], len(names))
+        if out.stations:
+            out.notes.append("rows of equal x with common z are the stations of a table of offsets")
     out.heights = out.stations and any(n.startswith("buttock") for n in plain_names)
     in_order = len(known) == len(names) and [k for _, k in order] == list(range(len(names)))
     out.axes = [at for _, at in order]
@@ -359,6 +411,33 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         else:
             raise FairingError(f"line {k + 1}: the cell of `{names[gone]}` is empty")
     return made
+
+
+def _in_levels(lines: list[str], axes: list[int], width: int) -> bool:
+    """Whether points run through stations of equal x, each through heights that others have, too.
+
+    So rows of a table of offsets do, and no curve in space does.
+    """
+    stations: list[tuple[str, set[str]]] = []
+    if "\n\n" in "\n".join(line.strip() for line in lines).strip():
+        # Curves are apart.
+        return False
+    for line in lines:
+        if line.startswith("#"):
+            continue
+        cells = _cells(line)
+        if len(cells) != width:
+            continue
+        x, _, z = (cells[k] for k in axes)
+        if not stations or stations[-1][0] != x:
+            stations.append((x, set()))
+        if z in stations[-1][1]:
+            return False
+        stations[-1][1].add(z)
+    levels = [own for _, own in stations]
+    apart = len({x for x, _ in stations}) == len(stations)
+    common = set.intersection(*levels) if levels else set()
+    return apart and len(stations) > 2 and len(common) > 2
 
 
 def _prose(lines: list[str], out: Plain) -> list[str]:

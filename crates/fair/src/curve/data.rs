@@ -794,6 +794,7 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
             adapts: Adaptation::None,
+            known: None,
             moves: self.layout.thin.as_ref().map(|thin| self.moves(thin)),
         };
         let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
@@ -946,6 +947,7 @@ pub fn fair_data_with<T: Real>(
         targets: &targets,
         forces,
         rows: &rows,
+        bends: &[],
         budget: T::zero(),
         start: &start,
     };

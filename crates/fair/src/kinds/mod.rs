@@ -260,9 +260,10 @@ pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
             .found(value.to_string())
             .in_field(places.tolerance),
         FairError::Mark { index, count } => {
-            CallError::new("out-of-range", format!("there is no point {}", index + 1))
+            let number = index.wrapping_add(1);
+            CallError::new("out-of-range", format!("there is no point {number}"))
                 .expected(format!("numbers of points from 1 to {count}"))
-                .found((index + 1).to_string())
+                .found(number.to_string())
                 .in_field(places.breaks)
         }
         FairError::Degree { expected, actual } => CallError::new("out-of-range", text)
@@ -280,7 +281,7 @@ pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
 pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, FairError> {
     let from_zero = |&b: &usize| match b.checked_sub(1) {
         Some(index) if index < count => Ok(index),
-        index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX - 1), count }),
+        index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX), count }),
     };
     numbers.iter().map(from_zero).collect()
 }

@@ -457,6 +457,7 @@ impl GridData {
             noise: rounding(&rows, norm, original),
             original,
             adapts: Adaptation::Surface,
+            known: None,
             moves: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
@@ -705,6 +706,7 @@ pub fn fair_grid_with<T: Real>(
             targets: &[],
             forces,
             rows: &rows,
+            bends: &[],
             budget,
             start: &start,
         })

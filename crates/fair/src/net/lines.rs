@@ -3,23 +3,20 @@
 //!
 //! The sum of a measure over all curves is nearly all that of a few hard spots, so that these would
 //! decide for all. Each curve counts by what it has left of its own measure instead. And third
-//! differences buy smoothness with a bend: the signs of second divided differences are held, those
-//! of the fewest changes that fit within the tolerance.
+//! differences buy smoothness with a bend: where a curve bends more often than the fewest changes
+//! that fit within the tolerance, the signs of its second divided differences are held.
 
-use crate::optimum::ControlInequality;
-use crate::optimum::Parts;
-use crate::{FairError, Motion, Network, RowNorm, SparseRows};
-use moldloft_num::Vec3;
+use super::line_patterns::ValueTube;
+use crate::curve::moving::MovingRows;
+use crate::optimum::goal::{
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
+    moved, rounding,
+};
+use crate::optimum::{Bend, BudgetOptimum, ControlInequality, Parts};
+use crate::{Certificate, Condition, FairError, Measure, Motion, Network, RowNorm, SparseRows};
+use moldloft_num::{Real, Vec3};
 
-/// The share of the tolerances within which a pattern of signs fits: at the whole of them true
-/// bends of their size would go.
-const FITS: f64 = 0.8;
-
-/// Halvings of the search for the least share of the tolerances at which a number of changes fits.
-const HALVINGS: usize = 30;
-
-/// The most changes that are looked for, and the fewest points of a line that has any.
-const MOST_CHANGES: usize = 6;
+/// The fewest points of a line that has changes of curvature.
 const FEWEST_POINTS: usize = 5;
 
 /// The share of the measure that noise of the tolerances has below which lines are alike.
@@ -31,122 +28,51 @@ const ROUNDS: usize = 3;
 /// Budgets, in the goal's own, that are tried where signs leave none within it.
 const WIDER: [f64; 3] = [1.0, 1.5, f64::INFINITY];
 
-/// Numbers at rising places with room on both sides.
-struct ValueTube<'a> {
-    at: &'a [f64],
-    values: &'a [f64],
-    rooms: &'a [f64],
+/// By how much a sign may be left, as a share of what the tolerances let it vary.
+const LEFT: f64 = 1e-9;
+
+/// The same share below which a second difference has no sign.
+const STRAIGHT: f64 = 1e-6;
+
+/// The sign of the second difference of three neighbours on a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct HeldSign {
+    line: usize,
+    /// The place of the first of the three on the line.
+    first: usize,
+    sign: f64,
 }
 
-impl ValueTube<'_> {
-    fn low(&self, i: usize, share: f64) -> f64 {
-        self.values[i] - share * self.rooms[i]
-    }
-
-    fn high(&self, i: usize, share: f64) -> f64 {
-        self.values[i] + share * self.rooms[i]
-    }
-
-    /// The least last value of a convex list from `a` to `b` that begins at most at `begin`, within
-    /// a share of the rooms; none where there is no such list. With `sign` -1 all is upside down.
-    fn least_end(&self, [a, b]: [usize; 2], begin: f64, sign: f64, share: f64) -> Option<f64> {
-        let low = |i: usize| if sign > 0.0 { self.low(i, share) } else { -self.high(i, share) };
-        let high = |i: usize| {
-            let own = if sign > 0.0 { self.high(i, share) } else { -self.low(i, share) };
-            if i == a { own.min(begin) } else { own }
-        };
-        // What is convex stays above the line on from two of its points, the first at its highest
-        // and the second at its lowest; a bound of that on the points between is what makes it fit.
-        let mut least = low(b);
-        for i in a..b {
-            if low(i) > high(i) {
-                return None;
-            }
-            for j in i + 1..b {
-                let slope = (low(j) - high(i)) / (self.at[j] - self.at[i]);
-                for k in j + 1..=b {
-                    let on = low(j) + slope * (self.at[k] - self.at[j]);
-                    if k == b {
-                        least = least.max(on);
-                    } else if on > high(k) {
-                        return None;
-                    }
-                }
-            }
-        }
-        (least <= high(b)).then_some(least)
-    }
-
-    /// The signs of the second differences at the inner points of a list with so many changes that
-    /// fits within a share of the rooms: 0 where the sign changes. None where there is none.
-    fn pattern(&self, changes: usize, share: f64) -> Option<Vec<f64>> {
-        let last = self.at.len() - 1;
-        for first in [1.0, -1.0] {
-            // Of each end of a part the most room that is left to the next, and where that part
-            // begins.
-            let mut ends: Vec<Vec<Option<(f64, usize)>>> = Vec::new();
-            let start = if first > 0.0 { self.high(0, share) } else { -self.low(0, share) };
-            let mut before: Vec<Option<(f64, usize)>> = vec![None; last + 1];
-            before[0] = Some((start, 0));
-            let mut sign = first;
-            for part in 0..=changes {
-                let mut next: Vec<Option<(f64, usize)>> = vec![None; last + 1];
-                for b in part + 1..=last {
-                    if (part == changes) != (b == last) {
-                        continue;
-                    }
-                    for a in part..b {
-                        let Some((begin, _)) = before[a] else { continue };
-                        let Some(end) = self.least_end([a, b], begin, sign, share) else {
-                            continue;
-                        };
-                        if next[b].is_none_or(|n| end < n.0) {
-                            next[b] = Some((end, a));
-                        }
-                    }
-                }
-                // The next part is upside down: the least end is its highest begin.
-                before = next.iter().map(|n| n.map(|(end, a)| (-end, a))).collect();
-                ends.push(next);
-                sign = -sign;
-            }
-            if ends[changes][last].is_none() {
-                continue;
-            }
-            let mut signs = vec![0.0; last + 1];
-            let (mut b, mut sign) = (last, if changes.is_multiple_of(2) { first } else { -first });
-            for part in (0..=changes).rev() {
-                let a = ends[part][b]?.1;
-                signs[a + 1..b].fill(sign);
-                (b, sign) = (a, -sign);
-            }
-            return Some(signs[1..last].to_vec());
-        }
-        None
-    }
-
-    /// The signs of the fewest changes that fit, and of these the ones that fit nearest.
-    fn fewest(&self) -> Option<Vec<f64>> {
-        let most = MOST_CHANGES.min(self.at.len().saturating_sub(3));
-        let (changes, mut best) = (0..=most)
-            .find_map(|changes| self.pattern(changes, FITS).map(|signs| (changes, signs)))?;
-        let (mut low, mut high) = (0.0, FITS);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            match self.pattern(changes, middle) {
-                Some(signs) => (high, best) = (middle, signs),
-                None => low = middle,
-            }
-        }
-        Some(best)
-    }
+/// The factors of three points whose sum a sign keeps from being positive.
+fn sign_factors<T: Real>(sign: f64, at: &[T]) -> [T; 3] {
+    let (h, g) = (at[1] - at[0], at[2] - at[1]);
+    let unit = if h.re() < g.re() { h } else { g };
+    [T::one() / h, -T::one() / h - T::one() / g, T::one() / g].map(|f| f * unit * -sign)
 }
 
-/// A network faired line by line.
-pub(super) struct LineOptimum {
-    pub optimum: crate::Optimum,
-    /// The weight of the squares beside it.
-    pub weight: f64,
+/// The optimum at one set of weights.
+pub(super) struct LineRound<'a> {
+    /// The weighed problem, with the signs that are reached as conditions.
+    parts: Parts<'a>,
+    pub found: GoalOptimum,
+    /// The signs that are reached, in the order of their conditions.
+    reached: Vec<HeldSign>,
+    /// The roots of the lines' weights.
+    scales: Vec<f64>,
+    /// The budget of squares in the goal's own; infinite for the fairest.
+    wider: f64,
+    /// Whether it is known which signs are reached.
+    decided: bool,
+}
+
+/// What all rounds have in common.
+struct LineFairing<'a> {
+    network: &'a Network,
+    pull: &'a SparseRows,
+    /// The budget of squares; none for the fairest.
+    share: Option<f64>,
+    /// The signs of the fewest changes of each line, and whether they are held.
+    signs: Vec<(Vec<HeldSign>, bool)>,
 }
 
 impl Network {
@@ -166,30 +92,69 @@ impl Network {
     }
 
     /// The measure of a line, in the directions in which points move.
-    fn line_value(&self, rows: &SparseRows, points: &[Vec3<f64>]) -> f64 {
+    fn line_value<T: Real>(&self, rows: &MovingRows<T>, points: &[Vec3<T>]) -> T {
         let square = |k: usize| {
             let e = rows.apply(k, points);
-            self.way().map_or_else(|| e.norm_sq(), |d| d.dot(e).powi(2))
+            self.way().map_or_else(
+                || e.norm_sq(),
+                |d| {
+                    let along = e.x * d.x + e.y * d.y + e.z * d.z;
+                    along * along
+                },
+            )
         };
-        (0..rows.len()).map(square).sum()
+        (0..rows.rows.len()).fold(T::zero(), |sum, k| sum + square(k))
     }
 
-    /// The squares that noise of the tolerances has in a line's measure.
-    fn line_noise(&self, rows: &SparseRows, frozen: &[bool]) -> f64 {
-        let square = |k: usize| {
-            let (columns, factors) = rows.row(k);
-            let own = columns.iter().zip(factors).map(|(&c, f)| {
-                let radius = self.limit.radii[c as usize];
-                let moves = !frozen[c as usize] && radius.is_finite();
-                if moves { (f * radius).powi(2) } else { 0.0 }
-            });
-            own.sum::<f64>()
-        };
-        (0..rows.len()).map(square).sum::<f64>() / 3.0
+    /// What lines that are alike have of their measure: a share of the squares of noise of the
+    /// tolerances.
+    fn line_floor<T: Real>(&self, rows: &MovingRows<T>, frozen: &[bool], tolerances: &[T]) -> T {
+        let moves = |c: usize| !frozen[c] && tolerances[c].re().is_finite();
+        let entries = rows.rows.iter().flatten().filter(|&&(c, _)| moves(c));
+        let squares = entries.fold(T::zero(), |sum, &(c, f)| {
+            let x = f * tolerances[c];
+            sum + x * x
+        });
+        squares * (ALIKE / 3.0)
     }
 
-    /// The signs of second differences that line `k` keeps, as half-spaces.
-    fn line_signs(&self, k: usize, frozen: &[bool]) -> Vec<ControlInequality> {
+    /// The rows of line `k` at parameters that may carry derivatives, or at its own.
+    fn moving_rows<T: Real>(
+        &self,
+        k: usize,
+        measure: Measure,
+        at: Option<&Vec<T>>,
+    ) -> Result<MovingRows<T>, FairError> {
+        let rows = match at {
+            Some(at) => {
+                let own = self.strands[k].divided(measure, at).into_iter();
+                let placed = |(c, f)| (self.strands[k].points[c], f);
+                own.map(|row| row.into_iter().map(placed).collect()).collect()
+            }
+            None => {
+                let own = self.own_rows(k, measure)?;
+                let row = |r| {
+                    let (c, f) = own.row(r);
+                    c.iter().zip(f).map(|(&c, &f)| (c as usize, T::from(f))).collect()
+                };
+                (0..own.len()).map(row).collect()
+            }
+        };
+        Ok(MovingRows { rows })
+    }
+
+    /// The rows of all lines; see [`Network::moving_rows`].
+    pub(super) fn all_moving_rows<T: Real>(
+        &self,
+        measure: Measure,
+        ats: &[Option<Vec<T>>],
+    ) -> Result<Vec<MovingRows<T>>, FairError> {
+        let of = |k: usize| self.moving_rows(k, measure, ats.get(k).and_then(Option::as_ref));
+        (0..self.strands.len()).map(of).collect()
+    }
+
+    /// The signs of the fewest changes of line `k` between its breaks.
+    fn line_signs(&self, k: usize, frozen: &[bool]) -> Vec<HeldSign> {
         let (strand, Some(way)) = (&self.strands[k], self.way()) else { return Vec::new() };
         let Some(at) = strand.at.as_ref().filter(|_| !strand.space.is_closed()) else {
             return Vec::new();
@@ -214,88 +179,224 @@ impl Network {
             }
             let tube = ValueTube { at: &at[from..=to], values: &values, rooms: &rooms };
             for (j, sign) in tube.fewest().into_iter().flatten().enumerate() {
-                if sign == 0.0 {
-                    continue;
+                let held = HeldSign { line: k, first: from + j, sign };
+                let moves = own[j..j + 3].iter().any(|&i| !frozen[i]);
+                if sign != 0.0 && moves {
+                    out.push(held);
                 }
-                let t = &at[from + j..from + j + 3];
-                let (h, g) = (t[1] - t[0], t[2] - t[1]);
-                let factors = [1.0 / h, -1.0 / h - 1.0 / g, 1.0 / g].map(|f| f * h.min(g));
-                let ids = &own[j..j + 3];
-                if ids.iter().all(|&i| frozen[i]) {
-                    continue;
-                }
-                let entries = ids.iter().zip(factors).map(|(&i, f)| (i, way * (-sign * f)));
-                // Against rounding of exact runs.
-                let size = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-                let most = 16.0 * f64::EPSILON * size;
-                out.push(ControlInequality { entries: entries.collect(), most, owner: k });
             }
         }
         out
     }
 
-    /// The optimum of the weighed measure under a budget of the squares and signs.
-    pub(super) fn by_lines(
-        &self,
-        parts: &mut Parts<'_>,
-        measure: crate::Measure,
-        pull: &SparseRows,
-        most: f64,
-    ) -> Result<LineOptimum, FairError> {
-        let count = self.strands.len();
-        let own: Vec<SparseRows> =
-            (0..count).map(|k| self.own_rows(k, measure)).collect::<Result<_, _>>()?;
-        let floors: Vec<f64> =
-            own.iter().map(|rows| ALIKE * self.line_noise(rows, &parts.frozen)).collect();
-        let mut signs: Vec<Vec<ControlInequality>> =
-            (0..count).map(|k| self.line_signs(k, &parts.frozen)).collect();
-        let mut points = self.points.clone();
-        let whole: f64 = own.iter().map(|rows| self.line_value(rows, &points)).sum();
-        let mut found = None;
-        for _ in 0..ROUNDS {
-            let left = |k: usize| self.line_value(&own[k], &points).max(floors[k]);
-            let weights: Vec<f64> = (0..count)
-                .map(|k| whole / (count as f64 * left(k).max(f64::MIN_POSITIVE)))
-                .collect();
-            let mut rows = SparseRows::new();
-            for (own, weight) in own.iter().zip(&weights) {
-                rows = rows.joined(&own.clone().scaled(weight.sqrt()));
-            }
-            parts.measure = rows;
-            let optimum = self.under_signs(parts, &mut signs, pull, most)?;
-            points.clone_from(&optimum.0.points);
-            found = Some(LineOptimum { optimum: optimum.0, weight: optimum.1 });
-        }
-        Ok(found.expect("there are rounds"))
+    /// The entries of a sign over the network's points, at parameters that may carry derivatives.
+    fn sign_entries<T: Real>(&self, held: &HeldSign, at: &[T]) -> Vec<(usize, Vec3<T>)> {
+        let way = self.way().unwrap_or_default();
+        let places = held.first..held.first + 3;
+        let ids = &self.strands[held.line].points[places.clone()];
+        let factors = sign_factors(held.sign, &at[places]);
+        let along = |f: T| Vec3::new(f * way.x, f * way.y, f * way.z);
+        ids.iter().zip(factors).map(|(&i, f)| (i, along(f))).collect()
     }
 
-    /// The same at weights: signs of lines that contradict others are given up, and then the
-    /// budget.
-    fn under_signs(
-        &self,
-        parts: &mut Parts<'_>,
-        signs: &mut [Vec<ControlInequality>],
+    /// A sign as a half-space.
+    fn sign_half(&self, held: &HeldSign) -> ControlInequality {
+        let strand = &self.strands[held.line];
+        let at = strand.at.as_deref().unwrap_or_default();
+        // Against rounding of exact runs.
+        let size = strand.points.iter().map(|&i| self.points[i].norm()).fold(0.0, f64::max);
+        let most = 16.0 * f64::EPSILON * size;
+        ControlInequality { entries: self.sign_entries(held, at), most, owner: held.line }
+    }
+
+    /// By how much points leave a sign, as a share of what the tolerances let it vary.
+    fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> f64 {
+        let half = self.sign_half(held);
+        let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
+        let room = |i: usize| self.limit.radii[i];
+        let varies: f64 = half.entries.iter().map(|(i, f)| f.norm() * room(*i)).sum();
+        (sum - half.most) / varies.max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether line of these signs has more changes at points than they have.
+    fn bends_more(&self, signs: &[HeldSign], points: &[Vec3<f64>]) -> bool {
+        let parts = signs.chunk_by(|a, b| b.first <= a.first + 2);
+        let changes = |signs: Vec<f64>| signs.windows(2).filter(|w| w[0] != w[1]).count();
+        let mut more = false;
+        for part in parts {
+            let own = changes(part.iter().map(|s| s.sign).collect());
+            let off = part.iter().map(|s| (s.sign, self.off(s, points)));
+            let bent = off.filter(|(_, off)| off.abs() > STRAIGHT);
+            more |= changes(bent.map(|(sign, off)| -sign * off.signum()).collect()) > own;
+        }
+        more
+    }
+
+    /// The rounds of weights, the last of which is the result: the fairest within the limits, or under
+    /// a budget, a share of what noise of the tolerances has of the squares.
+    pub(super) fn by_lines<'a>(
+        &'a self,
+        parts: &Parts<'a>,
+        measure: Measure,
         pull: &SparseRows,
-        most: f64,
-    ) -> Result<(crate::Optimum, f64), FairError> {
+        share: Option<f64>,
+    ) -> Result<Vec<LineRound<'a>>, FairError> {
+        let count = self.strands.len();
+        let own = self.all_moving_rows::<f64>(measure, &[])?;
+        let floor = |rows| self.line_floor(rows, &parts.frozen, &self.limit.radii);
+        let floors: Vec<f64> = own.iter().map(floor).collect();
+        let signs = (0..count).map(|k| (self.line_signs(k, &parts.frozen), false)).collect();
+        let mut fairing = LineFairing { network: self, pull, share, signs };
+        let whole: f64 = own.iter().map(|rows| self.line_value(rows, &self.points)).sum();
+        let mut rounds: Vec<LineRound<'a>> = Vec::new();
+        for _ in 0..ROUNDS {
+            let points = rounds.last().map_or(&self.points, |r| &r.found.optimum.points);
+            let weight = |k: usize| {
+                let left = self.line_value(&own[k], points).max(floors[k]);
+                whole / (count as f64 * left.max(f64::MIN_POSITIVE))
+            };
+            let scales: Vec<f64> = (0..count).map(|k| weight(k).sqrt()).collect();
+            let mut measure = SparseRows::new();
+            for (own, scale) in own.iter().zip(&scales) {
+                for row in &own.rows {
+                    measure.push(row.iter().map(|&(c, f)| (c, f * scale)));
+                }
+            }
+            let round = fairing.round(&Parts { measure, ..parts.clone() })?;
+            rounds.push(LineRound { scales, ..round });
+        }
+        Ok(rounds)
+    }
+
+    /// The result of the rounds with derivatives; `allowed` is the budget in what noise has of the
+    /// squares, as it changes.
+    pub(super) fn lines_moved<T: Real>(
+        &self,
+        rounds: &[LineRound<'_>],
+        (pull, owners): (&SparseRows, &[usize]),
+        allowed: T,
+        numbers: &LineNumbers<'_, T>,
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let LineNumbers { points, tolerances, rows, ats } = *numbers;
+        let frozen = self.frozen();
+        let floors: Vec<T> =
+            rows.iter().map(|rows| self.line_floor(rows, &frozen, tolerances)).collect();
+        let mean = owners.len() as f64 / 3.0;
+        let mut now = points.to_vec();
+        for round in rounds {
+            if !round.decided {
+                return Err(FairError::NoDerivative(
+                    "which changes of curvature the network keeps from is not decided to rounding, so \
+                     its derivatives are not known: take the goal \"budget\"",
+                ));
+            }
+            if round.found.share == 0.0 {
+                now = points.to_vec();
+                continue;
+            }
+            let mut weighed = MovingRows { rows: Vec::new() };
+            for (k, (own, floor)) in rows.iter().zip(&floors).enumerate() {
+                let left = self.line_value(own, &now);
+                let left = if left.re() < floor.re() { *floor } else { left };
+                // What is next to nothing weighs what it does.
+                let change = if left.re() > 0.0 { left / left.re() } else { T::one() };
+                let scale = T::from(round.scales[k]) / change.sqrt();
+                let scaled =
+                    own.rows.iter().map(|r| r.iter().map(|&(c, f)| (c, f * scale)).collect());
+                weighed.rows.extend(scaled);
+            }
+            let mut parts = round.parts.clone();
+            check_unique(&mut parts, &round.found, pull)?;
+            parts.pull =
+                (round.found.weight > 0.0).then(|| pull.clone().scaled(round.found.weight.sqrt()));
+            let solved = parts.whole()?;
+            check_decided(&round.found, &solved)?;
+            let slope = weighed.slope(&solved.optimum.points);
+            let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
+            let first = parts.conditions.len() - round.reached.len();
+            let bend = |(j, held): (usize, &HeldSign)| -> Bend<T> {
+                let Some(at) = ats.get(held.line).and_then(Option::as_ref) else {
+                    return (first + j, Vec::new());
+                };
+                let change = |(i, f): (usize, Vec3<T>)| (i, f - Vec3::lifted(f.re()));
+                (first + j, self.sign_entries(held, at).into_iter().map(change).collect())
+            };
+            let bends: Vec<Bend<T>> = round.reached.iter().enumerate().map(bend).collect();
+            let moving = GoalVariation {
+                originals: points.to_vec(),
+                tolerances,
+                pulled: owners.iter().map(|&i| tolerances[i]).collect(),
+                targets: &[],
+                forces,
+                rows: &weighed,
+                bends: &bends,
+                budget: allowed * (round.wider * mean),
+                start: points,
+            };
+            now = moved(&parts, &solved, Goal::Budget(allowed.re()), &round.found, pull, moving)?;
+        }
+        Ok(now)
+    }
+}
+
+/// The numbers of a network that carry derivatives.
+pub(super) struct LineNumbers<'a, T> {
+    pub points: &'a [Vec3<T>],
+    pub tolerances: &'a [T],
+    /// The rows of each line.
+    pub rows: &'a [MovingRows<T>],
+    pub ats: &'a [Option<Vec<T>>],
+}
+
+impl LineFairing<'_> {
+    fn squares(&self, points: &[Vec3<f64>]) -> f64 {
+        let original = &self.network.points;
+        let moved: Vec<_> = points.iter().zip(original).map(|(p, q)| *p - *q).collect();
+        self.pull.sum_sq(&moved)
+    }
+
+    /// The optimum at weights, where no line has more changes of curvature than the fewest.
+    fn round<'a>(&mut self, parts: &Parts<'a>) -> Result<LineRound<'a>, FairError> {
         loop {
-            parts.halves = signs.iter().flatten().cloned().collect();
+            let round = self.under_signs(parts)?;
+            let points = &round.found.optimum.points;
+            let mut more = false;
+            for (signs, held) in &mut self.signs {
+                if !*held && self.network.bends_more(signs, points) {
+                    (*held, more) = (true, true);
+                }
+            }
+            if !more {
+                return Ok(round);
+            }
+        }
+    }
+
+    /// The same under the signs that are held: those of lines that contradict others are given up,
+    /// and then the budget.
+    fn under_signs<'a>(&mut self, parts: &Parts<'a>) -> Result<LineRound<'a>, FairError> {
+        let mean = self.pull.len() as f64 / 3.0;
+        loop {
+            let held = self.signs.iter().filter(|(_, held)| *held);
+            let held: Vec<HeldSign> = held.flat_map(|(signs, _)| signs).copied().collect();
+            if held.is_empty() {
+                return self.followed(parts, Vec::new(), None, 1.0);
+            }
+            let halves = held.iter().map(|s| self.network.sign_half(s)).collect();
+            let parts = Parts { halves, ..parts.clone() };
             let mut refused = Vec::new();
             for wider in WIDER {
-                let most = wider * most;
-                let made = if most.is_finite() { parts.within(pull, most) } else { Ok(None) };
+                let most = self.share.map_or(f64::INFINITY, |share| wider * share * mean);
+                let made = if most.is_finite() { parts.within(self.pull, most) } else { Ok(None) };
                 match made {
-                    Ok(Some(found)) => return Ok((found.optimum, found.weight)),
-                    Ok(None) => match parts.solve() {
-                        Ok(fairest) => {
-                            let away: Vec<Vec3<f64>> = fairest
-                                .points
-                                .iter()
-                                .zip(&self.points)
-                                .map(|(p, q)| *p - *q)
-                                .collect();
-                            if pull.sum_sq(&away) <= most {
-                                return Ok((fairest, 0.0));
+                    Ok(Some(found)) => return Ok(self.settled(&parts, &held, found, wider)),
+                    Ok(None) => match parts.solve_after(None) {
+                        Ok((optimum, solution)) => {
+                            if self.squares(&optimum.points) <= most {
+                                let pressed = solution.pressed;
+                                let found =
+                                    BudgetOptimum { weight: 0.0, optimum, good: true, pressed };
+                                return Ok(self.settled(&parts, &held, found, f64::INFINITY));
                             }
                         }
                         Err(FairError::Shape { shapes, .. }) => refused = shapes,
@@ -308,49 +409,78 @@ impl Network {
                     break;
                 }
             }
-            let before: usize = signs.iter().map(Vec::len).sum();
-            for k in refused {
-                signs[k].clear();
-            }
-            if signs.iter().map(Vec::len).sum::<usize>() == before {
+            if refused.is_empty() {
                 // What contradicts what is not known: none is held.
-                signs.iter_mut().for_each(Vec::clear);
-                if before == 0 {
-                    parts.halves.clear();
-                    return Ok((parts.solve()?, 0.0));
-                }
+                self.signs.iter_mut().for_each(|(signs, _)| signs.clear());
+            }
+            for k in refused {
+                self.signs[k].0.clear();
             }
         }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn changes(signs: &[f64]) -> usize {
-        let held: Vec<f64> = signs.iter().copied().filter(|s| *s != 0.0).collect();
-        held.windows(2).filter(|w| w[0] != w[1]).count()
-    }
-
-    fn signs_of(of: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
-        let at: Vec<f64> =
-            [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0].to_vec();
-        let off = |k: usize| noise * ((k * k * 7919 % 1009) as f64 / 504.5 - 1.0);
-        let values: Vec<f64> = at.iter().enumerate().map(|(k, &x)| of(x) + off(k)).collect();
-        let rooms = vec![noise.max(1e-9) / FITS; at.len()];
-        ValueTube { at: &at, values: &values, rooms: &rooms }.fewest().unwrap()
-    }
-
-    #[test]
-    fn patterns_have_the_fewest_changes() {
-        for noise in [0.0, 0.02] {
-            assert_eq!(changes(&signs_of(|x| 0.1 * x * x, noise)), 0);
-            assert_eq!(changes(&signs_of(|x| -(x - 3.0) * (x - 3.0) * 0.2, noise)), 0);
-            assert_eq!(changes(&signs_of(|x| 0.02 * (x - 4.5).powi(3), noise)), 1);
-            assert_eq!(changes(&signs_of(|x| (x * 0.9).sin(), noise)), 2);
+    /// The optimum to rounding where the signs that are reached are conditions: `near` is the one of an
+    /// interior point, which stands where that shows other signs.
+    fn settled<'a>(
+        &self,
+        parts: &Parts<'a>,
+        held: &[HeldSign],
+        near: BudgetOptimum,
+        wider: f64,
+    ) -> LineRound<'a> {
+        let reached = held.iter().zip(&near.pressed).filter(|(_, pressed)| **pressed);
+        let reached: Vec<HeldSign> = reached.map(|(sign, _)| *sign).collect();
+        let Certificate { value, gap } = near.optimum.certificate;
+        let found = self.followed(parts, reached, Some(near.clone()), wider);
+        if let Ok(mut round) = found {
+            let optimum = &mut round.found.optimum;
+            let more = optimum.certificate.value - value;
+            let kept = held.iter().all(|s| self.network.off(s, &optimum.points) <= LEFT);
+            if kept && more <= gap {
+                // Conditions are stricter than half-spaces, so that the gap is that of these.
+                optimum.certificate.gap = (gap + more).max(0.0);
+                return round;
+            }
         }
-        let held = signs_of(|x| 0.02 * (x - 4.5).powi(3), 0.0);
-        assert!(held[0] < 0.0 && held[held.len() - 1] > 0.0, "{held:?}");
+        let mut found = GoalOptimum::unmoved(&near.optimum.points, value, false);
+        let mean = self.pull.len() as f64 / 3.0;
+        found.used = self.squares(&near.optimum.points) / mean;
+        (found.share, found.weight, found.least) = (1.0, near.weight, value);
+        found.optimum = near.optimum;
+        let (parts, scales) = (parts.clone(), Vec::new());
+        LineRound { parts, scales, found, reached: Vec::new(), wider, decided: false }
+    }
+
+    /// The optimum where these signs are conditions.
+    fn followed<'a>(
+        &self,
+        parts: &Parts<'a>,
+        reached: Vec<HeldSign>,
+        known: Option<BudgetOptimum>,
+        wider: f64,
+    ) -> Result<LineRound<'a>, FairError> {
+        let mut parts = Parts { halves: Vec::new(), ..parts.clone() };
+        parts.conditions.extend(reached.iter().map(|held| {
+            let half = self.network.sign_half(held);
+            Condition { entries: half.entries, value: half.most }
+        }));
+        let (rows, norm) = (parts.measure.clone(), parts.norm);
+        let path = RegularizationPath {
+            energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
+            squares: |points: &[Vec3<f64>]| self.squares(points),
+            count: self.pull.len(),
+            noise: rounding(&rows, norm, &self.network.points),
+            original: &self.network.points,
+            adapts: Adaptation::None,
+            known: known.filter(|known| known.weight > 0.0),
+            moves: None,
+        };
+        let goal = match self.share {
+            Some(share) if wider.is_finite() => Goal::Budget(share * wider),
+            _ => Goal::Fairest,
+        };
+        let found = path.follow(goal, norm, false, &mut parts, self.pull)?;
+        parts.pull = None;
+        Ok(LineRound { parts, scales: Vec::new(), found, reached, wider, decided: true })
     }
 }

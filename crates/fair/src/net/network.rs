@@ -4,11 +4,12 @@
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
+use crate::net::lines::{LineNumbers, LineRound};
 use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided,
-    check_unique, moved, rounding,
+    check_unique, is_between, moved, rounding,
 };
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
@@ -39,7 +40,7 @@ pub struct NetworkCurve {
 
 impl NetworkCurve {
     /// The rows of a measure over its own points, at parameters that may carry derivatives.
-    fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
+    pub(super) fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
         let (closed, degree) = (self.space.is_closed(), self.space.degree());
         let mut rows = measure.divided(at, closed, degree);
         rows.retain(|row| {
@@ -61,6 +62,8 @@ pub struct Network {
     pub strands: Vec<NetworkCurve>,
     /// Points that do not move.
     pub kept: Vec<usize>,
+    /// What the limits of goals hold for: points, or all along curves through points.
+    pub bound: Bound,
     /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
@@ -88,7 +91,19 @@ impl Network {
 
     fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {
         let (kept, patches, seams, across) = Default::default();
-        Self { points, limit, strands, kept, net: None, weights: None, patches, seams, across }
+        let bound = Bound::ControlPoints;
+        Self {
+            points,
+            limit,
+            strands,
+            kept,
+            bound,
+            net: None,
+            weights: None,
+            patches,
+            seams,
+            across,
+        }
     }
 
     /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes run over the
@@ -397,38 +412,33 @@ impl Network {
             && all_exact(self.strands.iter().flat_map(curve))
     }
 
-    fn found(
-        &self,
-        parts: &mut Parts<'_>,
+    fn found<'a>(
+        &'a self,
+        parts: &mut Parts<'a>,
         measure: Measure,
         goal: Goal,
         conditioned: bool,
-    ) -> Result<(GoalOptimum, SparseRows, Vec<usize>), FairError> {
+    ) -> Result<ReachedGoal<'a>, FairError> {
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
+        let mut rounds = Vec::new();
         if let (Goal::Near(share), false) = (goal, conditioned) {
             if self.exact() {
                 let value = crate::measure::value(&rows, norm, &self.points);
-                return Ok((GoalOptimum::unmoved(&self.points, value, false), pull, owners));
+                let found = GoalOptimum::unmoved(&self.points, value, false);
+                return Ok(ReachedGoal { found, pull, owners, rounds });
             }
             if self.has_lines(norm) && !pull.is_empty() {
-                let mean = pull.len() as f64 / 3.0;
-                let used = |points: &[Vec3<f64>]| {
-                    let moved: Vec<_> =
-                        points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
-                    pull.sum_sq(&moved) / mean
-                };
-                let mut made = self.by_lines(parts, measure, &pull, f64::INFINITY)?;
-                let fairest_used = used(&made.optimum.points);
+                rounds.push(self.by_lines(parts, measure, &pull, None)?);
+                let fairest_used = rounds[0][rounds[0].len() - 1].found.used;
                 if let Some(share) = allowed(share, fairest_used, owners.len()) {
-                    made = self.by_lines(parts, measure, &pull, share * mean)?;
+                    rounds.push(self.by_lines(parts, measure, &pull, Some(share))?);
                 }
-                let mut found = GoalOptimum::unmoved(&made.optimum.points, 0.0, false);
-                (found.used, found.fairest_used) = (used(&made.optimum.points), fairest_used);
-                found.least = made.optimum.certificate.value;
-                (found.share, found.weight) = (1.0, made.weight);
-                found.optimum = made.optimum;
-                return Ok((found, pull, owners));
+                let last =
+                    rounds.last().and_then(|own| own.last()).map(|round| round.found.clone());
+                let mut found = last.expect("there are rounds");
+                found.fairest_used = fairest_used;
+                return Ok(ReachedGoal { found, pull, owners, rounds });
             }
         }
         let path = RegularizationPath {
@@ -441,10 +451,11 @@ impl Network {
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
             adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
+            known: None,
             moves: None,
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
-        Ok((found, pull, owners))
+        Ok(ReachedGoal { found, pull, owners, rounds })
     }
 
     /// The result of a goal, with a ball round each point; see [`Goal`].
@@ -459,8 +470,8 @@ impl Network {
         accuracy: f64,
     ) -> Result<(Optimum, f64), FairError> {
         let conditioned = !conditions.is_empty();
-        let mut parts = self.parts(measure, Bound::ControlPoints, conditions, accuracy)?;
-        let (found, _, _) = self.found(&mut parts, measure, goal, conditioned)?;
+        let mut parts = self.parts(measure, self.bound, conditions, accuracy)?;
+        let ReachedGoal { found, .. } = self.found(&mut parts, measure, goal, conditioned)?;
         Ok((found.optimum, found.used))
     }
 
@@ -478,8 +489,9 @@ impl Network {
         tolerances: &[T],
         ats: &[Option<Vec<T>>],
     ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
-        let mut parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
-        let (found, pull, owners) = self.found(&mut parts, measure, goal, false)?;
+        let mut parts = self.parts(measure, self.bound, Vec::new(), accuracy)?;
+        let reached = self.found(&mut parts, measure, goal, false)?;
+        let ReachedGoal { found, pull, owners, rounds } = reached;
         let fit = NetworkFit {
             certificate: found.optimum.certificate,
             active: found.optimum.active,
@@ -493,10 +505,10 @@ impl Network {
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
         }
-        if matches!(goal, Goal::Near(_)) && self.has_lines(measure.norm()) {
+        if self.bound != Bound::ControlPoints {
             return Err(FairError::NoDerivative(
-                "derivatives of a network whose curves are weighed by what is left of their measures are \
-                 not known: take the goal \"budget\" or \"fairest\"",
+                "derivatives of a network with limits all along its curves are not known: take limits of \
+                 its points",
             ));
         }
         let explained = allowed(0.0, found.used, owners.len()).is_none();
@@ -513,6 +525,13 @@ impl Network {
                  known: take the goal \"budget\"",
             ));
         }
+        if !rounds.is_empty() {
+            let pulling = (&pull, &owners[..]);
+            let rows = &self.all_moving_rows(measure, ats)?;
+            let numbers = LineNumbers { points, tolerances, rows, ats };
+            let moved = self.budget_moved(goal, &rounds, pulling, &numbers)?;
+            return Ok((moved, fit));
+        }
         check_unique(&mut parts, &found, &pull)?;
         if parts.norm != crate::RowNorm::Square
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
@@ -525,26 +544,8 @@ impl Network {
         parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
         let solved = parts.whole()?;
         check_decided(&found, &solved)?;
-        let mut rows = MovingRows { rows: Vec::new() };
-        for (k, strand) in self.strands.iter().enumerate() {
-            match ats.get(k).and_then(Option::as_ref) {
-                Some(at) => {
-                    let own = strand.divided(measure, at).into_iter();
-                    rows.rows.extend(
-                        own.map(|row| {
-                            row.into_iter().map(|(c, f)| (strand.points[c], f)).collect()
-                        }),
-                    );
-                }
-                None => {
-                    let own = self.own_rows(k, measure)?;
-                    rows.rows.extend((0..own.len()).map(|r| {
-                        let (c, f) = own.row(r);
-                        c.iter().zip(f).map(|(&c, &f)| (c as usize, T::from(f))).collect()
-                    }));
-                }
-            }
-        }
+        let each = self.all_moving_rows(measure, ats)?;
+        let rows = MovingRows { rows: each.into_iter().flat_map(|own| own.rows).collect() };
         let forces = if parts.norm == crate::RowNorm::Square {
             let slope = rows.slope(&solved.optimum.points);
             slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect()
@@ -558,6 +559,7 @@ impl Network {
             targets: &[],
             forces,
             rows: &rows,
+            bends: &[],
             budget,
             start: points,
         };
@@ -572,19 +574,46 @@ impl Network {
             let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
             let own = moving(forces, T::zero());
             let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
-            let mean = owners.len() as f64 / 3.0;
-            let used = owners.iter().fold(T::zero(), |sum, &i| {
-                let off = at[i] - points[i];
-                sum + off.dot(off) / (tolerances[i] * tolerances[i])
-            }) / mean;
-            budget = allowed(share, used, owners.len()).unwrap_or(used) * mean;
+            let used = used_of(&at, &owners, points, tolerances);
+            budget =
+                allowed(share, used, owners.len()).unwrap_or(used) * (owners.len() as f64 / 3.0);
         }
         let moving = moving(forces, budget);
         Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))
     }
 
+    /// The result of a goal line by line with derivatives.
+    fn budget_moved<T: Real>(
+        &self,
+        goal: Goal,
+        rounds: &[Vec<LineRound<'_>>],
+        pulling: (&SparseRows, &[usize]),
+        numbers: &LineNumbers<'_, T>,
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let (Goal::Near(share), [fairest, budgeted @ ..]) = (goal, rounds) else {
+            return Ok(numbers.points.to_vec());
+        };
+        let count = pulling.1.len();
+        let used = fairest.last().map_or(0.0, |round| round.found.used);
+        if is_between(used, count) {
+            return Err(FairError::NoDerivative(
+                "the budget of this network moves with what its fairest takes, which may be one of many, \
+                 so that its derivatives are not known: take the goal \"budget\"",
+            ));
+        }
+        let mut most = T::from(share);
+        if allowed(share, used, count) != Some(share) {
+            // What the fairest takes moves, too.
+            let at = self.lines_moved(fairest, pulling, most, numbers)?;
+            let used = used_of(&at, pulling.1, numbers.points, numbers.tolerances);
+            most = allowed(share, used, count).unwrap_or(used);
+        }
+        let last = budgeted.first().unwrap_or(fairest);
+        self.lines_moved(last, pulling, most, numbers)
+    }
+
     /// Which points do not move in the joint optimum.
-    fn frozen(&self) -> Vec<bool> {
+    pub(super) fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
         let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
         for i in self.kept.iter().copied().chain(marked) {
@@ -733,6 +762,9 @@ impl Network {
             conditions,
             own: 0,
             bounded: match bound {
+                Bound::Bezier if self.has_lines(measure.norm()) => {
+                    Bounded::Data(self.along_curves()?)
+                }
                 Bound::Bezier => self
                     .bezier()
                     .map_or(Bounded::ControlPoints, |(rows, reach)| Bounded::Bezier(rows, reach)),
@@ -816,6 +848,25 @@ impl Network {
         surface.grid(&us, &vs, &mut grid, None);
         largest(&grid)
     }
+}
+
+/// A goal reached, with the rows that pull and the points whose rows these are.
+struct ReachedGoal<'a> {
+    found: GoalOptimum,
+    pull: SparseRows,
+    owners: Vec<usize>,
+    /// Line by line: the rounds of the fairest, then those under a budget.
+    rounds: Vec<Vec<LineRound<'a>>>,
+}
+
+/// What points take of the squares that noise of the tolerances has.
+fn used_of<T: Real>(at: &[Vec3<T>], owners: &[usize], points: &[Vec3<T>], tolerances: &[T]) -> T {
+    let square = |&i: &usize| {
+        let off = at[i] - points[i];
+        off.dot(off) / (tolerances[i] * tolerances[i])
+    };
+    let sum = owners.iter().fold(T::zero(), |sum, i| sum + square(i));
+    sum / (owners.len() as f64 / 3.0)
 }
 
 /// What is to be said of the result of a goal.

@@ -6,7 +6,7 @@
 
 use crate::curve::moving::{MapReal, MovingRows};
 use crate::optimum::problem::CertifiedSolution;
-use crate::optimum::{Optimum, Parts, Solved};
+use crate::optimum::{Bend, BudgetOptimum, Optimum, Parts, Solved};
 use crate::{Certificate, FairError, RowNorm, SparseRows};
 use moldloft_num::{Dual4, Real, Vec3};
 
@@ -89,6 +89,12 @@ pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
         return Some(towards(T::from(share), STRANGE_BUDGET, strange_to(used, count)));
     }
     Some(used + (T::from(share) - used) * foreign)
+}
+
+/// Whether the budget of a network lies between the fairest and the goal's own.
+pub(crate) fn is_between(used: f64, count: usize) -> bool {
+    let foreign = beyond(used, count) / FOREIGN;
+    count >= FEWEST && foreign > 0.0 && foreign < 1.0
 }
 
 /// From a budget to the least one by a share.
@@ -205,6 +211,8 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub original: &'a [Vec3<f64>],
     /// How the budget of `near` goes by what the fairest takes.
     pub adapts: Adaptation,
+    /// The optimum under the budget, nearly, where it is known.
+    pub known: Option<BudgetOptimum>,
     /// How far to move from an original that is the nearest of few control points; else it goes by the gain.
     pub moves: Option<f64>,
 }
@@ -451,6 +459,7 @@ where
         let mut low: Option<(f64, f64)> = None;
         let mut high: Option<(f64, f64)> = None;
         let nearly = match goal {
+            Goal::Budget(_) if self.known.is_some() => self.known.clone(),
             Goal::Budget(share) | Goal::Near(share) if !conditioned && !network => {
                 parts.pull = None;
                 parts.within(pull, share * mean)?
@@ -629,6 +638,8 @@ pub(crate) struct GoalVariation<'a, T: Real> {
     pub forces: Vec<Vec3<T>>,
     /// The rows of the measure as they change.
     pub rows: &'a MovingRows<T>,
+    /// How the factors of the parts' conditions change.
+    pub bends: &'a [Bend<T>],
     /// What the sum of squares may be, as it changes.
     pub budget: T,
     /// The original itself, which the originals are but for what its limits' rows change by.
@@ -667,8 +678,14 @@ pub(crate) fn moved<T: Real>(
             forces[c as usize] += r.map_real(|x| change * x);
         }
     }
-    let mut out =
-        parts.answer(solved, &moving.originals, moving.tolerances, moving.targets, &[], &forces)?;
+    let mut out = parts.answer(
+        solved,
+        &moving.originals,
+        moving.tolerances,
+        moving.targets,
+        moving.bends,
+        &forces,
+    )?;
     if weight > 0.0 {
         // The weight answers, too, so that the budget is kept.
         let mut slope = vec![Vec3::<Dual4>::zero(); n];

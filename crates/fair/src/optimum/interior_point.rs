@@ -4,6 +4,7 @@
 //! displacement is zero.
 
 use crate::optimum::band::Band;
+use crate::optimum::polish::diagonal;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
 use crate::optimum::schur::{LinearConstraint, Schur, met};
 use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
@@ -60,6 +61,15 @@ impl<const D: usize> Half<D> {
     /// What the slack and the displacement are short of the room.
     fn rest(&self, x: &[V<D>]) -> f64 {
         self.room - self.at(x) - self.slack
+    }
+
+    /// How stiff the measure is against a move of it, by the diagonal of its matrix: that of the point
+    /// that moves it most.
+    fn own_stiffness(&self, h: &[f64]) -> f64 {
+        let stiffness = |(i, f): &(usize, V<D>)| h[*i] / dot(*f, *f).max(f64::MIN_POSITIVE);
+        let largest = self.entries.iter().map(|(_, f)| dot(*f, *f)).fold(0.0, f64::max);
+        let near = self.entries.iter().filter(|(_, f)| dot(*f, *f) > 0.25 * largest);
+        near.map(stiffness).fold(0.0, f64::max)
     }
 
     /// By how much it is left, as a share of its scale.
@@ -659,6 +669,10 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         let (value, gap) = self.certificate();
         let gap = self.refined.map_or(gap, |refined| refined.min(gap));
         let misses = self.misses();
+        let h = diagonal(&self.measure, self.unknowns());
+        let pressed =
+            self.halves.iter().map(|half| half.force / half.slack > half.own_stiffness(&h));
+        let pressed = pressed.collect();
         let outside = self.halves.iter().map(|h| (h.outside(&self.x) - INSIDE).max(0.0)).collect();
         let point = |&at: &u32| match at {
             NONE => [0.0; 3],
@@ -672,6 +686,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             iterations,
             misses,
             outside,
+            pressed,
             cones: self.cones.iter().map(|c| (wide(c.u), wide(c.y))).collect(),
             nu: self.nu,
             active: self.active,

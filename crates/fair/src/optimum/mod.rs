@@ -206,12 +206,15 @@ pub(crate) struct DataLimits {
 }
 
 /// The least of a measure under a bound on a sum of squares.
+#[derive(Clone)]
 pub(crate) struct BudgetOptimum {
     /// The weight of the squares beside the measure at which it is the least, too, nearly.
     pub weight: f64,
     pub optimum: Optimum,
     /// Whether rounding leaves it the optimum; else it is within the limits and near it.
     pub good: bool,
+    /// Which half-spaces are reached.
+    pub pressed: Vec<bool>,
 }
 
 /// What curves, nets and networks have in common.
@@ -313,7 +316,7 @@ impl<'a> Parts<'a> {
         self.check_halves(&solution, &points)?;
         let active = active(&problem, &solution);
         let optimum = Optimum { points, certificate, iterations: solution.iterations, active };
-        Ok(Some(BudgetOptimum { weight, optimum, good }))
+        Ok(Some(BudgetOptimum { weight, optimum, good, pressed: solution.pressed }))
     }
 
     /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control

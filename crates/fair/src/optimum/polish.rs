@@ -21,7 +21,7 @@ const STIFF: f64 = 1e5;
 const MOST_ROUNDS: usize = 14;
 
 /// The diagonal of P'P by unknowns.
-fn diagonal(measure: &SparseRows, unknowns: usize) -> Vec<f64> {
+pub(crate) fn diagonal(measure: &SparseRows, unknowns: usize) -> Vec<f64> {
     let mut h = vec![0.0; unknowns];
     for k in 0..measure.len() {
         let (columns, factors) = measure.row(k);

@@ -96,6 +96,8 @@ pub(crate) struct CertifiedSolution {
     pub misses: Vec<f64>,
     /// By how much each half-space is left, relative to its own scale.
     pub outside: Vec<f64>,
+    /// Which half-spaces are reached: they resist more than the measure does.
+    pub pressed: Vec<bool>,
     /// Slacks and duals at the solution, for [`respond`].
     pub cones: Vec<(Pair<3>, Pair<3>)>,
     /// The multipliers of the conditions.

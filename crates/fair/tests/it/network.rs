@@ -419,6 +419,86 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
     assert!(zones.iter().all(|&z| z > 0) && checked[1..] == [3, 3], "{zones:?} {checked:?}");
 }
 
+/// Derivatives of curves weighed one by one are those of differences, through all rounds of weights:
+/// by points, tolerances and parameters, under a budget of the goal's own and where signs of curvature
+/// are held; where the budget moves with what the fairest takes they are refused.
+#[test]
+fn derivatives_of_curves_weighed_one_by_one() {
+    let (m, n) = (8, 6);
+    let (mut beyond, mut refused, mut worst) = (0, 0, Vec::new());
+    for seed in 0..moldloft_testing::rounds(12, 400) as u64 {
+        let mut g = Lcg::new(seed + 1);
+        let wave = [0.02, 0.1, 0.3][seed as usize % 3];
+        let data: Vec<Vec3<f64>> = (0..m * n)
+            .map(|k| {
+                let (s, z) = ((k / n) as f64 / 3.5 - 1.0, (k % n) as f64 / 5.0);
+                let y = (1.0 - s * s) * (1.0 - z * z) + wave * (4.0 * s).sin() * z;
+                Vec3::of(s, y + 8e-3 * g.centred(), z)
+            })
+            .collect();
+        let step = 2 * (seed % 9) as i32;
+        let radii: Vec<f64> = (0..m * n)
+            .map(|k| 4e-3 * 1.08f64.powi(step) * (1.0 + 0.1 * (k as f64).sin()))
+            .collect();
+        let near = |data: &[Vec3<f64>], radii: &[f64], shift: f64| {
+            let mut own = lines_and_stations(data, n, radii.to_vec());
+            own.strands[m + 2].at.as_mut().unwrap()[3] += shift;
+            own.toward(Measure::Third, Goal::Near(0.3), Vec::new(), 1e-13).unwrap()
+        };
+        let own = lines_and_stations(&data, n, radii.clone());
+        let mut points: Vec<Vec3<Dual4>> = data.iter().map(|&p| Vec3::lifted(p)).collect();
+        let mut tolerances: Vec<Dual4> = radii.iter().map(|&r| Dual4::from(r)).collect();
+        points[15].y = Dual4::seeded(data[15].y, 0);
+        points[22].y = Dual4::seeded(data[22].y, 1);
+        tolerances[27] = Dual4::seeded(radii[27], 2);
+        let lifted = |at: &Vec<f64>| at.iter().map(|&t| Dual4::from(t)).collect::<Vec<_>>();
+        let mut ats: Vec<Option<Vec<Dual4>>> =
+            own.strands.iter().map(|s| s.at.as_ref().map(lifted)).collect();
+        let moving = ats[m + 2].as_mut().unwrap();
+        moving[3] = Dual4::seeded(moving[3].re(), 3);
+        let goal = Goal::Near(0.3);
+        let made = own.toward_with(Measure::Third, goal, 1e-13, &points, &tolerances, &ats);
+        let (moved, fit) = match made {
+            Ok(made) => made,
+            Err(FairError::NoDerivative(_)) => {
+                refused += 1;
+                continue;
+            }
+            Err(other) => panic!("seed {seed}: {other}"),
+        };
+        let most = 1.0 + 1.5 * (0.8 / (m * n) as f64).sqrt();
+        assert!(fit.fairest_used >= most + 0.25, "seed {seed}: {}", fit.fairest_used);
+        beyond += 1;
+        for k in 0..4 {
+            let at = |h: f64| {
+                let (mut data, mut radii, mut shift) = (data.clone(), radii.clone(), 0.0);
+                match k {
+                    0 => data[15].y += h,
+                    1 => data[22].y += h,
+                    2 => radii[27] += h,
+                    _ => shift = h,
+                }
+                near(&data, &radii, shift).0.points
+            };
+            let off = |h: f64| {
+                let (low, high) = (at(-h), at(h));
+                let one = |i: usize| {
+                    let wanted = (high[i].y - low[i].y) / (2.0 * h);
+                    (moved[i].y.part(k + 1) - wanted).abs()
+                };
+                (0..m * n).map(one).fold(0.0, f64::max)
+            };
+            // Smaller steps meet the solver's last digits, larger ones other limits.
+            let least = [1e-6, 1e-7, 1e-5].into_iter().map(off).find(|&o| o < 1e-4);
+            worst.push((least.unwrap_or_else(|| off(1e-6)), seed, k));
+        }
+    }
+    worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let counts = format!("beyond {beyond}, refused {refused}: {:?}", &worst[..8]);
+    println!("{counts}");
+    assert!(beyond > 3 && worst[0].0 < 1e-3, "{counts}");
+}
+
 /// Derivatives of the fairest network are those of differences, or refused: of many networks as fair
 /// which one is taken says nothing.
 #[test]

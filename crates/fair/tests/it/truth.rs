@@ -261,12 +261,10 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
         for (shape, (pieces, inflections)) in SHAPES.iter().zip(TRUE) {
             for kind in SPACINGS {
                 let (truth, points, a) = case(shape, kind, seed);
-                let (data, budget) = data_near(&points, a);
-                let near = options(Measure::Variation, Goal::Near(budget));
-                let fit = fair_data(&data, &DataOptions { bends: false, ..near }).unwrap();
-                let space = &data.layout.space;
+                let made = CurveRequest::of(&points, a).curve(&points).unwrap();
+                let (fit, space) = (&made.fit, &made.data.layout.space);
                 let (p, i) = counted(space, &fit.points, *shape != "helix");
-                let off = rms(&fit, space, &truth) / a;
+                let off = rms(fit, space, &truth) / a;
                 let here = format!("{shape} {kind} seed {seed}");
                 assert!(fit.residuals.iter().all(|&r| r <= a * (1.0 + 1e-12)), "{here}");
                 assert!(i <= inflections, "{here}: {i} inflections");

@@ -3,7 +3,7 @@
 use super::arguments::{certificate, fair_error, floats, measure, refused, space, vectors};
 use super::look::Look;
 use super::solve::{bound, contradiction, end, get, goal, motion};
-use super::spline::spacing;
+use super::spline::{Spline, spacing};
 use crate::arrays;
 use moldloft::fair::{
     Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure,
@@ -281,6 +281,9 @@ pub struct Web {
     degree: usize,
 }
 
+/// A curve before and after, and how far these are apart: certified, and found by sampling.
+type PairOfCurves = (Spline, Spline, f64, f64);
+
 #[pymethods]
 impl Web {
     #[new]
@@ -292,11 +295,12 @@ impl Web {
         Ok(Self { points: vectors(&points)?, curves, degree })
     }
 
+    /// Fairs: the faired points, each curve before and after, and the report.
     fn fair<'py>(
         &self,
         py: Python<'py>,
         options: Bound<'py, PyDict>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>)> {
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<PairOfCurves>, Bound<'py, PyDict>)> {
         let word: String = get(&options, "motion")?;
         let motion = motion(&word, get(&options, "direction")?)?;
         let limit = Limit::new(motion, get(&options, "tolerance")?).map_err(fair_error)?;
@@ -344,9 +348,17 @@ impl Web {
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
         network.kept = get(&options, "fixed")?;
-        let (reported, points) = solved(py, network, &options)?;
+        network.bound = bound(&get::<String>(&options, "bound")?)?;
+        let (reported, points) = solved(py, network.clone(), &options)?;
+        let pair = |k: usize| -> PyResult<PairOfCurves> {
+            let pair = network.curve_pair(k, &points).map_err(fair_error)?;
+            let far = pair.deviation().map_err(fair_error)?;
+            let spline = |points| Spline { space: pair.space.clone(), points, weights: None };
+            Ok((spline(pair.before), spline(pair.after), far.certified, far.sampled))
+        };
+        let pairs = (0..network.strands.len()).map(pair).collect::<PyResult<_>>()?;
         let fill = |out: &mut [Vec3]| out.copy_from_slice(&points);
-        Ok((arrays::filled(py, [points.len(), 3], fill).0, reported))
+        Ok((arrays::filled(py, [points.len(), 3], fill).0, pairs, reported))
     }
 }
 

@@ -1,0 +1,153 @@
+//! The fewest changes of curvature that a line of offsets has within its tolerances.
+
+/// The share of the tolerances within which a pattern of signs fits: at the whole of them true
+/// bends of their size would go.
+const FITS: f64 = 0.8;
+
+/// Halvings of the search for the least share of the tolerances at which a number of changes fits.
+const HALVINGS: usize = 30;
+
+/// The most changes that are looked for.
+const MOST_CHANGES: usize = 6;
+
+/// Numbers at rising places with room on both sides.
+pub(super) struct ValueTube<'a> {
+    pub at: &'a [f64],
+    pub values: &'a [f64],
+    pub rooms: &'a [f64],
+}
+
+impl ValueTube<'_> {
+    fn low(&self, i: usize, share: f64) -> f64 {
+        self.values[i] - share * self.rooms[i]
+    }
+
+    fn high(&self, i: usize, share: f64) -> f64 {
+        self.values[i] + share * self.rooms[i]
+    }
+
+    /// The least last value of a convex list from `a` to `b` that begins at most at `begin`, within
+    /// a share of the rooms; none where there is no such list. With `sign` -1 all is upside down.
+    fn least_end(&self, [a, b]: [usize; 2], begin: f64, sign: f64, share: f64) -> Option<f64> {
+        let low = |i: usize| if sign > 0.0 { self.low(i, share) } else { -self.high(i, share) };
+        let high = |i: usize| {
+            let own = if sign > 0.0 { self.high(i, share) } else { -self.low(i, share) };
+            if i == a { own.min(begin) } else { own }
+        };
+        // What is convex stays above the line on from two of its points, the first at its highest
+        // and the second at its lowest; a bound of that on the points between is what makes it fit.
+        let mut least = low(b);
+        for i in a..b {
+            if low(i) > high(i) {
+                return None;
+            }
+            for j in i + 1..b {
+                let slope = (low(j) - high(i)) / (self.at[j] - self.at[i]);
+                for k in j + 1..=b {
+                    let on = low(j) + slope * (self.at[k] - self.at[j]);
+                    if k == b {
+                        least = least.max(on);
+                    } else if on > high(k) {
+                        return None;
+                    }
+                }
+            }
+        }
+        (least <= high(b)).then_some(least)
+    }
+
+    /// The signs of the second differences at the inner points of a list with so many changes that
+    /// fits within a share of the rooms: 0 where the sign changes. None where there is none.
+    fn pattern(&self, changes: usize, share: f64) -> Option<Vec<f64>> {
+        let last = self.at.len() - 1;
+        for first in [1.0, -1.0] {
+            // Of each end of a part the most room that is left to the next, and where that part
+            // begins.
+            let mut ends: Vec<Vec<Option<(f64, usize)>>> = Vec::new();
+            let start = if first > 0.0 { self.high(0, share) } else { -self.low(0, share) };
+            let mut before: Vec<Option<(f64, usize)>> = vec![None; last + 1];
+            before[0] = Some((start, 0));
+            let mut sign = first;
+            for part in 0..=changes {
+                let mut next: Vec<Option<(f64, usize)>> = vec![None; last + 1];
+                for b in part + 1..=last {
+                    if (part == changes) != (b == last) {
+                        continue;
+                    }
+                    for a in part..b {
+                        let Some((begin, _)) = before[a] else { continue };
+                        let Some(end) = self.least_end([a, b], begin, sign, share) else {
+                            continue;
+                        };
+                        if next[b].is_none_or(|n| end < n.0) {
+                            next[b] = Some((end, a));
+                        }
+                    }
+                }
+                // The next part is upside down: the least end is its highest begin.
+                before = next.iter().map(|n| n.map(|(end, a)| (-end, a))).collect();
+                ends.push(next);
+                sign = -sign;
+            }
+            if ends[changes][last].is_none() {
+                continue;
+            }
+            let mut signs = vec![0.0; last + 1];
+            let (mut b, mut sign) = (last, if changes.is_multiple_of(2) { first } else { -first });
+            for part in (0..=changes).rev() {
+                let a = ends[part][b]?.1;
+                signs[a + 1..b].fill(sign);
+                (b, sign) = (a, -sign);
+            }
+            return Some(signs[1..last].to_vec());
+        }
+        None
+    }
+
+    /// The signs of the fewest changes that fit, and of these the ones that fit nearest.
+    pub fn fewest(&self) -> Option<Vec<f64>> {
+        let most = MOST_CHANGES.min(self.at.len().saturating_sub(3));
+        let (changes, mut best) = (0..=most)
+            .find_map(|changes| self.pattern(changes, FITS).map(|signs| (changes, signs)))?;
+        let (mut low, mut high) = (0.0, FITS);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match self.pattern(changes, middle) {
+                Some(signs) => (high, best) = (middle, signs),
+                None => low = middle,
+            }
+        }
+        Some(best)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changes(signs: &[f64]) -> usize {
+        let held: Vec<f64> = signs.iter().copied().filter(|s| *s != 0.0).collect();
+        held.windows(2).filter(|w| w[0] != w[1]).count()
+    }
+
+    fn signs_of(of: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
+        let at: Vec<f64> =
+            [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0].to_vec();
+        let off = |k: usize| noise * ((k * k * 7919 % 1009) as f64 / 504.5 - 1.0);
+        let values: Vec<f64> = at.iter().enumerate().map(|(k, &x)| of(x) + off(k)).collect();
+        let rooms = vec![noise.max(1e-9) / FITS; at.len()];
+        ValueTube { at: &at, values: &values, rooms: &rooms }.fewest().unwrap()
+    }
+
+    #[test]
+    fn patterns_have_the_fewest_changes() {
+        for noise in [0.0, 0.02] {
+            assert_eq!(changes(&signs_of(|x| 0.1 * x * x, noise)), 0);
+            assert_eq!(changes(&signs_of(|x| -(x - 3.0) * (x - 3.0) * 0.2, noise)), 0);
+            assert_eq!(changes(&signs_of(|x| 0.02 * (x - 4.5).powi(3), noise)), 1);
+            assert_eq!(changes(&signs_of(|x| (x * 0.9).sin(), noise)), 2);
+        }
+        let held = signs_of(|x| 0.02 * (x - 4.5).powi(3), 0.0);
+        assert!(held[0] < 0.0 && held[held.len() - 1] > 0.0, "{held:?}");
+    }
+}
