@@ -14,8 +14,8 @@ PICTURES = ROOT / "docs" / "images" / "gallery"
 
 HEAD = """# Gallery
 
-Models to start from: each is one file of less than 150 lines with parameters and their ranges, and its figures are checked against
-closed forms or another calculation in `tests/python/test_gallery.py`. Made by `docs/gallery.py`.
+Models to start from, each one file of fewer than 150 lines with parameters and their ranges. Tests check their figures against closed
+forms or another calculation (`tests/python/test_gallery.py`); `docs/gallery.py` generates this page.
 
 ```
 moldloft view examples/gallery/catamaran.sdl

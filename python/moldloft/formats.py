@@ -234,10 +234,10 @@ def markdown() -> str:
     """The table of the docs.
 
     >>> print(markdown().splitlines()[0])
-    | name | file | what | holds | symmetry | options |
+    | name | file | content | holds | symmetry | options |
     """
     lines = [
-        "| name | file | what | holds | symmetry | options |",
+        "| name | file | content | holds | symmetry | options |",
         "| " + " | ".join(["---"] * 6) + " |",
     ]
     for row in formats().values():
