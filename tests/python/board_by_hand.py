@@ -7,8 +7,6 @@ from typing import Any
 
 from page_in_browser import Bench
 
-#: Where the first point comes to be, pixels from the lower left corner of the board.
-ORIGIN = (150, 150)
 
 
 class BoardHand(Bench):

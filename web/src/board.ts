@@ -25,6 +25,8 @@ const PRESETS: [string, string][] = [['345 40 90', 'Trimetric 345 40 90'], ['ISO
 const [REACH, CLICK, PALM] = [11, 5, 500]
 /** How long a hand rests before bodies and doubts are looked for, ms. */
 const REST = 60
+/** A number, with or without a unit; the rest is an expression, in quotes. */
+const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
 const NOTHING = { points: [], lines: [], marks: [], next: [], planes: [], axes: {}, angles: [], missing: {}, numbers: {}, faces: 0, section: null } as unknown as Drawn
 
 export class Board {
@@ -169,6 +171,8 @@ export class Board {
     this.editor.apply(answer.edits, answer.version)
     this.text = this.editor.text
     this.say('')
+    // The page stays where it is under a hand.
+    this.fitted = true
     this.take(answer as unknown as Drawn)
     return true
   }
@@ -186,7 +190,8 @@ export class Board {
     this.starting()
     this.paint()
     this.buttons()
-    if (!this.last?.exact || this.drawn.lines.length === 0) this.solid.show(this.drawn, this.last?.vertices && this.drawn.lines.length ? this.last : null)
+    if (!this.drawn.lines.length) this.last = null
+    if (!this.last?.exact) this.solid.show(this.drawn, this.last)
     clearTimeout(this.timer)
     this.timer = window.setTimeout(() => {
       this.timer = 0
@@ -201,7 +206,7 @@ export class Board {
 
   private paint(): void {
     this.measurePage()
-    this.painter.draw(this.drawn, { chosen: this.chosen, checks: this.checks, proposed: this.proposed, open: this.box.mark?.name ?? '', planes: this.lit ?? this.box.mark, typing: false })
+    this.painter.draw(this.drawn, { chosen: this.chosen, checks: this.checks, proposed: this.proposed, open: this.box.mark?.name ?? '', planes: this.lit ?? this.box.mark, outlines: this.last?.outlines ?? [] })
     this.aim(this.aimed)
     this.box.place()
   }
@@ -389,8 +394,9 @@ export class Board {
     if (pressed.kind === 'move' && pressed.moved) this.drop(pressed.what!, at)
     if (pressed.kind !== 'draw') return
     const free = e.shiftKey
-    if (pressed.moved) void this.stroke(pressed.from, at, free)
-    else void this.click(at, free)
+    // What is drawn while the hand goes on may move the page.
+    if (pressed.moved) void this.stroke(this.page.from(pressed.from), this.page.from(at), free)
+    else void this.click(this.page.from(at), free)
   }
 
   private cancel(e: PointerEvent): void {
@@ -417,7 +423,7 @@ export class Board {
   }
 
   private async corner(at: Place, start: Place | null, free: boolean): Promise<Corner> {
-    const found = (await this.ask('board_place', { at: this.page.from(at), reach: REACH / this.page.scale, start, free, woken: this.woken })) as Aim
+    const found = (await this.ask('board_place', { at, reach: REACH / this.page.scale, start, free, woken: this.woken })) as Aim
     if (found.why === 'point') return { at: found.at, point: found.point }
     if (found.why === 'line' || found.why === 'mid') return { at: found.at, line: found.line, part: found.part }
     return { at: found.why ? (found.at.map((x) => Math.round(x * 1000) / 1000) as Place) : this.rounded(found.at) }
@@ -480,14 +486,13 @@ export class Board {
   }
 
   private drop(point: number, at: Place): void {
-    const over = this.painter.hit(at, { ...this.drawn, lines: [] }, REACH)
+    const place = this.rounded(this.page.from(at))
     const near = [...this.painter.places].find(([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH)?.[0]
     void this.later(async () => {
       await this.dragging.settled()
-      const target = near ?? (over.point !== point ? over.point : undefined)
       try {
-        await this.carryOut([target ? { do: 'run', command: `WELD ${target} ${point}` } : { do: 'move', point, at: this.rounded(this.page.from(at)) }])
-        this.say(target ? `points ${target} and ${point} are one` : '')
+        await this.carryOut([near ? { do: 'run', command: `WELD ${near} ${point}` } : { do: 'move', point, at: place }])
+        this.say(near ? `points ${near} and ${point} are one` : '')
       } catch (error) {
         this.text = null
         this.refresh()
@@ -534,7 +539,7 @@ export class Board {
 
   private dimension(mark: Mark, value: string): void {
     const missing = mark.p !== undefined
-    const change = missing ? { do: 'run', command: `DIMENSION ${this.freeName()} ${mark.axis} ${mark.p} TO ${mark.q} = ${/^[-+]?[\d.]+$/.test(value) ? value : `"${value}"`}` } : { do: 'value', name: mark.name, value }
+    const change = missing ? { do: 'run', command: `DIMENSION ${this.freeName()} ${mark.axis} ${mark.p} TO ${mark.q} = ${PLAIN.test(value) ? value : `"${value}"`}` } : { do: 'value', name: mark.name, value }
     void this.act([change]).then((fine) => {
       if (!fine) return this.box.refuse()
       if (missing) {
@@ -606,7 +611,7 @@ export class Board {
 
   private async extrude(): Promise<void> {
     const mark: Mark = { name: 'EXTRUDE', text: 'depth', value: null, reference: false, axis: null, at: this.page.from([this.page.size[0] / 2 - 60, 40]), line: null, witnesses: [] }
-    this.box.open(mark, true, '', [], (value) => void this.act([{ do: 'run', command: `EXTRUDE ${value}`, last: true }]).then((fine) => (fine ? (this.box.close(), (this.fitted = false), this.svg.focus()) : this.box.refuse())))
+    this.box.open(mark, true, '', [], (value) => void this.act([{ do: 'run', command: `EXTRUDE ${value}`, last: true }]).then((fine) => (fine ? (this.box.close(), this.fit(), this.svg.focus()) : this.box.refuse())))
   }
 
   // Keys.

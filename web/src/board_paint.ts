@@ -59,18 +59,18 @@ export interface Aim extends Facts {
 
 type Place = [number, number]
 
-/** The page on the screen: its middle, and pixels of a unit. */
+/** The page on the screen: its lower left corner, which stays where it is when the toolbar grows, and pixels of a unit. */
 export class Page {
-  middle: Place = [200, 150]
+  corner: Place = [-130, -150]
   scale = 1
   size: Place = [600, 400]
 
   to([u, v]: Place): Place {
-    return [(u - this.middle[0]) * this.scale + this.size[0] / 2, this.size[1] / 2 - (v - this.middle[1]) * this.scale]
+    return [(u - this.corner[0]) * this.scale, this.size[1] - (v - this.corner[1]) * this.scale]
   }
 
   from([x, y]: Place): Place {
-    return [(x - this.size[0] / 2) / this.scale + this.middle[0], (this.size[1] / 2 - y) / this.scale + this.middle[1]]
+    return [x / this.scale + this.corner[0], (this.size[1] - y) / this.scale + this.corner[1]]
   }
 
   zoom(factor: number, at: Place): void {
@@ -81,7 +81,7 @@ export class Page {
   }
 
   pan(dx: number, dy: number): void {
-    this.middle = [this.middle[0] - dx / this.scale, this.middle[1] + dy / this.scale]
+    this.corner = [this.corner[0] - dx / this.scale, this.corner[1] + dy / this.scale]
   }
 
   fit(places: Place[], right: number): void {
@@ -90,7 +90,7 @@ export class Page {
     const [low, high] = [[Math.min(...us), Math.min(...vs)], [Math.max(...us), Math.max(...vs)]]
     const [w, h] = [this.size[0] - right - 140, this.size[1] - 150]
     this.scale = Math.max(0.02, Math.min(4, w / Math.max(1, high[0] - low[0]), h / Math.max(1, high[1] - low[1])))
-    this.middle = [(low[0] + high[0]) / 2 + right / 2 / this.scale, (low[1] + high[1]) / 2]
+    this.corner = [(low[0] + high[0] + right / this.scale - this.size[0] / this.scale) / 2, (low[1] + high[1] - this.size[1] / this.scale) / 2]
   }
 }
 
@@ -105,6 +105,7 @@ const segment = (a: Place, b: Place, attributes: Facts) => s('line', { x1: a[0].
 
 export class Painter {
   private readonly dimensions = s('g', { class: 'dimensions' })
+  private readonly faces = s('g', { class: 'outlines', 'aria-hidden': 'true' })
   private readonly lines = s('g', { class: 'lines', role: 'list', 'aria-label': 'lines' })
   private readonly points = s('g', { class: 'points', role: 'list', 'aria-label': 'points' })
   private readonly triad = s('g', { class: 'triad' })
@@ -112,10 +113,10 @@ export class Painter {
   readonly places = new Map<number, Place>()
 
   constructor(readonly svg: SVGElement, readonly page: Page) {
-    svg.append(this.lines, this.dimensions, this.over, this.points, this.triad)
+    svg.append(this.faces, this.lines, this.dimensions, this.over, this.points, this.triad)
   }
 
-  draw(d: Drawn, state: { chosen: Set<string>; checks: Check[]; proposed: Map<number, string>; open: string; planes: Mark | null; typing: boolean }): void {
+  draw(d: Drawn, state: { chosen: Set<string>; checks: Check[]; proposed: Map<number, string>; open: string; planes: Mark | null; outlines: number[][] }): void {
     const { page } = this
     this.places.clear()
     for (const [id, u, v] of d.points ?? []) this.places.set(id, page.to([u, v]))
@@ -127,6 +128,10 @@ export class Painter {
       const { axis, p, q } = state.planes
       for (const [a, members] of d.planes) if (a === axis) for (const [end, kind] of [[p, 'from'], [q, 'to']] as const) if (end && members.includes(end)) members.forEach((m) => lit.set(m, kind))
     }
+    this.faces.replaceChildren(...state.outlines.flatMap((way) => {
+      const corners = way.map((p) => this.places.get(p))
+      return corners.every(Boolean) ? [s('polygon', { points: corners.map((c) => `${c![0].toFixed(1)},${c![1].toFixed(1)}`).join(' ') })] : []
+    }))
     this.lines.replaceChildren(...(d.lines ?? []).flatMap(([id, p, q, type, source]) => {
       const [a, b] = [this.places.get(p), this.places.get(q)]
       if (!a || !b) return []

@@ -1,6 +1,6 @@
 // The solid beside the drawing: the picture's wireframe at first, the body once it is known.
 
-import { AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera, Scene, Vector3, WebGLRenderer, DoubleSide } from 'three'
+import { AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera, Scene, ShapeUtils, Vector2, Vector3, WebGLRenderer, DoubleSide } from 'three'
 import { h, shown } from './dom'
 import type { Drawn } from './board_paint'
 
@@ -12,6 +12,23 @@ export interface SolidFacts {
   vertices?: number[]
   quads?: number[]
   why?: { text: string } | null
+  /** Closed plane outlines, by their points, while there is no body. */
+  outlines?: number[][]
+}
+
+/** A plane outline as triangles. */
+function flat(corners: (number[] | null | undefined)[]): BufferGeometry | null {
+  if (!corners.every(Boolean)) return null
+  const at = corners.map((c) => new Vector3(...(c as [number, number, number])))
+  const normal = new Vector3()
+  at.forEach((a, k) => normal.add(a.clone().cross(at[(k + 1) % at.length])))
+  const u = at[1].clone().sub(at[0]).normalize()
+  const v = normal.clone().cross(u).normalize()
+  const triangles = ShapeUtils.triangulateShape(at.map((a) => new Vector2(a.dot(u), a.dot(v))), [])
+  const geometry = new BufferGeometry()
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(triangles.flat().flatMap((k) => at[k].toArray())), 3))
+  geometry.computeVertexNormals()
+  return geometry
 }
 
 export class BoardSolid {
@@ -83,6 +100,10 @@ export class BoardSolid {
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(ends), 3))
       if (ends.length) this.parts.add(new LineSegments(geometry, ink))
+      for (const way of solid?.outlines ?? []) {
+        const face = flat(way.map((p) => places.get(p)))
+        if (face) this.parts.add(new Mesh(face, new MeshLambertMaterial({ color: 0xb9b19c, side: DoubleSide, transparent: true, opacity: 0.4, depthWrite: false })))
+      }
     }
     const box = new Vector3()
     const low = new Vector3(Infinity, Infinity, Infinity)

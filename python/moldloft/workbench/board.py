@@ -19,6 +19,7 @@ from typing import Any
 from moldloft import _core
 from moldloft.errors import Error
 from moldloft.sketch_values import Reply
+from moldloft.workbench.outlines import outlines
 from moldloft.workbench.snaps import Axes, snapped
 from moldloft.workbench.statements import (
     Statement,
@@ -394,6 +395,11 @@ class Board:
                         out["why"] = {"text": reply.text, "code": reply.code}
             data = self._data()
             out.update({"volume": data["volume"], "area": data["area"]})
+            if not data["faces"]:
+                labels, places = session.points(name)
+                ends = [(ln["points"][0], ln["points"][1]) for ln in data["lines"]]
+                at = dict(zip(labels.tolist(), places.tolist(), strict=True))
+                out["outlines"] = outlines(ends, at)
             try:
                 vertices, faces = session.mesh(name, None)
             except Error:
@@ -523,10 +529,12 @@ def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
 
 def serve(memory: int, folder: str | None) -> None:
     """Answer the parent until it goes: frames of a length in four bytes and JSON."""
-    if sys.platform == "linux":
+    if sys.platform != "win32":
         import resource
 
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        if sys.platform == "linux":
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     given, taken = sys.stdin.buffer, sys.stdout.buffer
     board = Board(str(Path(folder)) if folder else None)
     first = True

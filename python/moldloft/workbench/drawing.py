@@ -87,21 +87,31 @@ class Drawing:
             try:
                 say((await self._answer(request)).decode())
             except EngineLostError as lost:
-                self._known = -1
                 say(json.dumps(_refused(request, f"the drawing board was stopped: {lost}")))
             except ValueError as error:
                 say(json.dumps(_refused(request, f"not a request: {error}")))
 
     async def _answer(self, request: dict[str, Any]) -> bytes:
         version, text = self._text()
-        fresh = self._engine.pid is None
-        if fresh:
-            await self._engine.start(text)
-        elif version != self._known:
-            request = {**request, "text": text}
+        sent = {**request, "version": version}
+        known = self._engine.pid is not None
+        if known:
+            if version != self._known:
+                sent["text"] = text
+            self._known = version
+            try:
+                return await self._engine.ask(_data(sent))
+            except EngineLostError:
+                if self._engine.pid is not None or request["kind"] in _LAST:
+                    raise
+        # A new process has everything in the text, so the request is sent once more.
+        await self._engine.start(text)
         self._known = version
-        data = json.dumps({**request, "version": version}, allow_nan=False, ensure_ascii=False)
-        return await self._engine.ask(data.encode())
+        return await self._engine.ask(_data({**request, "version": version}))
+
+
+def _data(request: dict[str, Any]) -> bytes:
+    return json.dumps(request, allow_nan=False, ensure_ascii=False).encode()
 
 
 def _refused(request: dict[str, Any], why: str) -> dict[str, Any]:
