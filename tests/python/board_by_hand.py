@@ -8,7 +8,6 @@ from typing import Any
 from page_in_browser import Bench
 
 
-
 class BoardHand(Bench):
     """A workbench whose drawing board is drawn on."""
 

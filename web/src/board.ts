@@ -97,6 +97,8 @@ export class Board {
     on('pointercancel', (e) => this.cancel(e))
     on('pointerleave', () => this.aim(null))
     on('contextmenu', (e) => e.preventDefault())
+    // The focus goes where the gesture puts it, such as into a dimension's box.
+    on('mousedown', (e) => e.preventDefault())
     on('wheel', (e: WheelEvent) => {
       e.preventDefault()
       this.page.zoom(Math.exp(-e.deltaY * 0.0015), this.at(e))
