@@ -31,10 +31,16 @@ def command(*arguments: str) -> list[str]:
 def main() -> None:
     """Answers the parent until it goes.
 
-    The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``.
+    The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``, or the same for
+    ``board``, which draws.
     """
     work, *arguments = sys.argv[1:]
     if work == "language":
         sys.exit(0 if _core.language_engine() else 1)
+    if work == "board":
+        from moldloft.workbench.board import serve
+
+        serve(int(arguments[0]), arguments[2] or None)
+        return
     memory, name, folder, *library = arguments
     _core.engine(int(memory), name, folder or None, library)

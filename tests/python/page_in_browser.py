@@ -61,6 +61,10 @@ class Bench:
         self.page.on("request", lambda r: self.requests.append(r.url))
         self.page.goto(self.url)
         self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
+        self.ready()
+
+    def ready(self) -> None:
+        """Until there is something to see."""
         self.until(lambda: self.hand("items()"))
 
     def hand(self, call: str) -> Any:

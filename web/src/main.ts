@@ -5,6 +5,7 @@ import { Editor } from './editor'
 import { BlockPlanes } from './blocks'
 import { drawAxes } from './axes'
 import { Analysis } from './analysis'
+import { Board } from './board'
 import { h, store, stored } from './dom'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
@@ -310,6 +311,8 @@ const hands = new Hands(view, link, viewHost, {
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
 })
+const board = new Board(link, editor, say)
+viewHost.parentElement!.append(board.element)
 const sheets = new Sheets(sheetHost, link, actions)
 parametersPanel(params, actions)
 treePanel(tree, actions)
@@ -441,6 +444,7 @@ link.onMessage = (message) => {
     case 'updates':
       dirty = message.dirty
       editor.received(message.updates, message.from)
+      board.refresh()
       cell?.changed()
       showSaved()
       break
@@ -479,6 +483,10 @@ async function begin(hello: any): Promise<void> {
   if (hello.watched) {
     model.watched = hello.watched
     changed('watched')
+  }
+  if (!link.local && /\.skt$/i.test(hello.name) && !tabs.querySelector('[data-sheet=board]')) {
+    tabs.append(tab('board', 'Drawing board'))
+    if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
   }
   if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
@@ -556,8 +564,9 @@ function give(blob: Blob, name: string): void {
 }
 
 const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['areas', 'Section areas'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
-function sheet(name: SheetName): void {
-  sheets.show(name)
+function sheet(name: SheetName | 'board'): void {
+  sheets.show(name === 'board' ? 'model' : name)
+  board.show(name === 'board')
   toolbar.hidden = name !== 'model'
   for (const t of tabs.querySelectorAll('[role=tab]')) t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
 }
@@ -646,7 +655,10 @@ function buildToolbar(): void {
   )
   if (focus) toolbar.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focus)}"]`)?.focus()
 }
-for (const [name, words] of SHEETS) tabs.append($('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words))
+function tab(name: SheetName | 'board', words: string): HTMLElement {
+  return $('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words)
+}
+for (const [name, words] of SHEETS) tabs.append(tab(name, words))
 
 paletteButton.addEventListener('click', openPalette)
 helpButton.addEventListener('click', () => help(commands()))
@@ -714,6 +726,7 @@ Object.assign(window, {
     items: () => [...view.items.values()].map((i) => ({ name: i.name, object: i.object, kind: i.kind, stale: i.stale, vertices: i.position.length / 3, seen: view.seen(i) })),
     positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
+    board,
     settled: async () => {
       await hands.settled()
       await editor.synced()

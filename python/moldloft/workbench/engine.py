@@ -52,6 +52,8 @@ class Engine:
         The most bytes of the model.
     budget
         Seconds for one request; then the work is stopped, and a little later the process ended.
+    work
+        What the process does: ``"model"``, or ``"board"`` for the drawing board of a sketch.
     """
 
     def __init__(
@@ -62,8 +64,9 @@ class Engine:
         *,
         memory: int = 8 << 30,
         budget: float = 20.0,
+        work: str = "model",
     ) -> None:
-        self._arguments = [str(memory), name, folder or "", *library]
+        self._arguments = [work, str(memory), name, folder or "", *library]
         self._budget = budget
         self._process: asyncio.subprocess.Process | None = None
 
@@ -76,7 +79,7 @@ class Engine:
         """A new process with that text; one that was there is ended."""
         await self.end()
         self._process = await asyncio.create_subprocess_exec(
-            *command("model", *self._arguments),
+            *command(*self._arguments),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,

@@ -1,0 +1,552 @@
+"""The drawing board: what a hand does to a sketch, as commands in its text.
+
+It runs in a process of its own, which :class:`~moldloft.workbench.engine.Engine` starts, and speaks
+frames of JSON. The text is the only truth: a session runs it, what a hand does becomes an edit
+of it, and the edit counts when the whole text runs without a new fault.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import struct
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from moldloft import _core
+from moldloft.errors import Error
+from moldloft.sketch_values import Reply
+from moldloft.workbench.outlines import outlines
+from moldloft.workbench.snaps import Axes, snapped
+from moldloft.workbench.statements import (
+    Statement,
+    block,
+    place,
+    replaced,
+    statements,
+    units,
+)
+
+__all__ = ["Board", "serve"]
+
+#: Cancelled work has no answer of its own.
+_SILENT = "cancel"
+_DEFAULT_AXES = "345 40 90"
+#: What may stand after a value of DIMENSION and GIVE.
+_AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECASE)
+
+#: Commands in the next step that a reply names.
+_FIX = re.compile(r"\b(?:WELD|TYPE|ALIGN|DELETE) [A-Z0-9 ]*[A-Z0-9]")
+
+Places = list[tuple[int, int, str]]
+
+
+class RefusedError(Exception):
+    """What a hand wants is no sketch; says why and what would be."""
+
+
+class Board:
+    """A sketch's text, and its objects as a page shows them.
+
+    Parameters
+    ----------
+    folder
+        The folder that the text may read.
+    """
+
+    def __init__(self, folder: str | None = None) -> None:
+        self._folder = folder
+        self._text = ""
+        self._faults: list[dict[str, Any]] = []
+        self._session = self._new()
+        self._guesses = self._new()
+        self._guessed: list[str] = []
+        self._object: str | None = None
+
+    def _new(self) -> _core.SketchSession:
+        session = _core.SketchSession(self._folder)
+        session.confine(True)
+        return session
+
+    # -- the text ----------------------------------------------------------------------------
+
+    def sync(self, text: str) -> None:
+        """Have that text run; of one that only goes on, the new lines alone."""
+        if text == self._text:
+            return
+        old, new = self._text.split("\n"), text.split("\n")
+        while old and not old[-1].strip():
+            old.pop()
+        if new[: len(old)] != old:
+            self._session, self._faults, old = self._new(), [], []
+        for k, line in enumerate(new[len(old) :], len(old) + 1):
+            for reply in map(Reply.from_row, self._session.run_line(line)):
+                if reply.is_error:
+                    fault = {"line": k, "text": reply.text, "next": reply.next}
+                    self._faults.append({**fault, "code": reply.code})
+        self._text = text
+
+    def _changed(self, edits: Places) -> list[dict[str, Any]]:
+        """Edits of the text for the page, once the text after them runs without a new fault."""
+        before, faults = self._text, {(f["text"], f["code"]) for f in self._faults}
+        after = replaced(before, edits)
+        self.sync(after)
+        new = [f for f in self._faults if (f["text"], f["code"]) not in faults]
+        if new:
+            self.sync(before)
+            hint = f"; {new[0]['next']}" if new[0]["next"] else ""
+            raise RefusedError(f"{new[0]['text']}{hint}")
+        return [
+            {"from": units(before, a), "to": units(before, b), "insert": insert}
+            for a, b, insert in edits
+        ]
+
+    # -- edits -------------------------------------------------------------------------------
+
+    def edit(self, changes: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+        """Carry out what a hand does, as one edit of the text.
+
+        Parameters
+        ----------
+        changes
+            Each with ``do``: ``run``, ``move``, ``value``, ``type`` or ``axes``, and what it needs.
+
+        Returns
+        -------
+        list of dict
+            Places in the text before, in UTF-16 units, and what is there now.
+        """
+        every = statements(self._text)
+        own = block(every, self._object) if self._object else []
+        edits: Places = []
+        added: list[str] = []
+        after: list[str] = []
+        for change in changes:
+            do = change.get("do")
+            if do == "run":
+                command = str(change["command"])
+                (after if change.get("last") else added).append(command)
+            elif do == "move":
+                u, v = (_number(x) for x in change["at"])
+                p = int(change["point"])
+                edits += self._over(
+                    self._point(own, p), 2, f"{u} {v}", added, f"POINT {p} AT {u} {v}"
+                )
+            elif do == "type":
+                for line in change["lines"]:
+                    edits += self._type(own, int(line), str(change["type"]), added)
+            elif do == "value":
+                edits += self._value(own, str(change["name"]), str(change["value"]), added)
+            elif do == "axes":
+                edits += self._axes(own, str(change["axes"]))
+            else:
+                raise RefusedError(f"`{do}` is nothing that the board does")
+        if added:
+            edits.append(self._written(every, own, place(own), "; ".join(added)))
+        if after:
+            edits.append(self._written(every, own, own[-1] if own else None, "\n".join(after)))
+        edits.sort(key=lambda e: e[:2])
+        return self._changed(edits)
+
+    def _written(
+        self, every: Sequence[Statement], own: Sequence[Statement], last: Statement | None, new: str
+    ) -> tuple[int, int, str]:
+        """The edit that writes commands after a statement of the object, or at the end."""
+        if last is None:
+            end = len(self._text.rstrip())
+            before = "\n" if end else ""
+            using = f'USING "{self._object}"\n' if self._object and not own and every else ""
+            return end, len(self._text), f"{before}{using}{new}\n"
+        if not last.last:
+            return last.end, last.end, f"; {new}"
+        end = self._text.find("\n", last.end)
+        end = len(self._text) if end < 0 else end
+        return end, end, f"\n{new}"
+
+    @staticmethod
+    def _over(
+        found: tuple[Statement, int] | None, count: int, new: str, added: list[str], command: str
+    ) -> Places:
+        """Words of a statement replaced, or a command more where no statement has them."""
+        if found is None:
+            added.append(command)
+            return []
+        s, k = found
+        return [(s.tokens[k].start, s.tokens[k + count - 1].end, new)]
+
+    @staticmethod
+    def _point(own: Sequence[Statement], point: int) -> tuple[Statement, int] | None:
+        """The last statement that draws a point, and the place of its numbers in it."""
+        found = None
+        for s in own:
+            if s.verb("POINT") and s.word(1) == str(point):
+                k = 3 if s.word(2) == "AT" else 2
+                if len(s.tokens) == k + 2:
+                    found = (s, k)
+            elif s.verb("SPLIT", "WELD", "STROKES", "IMPORT", "INPUT", "MOVE", "SCALE"):
+                found = None
+        return found
+
+    @staticmethod
+    def _type(own: Sequence[Statement], line: int, letter: str, added: list[str]) -> Places:
+        found: tuple[Statement, int, bool] | None = None
+        for s in own:
+            if s.verb("LINE") and s.word(1) == str(line) and s.word(2) == "FROM":
+                typed = s.word(6) == "TYPE" and len(s.tokens) == 8
+                if typed or len(s.tokens) == 6:
+                    found = (s, 7 if typed else 5, typed)
+            elif s.verb("TYPE") and str(line) in [t.text for t in s.tokens[1:-1]]:
+                alone = [t for t in s.tokens[1:-1] if t.upper != "AS"]
+                found = (s, len(s.tokens) - 1, True) if len(alone) == 1 else None
+                if found is None:
+                    break
+        if found is None:
+            added.append(f"TYPE {line} AS {letter}")
+            return []
+        s, k, over = found
+        if over:
+            return [(s.tokens[k].start, s.tokens[k].end, letter)]
+        return [(s.end, s.end, f" TYPE {letter}")]
+
+    def _value(self, own: Sequence[Statement], name: str, value: str, added: list[str]) -> Places:
+        value = value.strip().replace("−", "-")
+        if not value or "\n" in value:
+            raise RefusedError("give a number or an expression")
+        plain = _NUMBER.fullmatch(value) is not None
+        quote = "'" if '"' in value else '"'
+        given = value if plain else f"{quote}{value.strip(quote)}{quote}"
+        # A range is kept by SET alone: DIMENSION states both anew.
+        replies: list[Reply] = []
+        self._aside(
+            lambda: replies.extend(
+                map(Reply.from_row, self._session.run_line(f"SET {name} {given}"))
+            )
+        )
+        for reply in replies:
+            if reply.is_error:
+                raise RefusedError(f"{reply.text}; {reply.next}" if reply.next else reply.text)
+        found: tuple[Statement, int] | None = None
+        for s in own:
+            named = s.word(1) == name.upper()
+            words = [t.upper for t in s.tokens]
+            end = words.index("IN") if "IN" in words[2:] else len(words)
+            while end and words[end - 1] in _AFTER_VALUE:
+                end -= 1
+            if named and s.verb("SET", "VARIABLE", "DECLARE"):
+                found = (s, 2)
+            elif named and s.verb("DIMENSION", "GIVE"):
+                along = words[2] in ("X", "Y", "Z")
+                least = (6 if "TO" in words else 5) if along else 4
+                found = (s, end - 1) if end > least else None
+        if found is None:
+            added.append(f"SET {name} {given}")
+            return []
+        s, k = found
+        return [(s.tokens[k].start, s.tokens[k].end, given)]
+
+    @staticmethod
+    def _axes(own: Sequence[Statement], axes: str) -> Places:
+        for s in own:
+            if s.verb("AXES"):
+                return [(s.tokens[1].start, s.end, axes)]
+        for s in own:
+            if s.verb("SKETCH"):
+                return [(s.end, s.end, f"\nAXES {axes}")]
+        raise RefusedError("the object has no SKETCH command in this text")
+
+    # -- facts -------------------------------------------------------------------------------
+
+    def choose(self, name: str | None) -> None:
+        """Show that object; the active one when there is none of that name."""
+        names = {n.upper(): n for n in self._session.names()}
+        self._object = names.get((name or "").upper()) or self._session.active()
+
+    def _aside(self, look: Callable[[], None]) -> None:
+        """Look at the object as if more had been done; the session stays as it is."""
+        self._session.begin()
+        try:
+            if self._object != self._session.active():
+                self._session.run_line(f'USING "{self._object}"')
+            look()
+        finally:
+            self._session.rollback()
+
+    def _data(self) -> dict[str, Any]:
+        found = json.loads(self._session.objects_json())["objects"]
+        return next((o for o in found if o["name"] == self._object), {})
+
+    def facts(self, move: dict[str, Any] | None = None) -> dict[str, Any]:
+        """The object as the page draws it.
+
+        Parameters
+        ----------
+        move
+            A point, and where it is meanwhile: ``{"point": 3, "at": [u, v]}``.
+        """
+        session, name = self._session, self._object
+        out: dict[str, Any] = {"object": name, "objects": session.names(), "faults": self._faults}
+        if name is None or session.asks():
+            return out
+
+        def look() -> None:
+            if move is not None:
+                u, v = (_number(x) for x in move["at"])
+                session.run_line(f"POINT {int(move['point'])} AT {u} {v}")
+            out.update(self._object_facts(self._data()))
+            given = {m[0] for m in session.marks(name, None)}
+            out["marks"] = [_mark(m) for m in session.marks(name, None)]
+            session.run_line("ACCEPT ALL")
+            labels, places = session.points(name)
+            guess = dict(zip(labels.tolist(), places.tolist(), strict=True))
+            for p in out["points"]:
+                p[3] = [x if math.isfinite(x) else None for x in guess.get(p[0], [math.nan] * 3)]
+            measured = {d["name"]: d["measures"].split() for d in self._data()["dimensions"]}
+            for mark in map(_mark, session.marks(name, None)):
+                words = measured.get(mark["name"], [])
+                if mark["name"] not in given and len(words) == 4:
+                    ends = {"p": int(words[1]), "q": int(words[3])}
+                    out["next"].append({**mark, **ends})
+
+        self._aside(look)
+        return out
+
+    def _object_facts(self, data: dict[str, Any]) -> dict[str, Any]:
+        session = self._session
+        section, axes = axes_of(session.text(self._object))
+        planes = [
+            [a.axis, list(a.points), a.value]
+            for a in (Reply.from_row(row).about for row in session.run_line("EXTENSIONS"))
+            if a is not None and a.axis is not None
+        ]
+        points = [
+            [p["id"], *p["page"], None, [x is not None for x in p["at"]]]
+            for p in data["points"]
+            if p["page"] is not None
+        ]
+        lines = [
+            [ln["id"], *ln["points"], ln["type"] or "", ln["source"], ln["certainty"]]
+            for ln in data["lines"]
+        ]
+        return {
+            "section": section,
+            "axes": axes.units,
+            "angles": axes.angles,
+            "points": points,
+            "lines": lines,
+            "planes": planes,
+            "missing": data["missing"],
+            "faces": len(data["faces"]),
+            "numbers": {d["name"]: d["value"] for d in data["dimensions"]},
+            "next": [],
+        }
+
+    def check(self) -> list[dict[str, Any]]:
+        """What is doubtful or contradictory, with what would mend it."""
+        found: list[dict[str, Any]] = []
+        if self._object is None or self._session.asks():
+            return found
+
+        def look() -> None:
+            for row in self._session.run_line(f'CHECK "{self._object}"'):
+                reply = Reply.from_row(row)
+                about = reply.about
+                if about is not None and about.kind != "missing-dimension":
+                    fixes = [f for f in _FIX.findall(reply.next or "") if not f.endswith(" AS")]
+                    found.append({**reply.to_dict(), "next": reply.next, "fixes": fixes})
+
+        self._aside(look)
+        return found
+
+    def proposals(self) -> list[dict[str, Any]]:
+        """The types that all strokes together suggest, where they are others than now."""
+        found: list[dict[str, Any]] = []
+
+        def look() -> None:
+            before = {ln["id"]: ln["type"] for ln in self._data().get("lines", [])}
+            self._session.run_line("TYPE AUTO")
+            for ln in self._data().get("lines", []):
+                if ln["type"] and ln["type"] != before.get(ln["id"]):
+                    found.append({"line": ln["id"], "type": ln["type"], "share": ln["certainty"]})
+
+        if self._object is not None and not self._session.asks():
+            self._aside(look)
+        return found
+
+    def solid(self) -> dict[str, Any]:
+        """The body that the picture and the dimensions suggest; exact when none is missing."""
+        out: dict[str, Any] = {"exact": False, "made": False, "why": None}
+        name = self._object
+        if name is None or self._session.asks():
+            return out
+
+        def look() -> None:
+            session = self._session
+            data = self._data()
+            out["exact"] = not any(data["missing"].values())
+            out["made"] = bool(data["faces"])
+            session.run_line("ACCEPT ALL")
+            if not data["faces"]:
+                for reply in map(Reply.from_row, session.run_line("GENERATE FACES")):
+                    if reply.is_error:
+                        out["why"] = {"text": reply.text, "code": reply.code}
+            data = self._data()
+            out.update({"volume": data["volume"], "area": data["area"]})
+            if not data["faces"]:
+                labels, places = session.points(name)
+                ends = [(ln["points"][0], ln["points"][1]) for ln in data["lines"]]
+                at = dict(zip(labels.tolist(), places.tolist(), strict=True))
+                out["outlines"] = outlines(ends, at)
+            try:
+                vertices, faces = session.mesh(name, None)
+            except Error:
+                return
+            out.update({"vertices": vertices.ravel().tolist(), "quads": faces.ravel().tolist()})
+
+        self._aside(look)
+        return out
+
+    def pointer(self, request: dict[str, Any]) -> dict[str, Any]:
+        """What the pointer means there: a snap, and the type of the line that would end there.
+
+        Parameters
+        ----------
+        request
+            ``at`` and ``reach`` on the page; ``start``, the place that the line comes from;
+            ``free``, true to suspend snapping; ``woken``, points that the pointer has rested on.
+        """
+        at = (float(request["at"][0]), float(request["at"][1]))
+        start = request.get("start")
+        name = self._object
+        out: dict[str, Any] = {"at": list(at), "why": None}
+        if name is None or not math.isfinite(sum(at)):
+            return out
+        _, axes = axes_of(self._session.text(name))
+        if not request.get("free"):
+            out.update(
+                snapped(
+                    self._session, name, axes, at, float(request["reach"]),
+                    None if start is None else (float(start[0]), float(start[1])),
+                    [int(p) for p in request.get("woken", [])],
+                )
+            )  # fmt: skip
+        if start is not None:
+            out.update(self._guess(start, out["at"]))
+        return out
+
+    def _guess(self, start: Sequence[float], end: Sequence[float]) -> dict[str, Any]:
+        """The type of a line by its slope, as the command LINE would say."""
+        head = [
+            line
+            for line in self._session.text(self._object).splitlines()
+            if line.startswith(("SKETCH ", "AXES "))
+        ]
+        if head != self._guessed:
+            self._guesses, self._guessed = self._new(), head
+            for line in head:
+                self._guesses.run_line(line)
+        ends = [f"POINT {k} AT {_number(p[0])} {_number(p[1])}" for k, p in ((1, start), (2, end))]
+        self._guesses.begin()
+        try:
+            self._guesses.run_line("; ".join([*ends, "LINE 1 FROM 1 TO 2"]))
+            found = json.loads(self._guesses.objects_json())["objects"][0]["lines"]
+        finally:
+            self._guesses.rollback()
+        if not found:
+            return {}
+        return {"type": found[0]["type"] or "", "certainty": found[0]["certainty"]}
+
+    # -- requests ----------------------------------------------------------------------------
+
+    def answer(self, request: dict[str, Any]) -> dict[str, Any]:
+        """The answer to a request of the page."""
+        if isinstance(request.get("text"), str):
+            self.sync(request["text"])
+        self.choose(request.get("object") or self._object)
+        kind = request["kind"]
+        if kind == "board_edit":
+            edits = self.edit(request["changes"])
+            self.choose(request.get("object") or self._object)
+            return {"edits": edits, **self.facts()}
+        if kind == "board_drag":
+            return self.facts(request["move"])
+        if kind in ("board_pointer", "board_place"):
+            return self.pointer(request)
+        if kind == "board_solid":
+            return {"solid": self.solid()}
+        if kind == "board_check":
+            return {"checks": self.check(), "proposals": self.proposals()}
+        return self.facts()
+
+
+def axes_of(text: str) -> tuple[str | None, Axes]:
+    """The section plane and the axes of an object, from its commands."""
+    section, angles = None, [float(x) for x in _DEFAULT_AXES.split()]
+    scale = [1.0, 1.0, 1.0]
+    for line in text.splitlines():
+        words = line.split()
+        if words[:1] == ["SKETCH"]:
+            section = words[3] if words[2:3] == ["2D"] else None
+            if section:
+                angles = [0.0, 90.0]
+        elif words[:1] == ["AXES"]:
+            numbers = words[1 : words.index("SCALE")] if "SCALE" in words else words[1:]
+            angles = [float(x) for x in numbers]
+            if "SCALE" in words:
+                scale = [float(x) for x in words[words.index("SCALE") + 1 :]]
+        elif words[:1] in (["POINT"], ["LINE"]):
+            break
+    letters = section or "XYZ"
+    return section, Axes(letters, angles, scale)
+
+
+def _mark(row: Any) -> dict[str, Any]:
+    names = ("name", "text", "value", "reference", "axis", "at", "line", "witnesses")
+    return dict(zip(names, row, strict=True))
+
+
+def _number(x: Any) -> str:
+    """A coordinate of the page, to a thousandth."""
+    value = round(float(x), 3)
+    if not math.isfinite(value):
+        raise RefusedError(f"{x} is no place on the page")
+    return f"{value + 0.0:g}" if value == int(value) and abs(value) < 1e6 else repr(value)
+
+
+def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
+    """The answer to a request, or why there is none."""
+    try:
+        reply = {"kind": "board", **board.answer(request)}
+    except (RefusedError, Error) as error:
+        reply = {"kind": "refused", "error": str(error)}
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        reply = {"kind": "refused", "error": f"not a request of the board: {error!r}"}
+    return {**reply, "id": request.get("id", 0), "version": request.get("version")}
+
+
+def serve(memory: int, folder: str | None) -> None:
+    """Answer the parent until it goes: frames of a length in four bytes and JSON."""
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        if sys.platform == "linux":
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    given, taken = sys.stdin.buffer, sys.stdout.buffer
+    board = Board(str(Path(folder)) if folder else None)
+    first = True
+    while len(head := given.read(4)) == 4:
+        message = given.read(struct.unpack("<I", head)[0])
+        if first:
+            board.sync(message.decode())
+            first = False
+            continue
+        request = json.loads(message)
+        if request.get("kind") == _SILENT:
+            continue
+        reply = json.dumps(answered(board, request)).encode()
+        taken.write(struct.pack("<I", len(reply)) + reply)
+        taken.flush()

@@ -1,0 +1,161 @@
+"""What a pointer on the drawing board snaps to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from moldloft import _core
+
+__all__ = ["Axes", "snapped"]
+
+#: Sine of the angle below which two directions have no crossing worth the name.
+_PARALLEL = 0.1
+#: Part of a line's length around its middle that is the middle.
+_MIDDLE = 0.04
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Axes:
+    """How the axes are drawn.
+
+    Attributes
+    ----------
+    letters
+        Those that the drawing has.
+    angles
+        Of each from the right, degrees.
+    scale
+        Of each.
+    """
+
+    letters: str
+    angles: list[float]
+    scale: list[float]
+
+    @property
+    def units(self) -> dict[str, list[float]]:
+        """A unit along each axis, as it is on the page."""
+        found = {}
+        for letter, angle, scale in zip(self.letters, self.angles, self.scale, strict=False):
+            a = math.radians(angle)
+            found[letter] = [round(scale * math.cos(a), 12), round(scale * math.sin(a), 12)]
+        return found
+
+
+def snapped(
+    session: _core.SketchSession,
+    name: str,
+    axes: Axes,
+    at: Place,
+    reach: float,
+    start: Place | None,
+    woken: Sequence[int],
+) -> dict[str, Any]:
+    """The place that a pointer means: the nearest of the strongest kind within reach.
+
+    In this order: a point; the crossing of an axis through the start with one through any other
+    point, or of two through woken ones; the middle of a line; a line; an axis through the start
+    or a woken point.
+
+    Returns
+    -------
+    dict
+        ``at``, ``why`` (``"point"``, ``"cross"``, ``"mid"``, ``"line"``, ``"axis"``), the ``point``
+        or ``line`` with the ``part`` of its length, ``axes`` and the points ``of`` them.
+    """
+    found = session.snap(name, [at[0], at[1]], reach)
+    if found is not None and found[1] is not None and found[3] is None:
+        return {"at": list(found[0]), "why": "point", "point": found[1]}
+    places = _drawn(session, name)
+    directions = {letter: _unit(d) for letter, d in axes.units.items()}
+    rays = [
+        ray
+        for point, through in places.items()
+        for ray in _rays(point, through, directions, at)
+        if ray.off <= reach
+    ]
+    strong = [r for r in _rays(0, start, directions, at) if r.off <= reach] if start else []
+    lively = [r for r in rays if r.point in woken]
+    crossings = []
+    for one in [*strong, *lively]:
+        for two in rays if one in strong else lively:
+            place = _crossing(one, two)
+            if place is None or (start is not None and math.dist(place, start) <= reach):
+                continue
+            crossings.append((math.dist(place, at), place, one, two))
+    crossings = [c for c in crossings if c[0] <= reach]
+    if crossings:
+        _, place, one, two = min(crossings, key=lambda c: c[0])
+        of = [k for k in (one.point, two.point) if k]
+        return {"at": list(place), "why": "cross", "axes": [one.axis, two.axis], "of": of}
+    if found is not None and found[2] is not None:
+        line, part = found[2]
+        if abs(part - 0.5) <= _MIDDLE:
+            p, q = _ends(session, name, line)
+            middle = [(a + b) / 2 for a, b in zip(places[p], places[q], strict=True)]
+            return {"at": middle, "why": "mid", "line": line, "part": 0.5}
+        if 0.0 < part < 1.0:
+            return {"at": list(found[0]), "why": "line", "line": line, "part": part}
+    for ray in sorted([*strong, *lively], key=lambda r: r.off):
+        (u, v), (c, s) = ray.through, ray.along
+        along = (at[0] - u) * c + (at[1] - v) * s
+        if abs(along) > reach:
+            of = [ray.point] if ray.point else []
+            foot = [u + c * along, v + s * along]
+            return {"at": foot, "why": "axis", "axes": [ray.axis], "of": of}
+    return {}
+
+
+class _Ray(NamedTuple):
+    """An axis through a point of the drawing, or through the start (0), near the pointer."""
+
+    off: float
+    axis: str
+    point: int
+    through: Place
+    along: Place
+
+
+def _drawn(session: _core.SketchSession, name: str) -> dict[int, Place]:
+    places: dict[int, Place] = {}
+    for line in session.text(name).splitlines():
+        words = line.split()
+        if words[:1] == ["POINT"] and words[2:3] == ["AT"]:
+            places[int(words[1])] = (float(words[3]), float(words[4]))
+    return places
+
+
+def _ends(session: _core.SketchSession, name: str, line: int) -> tuple[int, int]:
+    head = f"LINE {line} FROM "
+    for text in session.text(name).splitlines():
+        if text.startswith(head):
+            words = text.split()
+            return int(words[3]), int(words[5])
+    raise ValueError(f"there is no line {line}")
+
+
+def _rays(point: int, through: Place, directions: dict[str, Place], at: Place) -> list[_Ray]:
+    off = (at[0] - through[0], at[1] - through[1])
+    return [
+        _Ray(abs(off[0] * d[1] - off[1] * d[0]), axis, point, through, d)
+        for axis, d in directions.items()
+    ]
+
+
+def _crossing(one: _Ray, two: _Ray) -> Place | None:
+    (p, d), (q, e) = (one.through, one.along), (two.through, two.along)
+    sine = d[0] * e[1] - d[1] * e[0]
+    if abs(sine) < _PARALLEL:
+        return None
+    t = ((q[0] - p[0]) * e[1] - (q[1] - p[1]) * e[0]) / sine
+    return (p[0] + t * d[0], p[1] + t * d[1])
+
+
+def _unit(d: Sequence[float]) -> Place:
+    size = math.hypot(*d) or 1.0
+    return (d[0] / size, d[1] / size)

@@ -1,0 +1,163 @@
+"""Statements of a sketch file with their places, and where new ones are written.
+
+What is drawn on the board is written as commands: beside those that it continues, or over the one
+that it changes. Places are counted in code points here, in UTF-16 units for the page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["Statement", "Token", "block", "replaced", "statements", "units"]
+
+#: What makes a body of a drawing, or looks at it: drawing and dimensions are written before it.
+_SOLID = (
+    "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "EXTRUDE", "REVOLVE", "CLEAN", "MEASURE",
+    "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE", "PATTERN", "FILLET", "CHAMFER",
+    "SHELL", "DRAFT", "COPY", "MOVE", "ROTATE", "MIRROR", "SCALE", "SAVE", "EXPORT", "ESTIMATE",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word, number or text of a statement."""
+
+    text: str
+    """As written, without quotes."""
+    start: int
+    end: int
+    """Its place, quotes included."""
+
+    @property
+    def upper(self) -> str:
+        """The word in capitals."""
+        return self.text.upper()
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A command of a text."""
+
+    tokens: tuple[Token, ...]
+    last: bool
+    """Whether it is the last one of its line."""
+
+    @property
+    def start(self) -> int:
+        """Where it begins."""
+        return self.tokens[0].start
+
+    @property
+    def end(self) -> int:
+        """Where it ends."""
+        return self.tokens[-1].end
+
+    def verb(self, *names: str) -> bool:
+        """Whether it is one of these commands, abbreviated to three letters or more."""
+        word = self.tokens[0].upper
+        return any(name == word or (len(word) >= 3 and name.startswith(word)) for name in names)
+
+    def word(self, k: int) -> str:
+        """The word at a place, empty beyond the end."""
+        return self.tokens[k].upper if k < len(self.tokens) else ""
+
+
+def statements(text: str) -> list[Statement]:
+    """The commands of a text, in order.
+
+    >>> [s.verb("POINT") for s in statements("POINT 1 0 0; LINE 1 2 ! LINE 3 4")]
+    [True, False]
+    """
+    found: list[Statement] = []
+    tokens: list[Token] = []
+
+    def finish(last: bool) -> None:
+        if tokens:
+            found.append(Statement(tuple(tokens), last))
+        tokens.clear()
+
+    k, size = 0, len(text)
+    while k < size:
+        c = text[k]
+        if c == "\n":
+            if tokens and tokens[-1].text == "&":
+                tokens.pop()
+            else:
+                finish(True)
+            k += 1
+        elif c in "!#":
+            k = _until(text, k, "\n")
+        elif c == ";":
+            rest = text[k + 1 : _until(text, k, "\n")].strip()
+            finish(not rest or rest[0] in "!#")
+            k += 1
+        elif c in "\"'":
+            line = _until(text, k, "\n")
+            close = text.find(c, k + 1, line)
+            close = line - 1 if close < 0 else close
+            tokens.append(Token(text[k + 1 : close], k, close + 1))
+            k = close + 1
+        elif c in ",=" or c.isspace():
+            k += 1
+        else:
+            end = k
+            while end < size and text[end] not in ",=;!#\"'" and not text[end].isspace():
+                end += 1
+            tokens.append(Token(text[k:end], k, end))
+            k = end
+    finish(True)
+    return found
+
+
+def _until(text: str, start: int, mark: str) -> int:
+    end = text.find(mark, start)
+    return len(text) if end < 0 else end
+
+
+def block(every: Sequence[Statement], name: str) -> list[Statement]:
+    """The statements that are run while an object is the active one, its SKETCH among them.
+
+    >>> found = statements("SKETCH A; POINT 1 0 0; SKETCH B; POINT 1 2 3; USING A; LINE 1 2")
+    >>> [s.word(0) for s in block(found, "a")]
+    ['SKETCH', 'POINT', 'USING', 'LINE']
+    """
+    active, found = "", []
+    for s in every:
+        if s.verb("SKETCH", "MODIFY", "USING") and len(s.tokens) > 1:
+            active = s.word(1)
+        if active == name.upper():
+            found.append(s)
+    return found
+
+
+def place(own: Sequence[Statement]) -> Statement | None:
+    """The statement after which more is drawn: the last one before the object's body is made."""
+    last = None
+    for s in own:
+        if s.verb(*_SOLID):
+            break
+        last = s
+    return last
+
+
+def replaced(text: str, edits: Sequence[tuple[int, int, str]]) -> str:
+    """The text after edits: from, to and what is there then, all places in the text before.
+
+    >>> replaced("abcd", [(0, 1, "x"), (3, 4, "")])
+    'xbc'
+    """
+    made, at = [], 0
+    for start, end, insert in sorted(edits):
+        made += [text[at:start], insert]
+        at = end
+    return "".join(made) + text[at:]
+
+
+def units(text: str, at: int) -> int:
+    r"""A place in UTF-16 units.
+
+    >>> units("a\N{GRINNING FACE}b", 2)
+    3
+    """
+    return at + sum(ord(c) > 0xFFFF for c in text[:at])

@@ -1,0 +1,92 @@
+"""A hand at the drawing board: pointer and keys of a browser, by places of the page alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from page_in_browser import Bench
+
+
+class BoardHand(Bench):
+    """A workbench whose drawing board is drawn on."""
+
+    def __init__(self, path: Path, browser: Any) -> None:
+        self.events = 0
+        super().__init__(path, browser)
+        self.page.locator(".board:not([hidden])").wait_for()
+
+    def ready(self) -> None:
+        """An empty text has nothing to wait for."""
+
+    def look(self) -> Any:
+        return self.hand("board.look()")
+
+    def settle(self) -> Any:
+        """All gestures are in the text, and the board shows it."""
+        self.hand("board.settled()")
+        self.hand("settled()")
+        return self.look()
+
+    def begin(self, words: str) -> None:
+        """Choose what an empty text begins with."""
+        self.page.get_by_role("button", name=words).click()
+        self.until(lambda: self.look()["drawn"]["object"])
+        self.events += 1
+
+    def at(self, u: float, v: float) -> tuple[float, float]:
+        """A place of the drawing on the screen."""
+        x, y = self.page.evaluate(f"() => window.moldloft.board.onScreen([{u}, {v}])")
+        return float(x), float(y)
+
+    def move(self, u: float, v: float) -> None:
+        x, y = self.at(u, v)
+        self.page.mouse.move(x - 3, y + 2)
+        self.page.mouse.move(x, y)
+
+    def click(self, u: float, v: float) -> None:
+        """One corner of a chain."""
+        self.move(u, v)
+        self.page.mouse.down()
+        self.page.mouse.up()
+        self.events += 1
+        self.hand("board.settled()")
+
+    def chain(self, *places: tuple[float, float]) -> None:
+        for place in places:
+            self.click(*place)
+
+    def stroke(self, a: tuple[float, float], b: tuple[float, float]) -> None:
+        """A line from where the button goes down to where it comes up."""
+        self.move(*a)
+        self.page.mouse.down()
+        middle = self.at((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
+        self.page.mouse.move(*middle)
+        self.page.mouse.move(*self.at(*b))
+        self.page.mouse.up()
+        self.events += 1
+        self.hand("board.settled()")
+
+    def key(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+            self.events += 1
+        self.hand("board.settled()")
+
+    def type_of(self, p: int, q: int) -> str:
+        lines = self.look()["drawn"]["lines"]
+        return str(next(ln[3] for ln in lines if {ln[1], ln[2]} == {p, q}))
+
+    def dimension_all(self, exact: dict[int, tuple[float, float, float]]) -> int:
+        """Tab to each missing dimension and type what it is; how many there were."""
+        given = 0
+        self.page.locator("svg.paper").focus()
+        self.key("Tab")
+        while (mark := self.look()["open"]) is not None:
+            k = "XYZ".index(mark["axis"])
+            value = exact[mark["q"]][k] - exact[mark["p"]][k]
+            self.page.keyboard.type(f"{value:.12g}")
+            self.key("Enter")
+            given += 1
+            assert given < 60
+        return given

@@ -1,0 +1,182 @@
+"""The drawing board: pictures by pointer and keys become solids, every gesture in the text."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from board_by_hand import BoardHand
+from moldloft import Sketch
+from page_in_browser import children, needs_page
+
+pytestmark = needs_page
+
+DAM_PAGE = {
+    1: (1, 2), 2: (251, -66), 3: (39, 188), 4: (39, 250), 5: (1, 259),
+    6: (149, 123), 7: (399, 59), 8: (187, 313), 9: (188, 374), 10: (150, 383),
+}  # fmt: skip
+DAM = {
+    1: (0, 0, 0), 2: (70, 0, 0), 3: (16, 0, 72), 4: (16, 0, 90), 5: (0, 0, 90),
+    6: (0, 50, 0), 7: (70, 50, 0), 8: (16, 50, 72), 9: (16, 50, 90), 10: (0, 50, 90),
+}  # fmt: skip
+
+
+@pytest.fixture
+def board(tmp_path: Path, browser: Any) -> Iterator[Callable[..., BoardHand]]:
+    made: list[BoardHand] = []
+
+    def make(text: str = "", name: str = "part.skt") -> BoardHand:
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        made.append(BoardHand(path, browser))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def draw_dam(b: BoardHand) -> None:
+    b.begin("Pictorial")
+    b.chain(*(DAM_PAGE[k] for k in (1, 2, 3, 4, 5, 1)))
+    b.chain(*(DAM_PAGE[k] for k in (1, 6, 7, 8, 9, 10, 6)))
+    for near, far in ((2, 7), (3, 8), (4, 9), (5, 10)):
+        b.stroke(DAM_PAGE[near], DAM_PAGE[far])
+
+
+def test_a_dam_from_nothing(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    texts = [b.text()]
+    assert texts == [""]
+    draw_dam(b)
+    state = b.settle()
+    assert len(state["drawn"]["points"]) == 10 and len(state["drawn"]["lines"]) == 15, b.text()
+    # Two lines are inclined: nobody says so but the hand.
+    found = {frozenset(ln[1:3]): ln[3] for ln in state["drawn"]["lines"]}
+    assert [found[frozenset(e)] for e in ((1, 2), (3, 4), (1, 6), (5, 10))] == ["X", "Z", "Y", "Y"]
+    b.key("v")
+    for p, q in ((2, 3), (7, 8)):
+        (a, c), (d, e) = DAM_PAGE[p], DAM_PAGE[q]
+        b.click((2 * a + d) / 3, (2 * c + e) / 3)
+        b.key("f")
+        assert b.type_of(p, q) == "XZ", b.text()
+    assert b.dimension_all(DAM) == 5
+    state = b.settle()
+    assert state["solid"]["exact"] and state["solid"]["volume"] == pytest.approx(169_200, rel=1e-9)
+    b.key("Enter")
+    b.settle()
+    text = b.text()
+    assert text.rstrip().endswith("GENERATE FACES")
+    # The text says it all.
+    s = Sketch()
+    s.run(text)
+    assert s.volume == pytest.approx(169_200, rel=1e-9)
+    assert s.area == pytest.approx(20_968, rel=1e-9)
+    drawn = [s.parts().lines[k].type for k in sorted(s.parts().lines)]
+    assert sorted(drawn) == sorted(["X"] * 4 + ["Y"] * 5 + ["Z"] * 4 + ["XZ"] * 2)
+    # The model beside it has the body.
+    b.until(lambda: any(i["kind"] == "patch" or "solid" in i["name"] for i in b.hand("items()")))
+    # Each gesture is one step back, to the start, and forth again.
+    steps = 0
+    while b.text():
+        b.key("Control+z")
+        b.settle()
+        steps += 1
+        assert steps < 60
+    # The object, 15 lines, 2 types, 5 dimensions, the body.
+    assert steps == 24 and b.text() == ""
+    for _ in range(steps):
+        b.key("Control+Shift+z")
+    b.settle()
+    assert b.text() == text
+    assert b.events < 150 and not b.faults
+
+
+STEPS = {1: (0, 0), 2: (300, 3), 3: (298, 100), 4: (150, 98), 5: (152, 220), 6: (2, 221)}
+STAIR = {1: (0, 0, 0), 2: (40, 0, 0), 3: (40, 0, 15), 4: (20, 0, 15), 5: (20, 0, 50), 6: (0, 0, 50)}
+
+
+def test_a_section_is_drawn_dimensioned_and_extruded(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    b.begin("Cross section in xz")
+    b.chain(*(STEPS[k] for k in (1, 2, 3, 4, 5, 6, 1)))
+    state = b.settle()
+    assert [ln[3] for ln in state["drawn"]["lines"]] == ["X", "Z"] * 3
+    assert state["solid"]["area"] > 0 and not state["solid"]["exact"]
+    # A point is dragged: its own numbers in the text are others, and one step takes it back.
+    before = b.text()
+    b.key("v")
+    x, y = b.at(*STEPS[6])
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    b.page.mouse.move(x + 8, y)
+    b.page.mouse.move(x, y - 30)
+    b.page.mouse.up()
+    b.settle()
+    moved = b.look()["drawn"]["points"][5]
+    assert moved[1:3] == pytest.approx([2, 251], abs=1.5)
+    assert b.text().count("POINT 6") == 1 and b.text() != before
+    b.key("Control+z")
+    b.settle()
+    assert b.text() == before
+    assert b.dimension_all(STAIR) == 4
+    state = b.settle()
+    assert state["solid"]["exact"]
+    # A value is changed where it stands.
+    b.page.locator("g.mark.given text").filter(has_text=" 15").first.click()
+    b.page.keyboard.type("20")
+    b.key("Enter")
+    b.settle()
+    assert b.text().count("= 20") >= 1 and " = 15\n" not in b.text()
+    b.page.get_by_role("button", name="Extrude").click()
+    b.page.keyboard.type("10")
+    b.key("Enter")
+    b.settle()
+    s = Sketch()
+    s.run(b.text())
+    corners = [s.parts().points[k].at for k in range(1, 7)]
+    assert corners[2][2] == 20
+    ends = zip(corners, [*corners[1:], corners[0]], strict=True)
+    twice = sum(p[0] * q[2] - q[0] * p[2] for p, q in ends)
+    assert s.volume == pytest.approx(twice / 2 * 10, rel=1e-12)
+    assert not b.faults
+
+
+def test_typing_is_drawing_and_a_lost_process_loses_nothing(
+    board: Callable[..., BoardHand],
+) -> None:
+    drawn, typed = board(name="a.skt"), board(name="b.skt")
+    drawn.begin("Pictorial")
+    drawn.chain((0, 0), (200, 0))
+    drawn.key("z", "Escape")
+    drawn.chain((200, 0), (60, 110))
+    drawn.key("Escape")
+    line = typed.page.get_by_role("textbox", name="sketch command")
+    drawn.settle()
+    for command in drawn.text().splitlines():
+        line.fill(command)
+        line.press("Enter")
+        typed.hand("board.settled()")
+    typed.settle()
+    assert typed.text() == drawn.text()
+    own = ("id", "version", "edits")
+    one, two = (
+        {k: v for k, v in x.look()["drawn"].items() if k not in own} for x in (typed, drawn)
+    )
+    assert one == two and len(one["lines"]) == 2
+    # The board's process is killed: the next gesture finds another, with everything.
+    [pid] = [p for p in children(drawn.process.pid) if "board" in arguments(p)]
+    os.kill(pid, signal.SIGKILL)
+    drawn.chain((60, 110), (60, 200))
+    state = drawn.settle()
+    assert len(state["drawn"]["lines"]) == 3 and not drawn.faults
+
+
+def arguments(pid: int) -> list[str]:
+    """The words that a process was started with."""
+    return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
