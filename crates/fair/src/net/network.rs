@@ -7,8 +7,8 @@ use crate::error::check_finite;
 use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided, check_unique,
-    moved, rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided,
+    check_unique, moved, rounding,
 };
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
@@ -577,8 +577,7 @@ impl Network {
                 let off = at[i] - points[i];
                 sum + off.dot(off) / (tolerances[i] * tolerances[i])
             }) / mean;
-            budget =
-                allowed(share, used, owners.len()).unwrap_or(used) * mean;
+            budget = allowed(share, used, owners.len()).unwrap_or(used) * mean;
         }
         let moving = moving(forces, budget);
         Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))
