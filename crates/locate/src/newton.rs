@@ -9,7 +9,7 @@ pub const LONGEST_STEP: f64 = 0.2;
 /// How far a solution may lie outside of [0, 1].
 pub const OUTSIDE: f64 = 1e-6;
 
-/// The most steps.
+/// Maximum number of steps.
 pub const MOST_STEPS: u32 = 50;
 
 /// Residuals below this share of the size count as zero.

@@ -14,7 +14,7 @@ Row = dict[str, Any]
 
 #: Groups of kinds: a title, what they have in common, and their classes.
 KINDS = (
-    ("Points", "Places in space.", ("point",)),
+    ("Points", "Points in space.", ("point",)),
     ("Beads", "Points on a curve.", ("bead",)),
     ("Magnets", "Points on a surface.", ("magnet",)),
     ("Rings", "Points on a snake.", ("ring",)),
@@ -23,7 +23,7 @@ KINDS = (
     ("Surfaces", "S(u, v), both from 0 to 1.", ("surface",)),
     ("Solids", "X(u, v, w), for cells of volume grids.", ("solid",)),
     ("Trimmed surfaces and bodies", "Triangles.", ("mesh",)),
-    ("Planes and frames", "To mirror, cut, project and place with.", ("plane", "frame")),
+    ("Planes and frames", "References for mirror images, sections, projections and positions.", ("plane", "frame")),
     ("Relabels", "Laws of a parameter: t' = r(t).", ("relabel",)),
     ("Contours", "Families of sections.", ("contours",)),
     (

@@ -78,7 +78,7 @@ def liming(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def zhang(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -228,13 +228,13 @@ def fillet(
     width
         Setback on the second body, in model units; on both by default.
     other
-        Setback on the first body, where it differs.
+        Setback on the first body, if different.
     lambda_
         Shape of the blend, between 0 and 1.
     low
         Low corner of a box over which the contact of two fields is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -277,13 +277,13 @@ def rounded(
     width
         Setback on the second body, in model units; on both by default.
     other
-        Setback on the first body, where it differs.
+        Setback on the first body, if different.
     lambda_
         Shape of the blend, between 0 and 1.
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -325,7 +325,7 @@ def transition(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------

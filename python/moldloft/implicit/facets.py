@@ -52,7 +52,7 @@ class Unresolved:
     low: Floats
     """Low corner of a cell, or of a part of one."""
     high: Floats
-    """Its high corner."""
+    """High corner of the box."""
     volume: float
     """How much solid it may hold where the facets have air, or air where they have solid."""
     missed: bool

@@ -29,8 +29,8 @@ pub struct Region<T> {
     pub corners: Option<[Vec3<T>; 2]>,
 }
 
-/// By which part of its size a box that was found is widened, so that nothing lies in its faces. The three
-/// differ, and are no simple fractions, so that the grid falls on no symmetry.
+/// Relative margin of an automatic box, so that the set is strictly inside its faces. The three
+/// differ and are no simple fractions, so that the grid coincides with no symmetry plane.
 const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
 
 /// The box that was given, or one found around the set: the arguments of the set and of the second corner.
@@ -60,7 +60,7 @@ pub fn region<T: Real>(
 /// are a sixteenth of it.
 const LEAST_SIDE: f64 = 0.25;
 
-/// A box around a set, a little wider; `None` for an empty set.
+/// A box around a set, with a margin; `None` for an empty set.
 ///
 /// # Errors
 /// A set without end.
@@ -91,7 +91,8 @@ pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
     }))
 }
 
-/// Where coordinates are compared to see whether they only turn, and how well they agree, of their size.
+/// Sample points at which a change of coordinates is tested for being a rotation, and the relative
+/// tolerance.
 const TURNED_AT: [[f64; 3]; 6] = [
     [0.31, -0.42, 0.17],
     [-1.73, 0.55, 2.61],
@@ -102,8 +103,8 @@ const TURNED_AT: [[f64; 3]; 6] = [
 ];
 const TURNED: f64 = 1e-9;
 
-/// The box about the z axis in which a set stays when its coordinates are replaced by ones that keep heights and distances from
-/// the axis; `None` for others, and for a set without end.
+/// The box about the z axis that contains a set after a change of coordinates that preserves
+/// heights and distances from the axis; `None` for other changes, and for an unbounded set.
 pub(crate) fn box_of_turns<T: Real>(
     set: &Set<T>,
     coordinates: &[crate::Primitive<T>; 3],
