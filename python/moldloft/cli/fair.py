@@ -261,7 +261,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def _refuse_curves_only(options: argparse.Namespace) -> None:
-    """What single curves have, where it would be dropped without a word."""
+    """Options of single curves; an error where they would be ignored."""
     for name, given in (
         ("--shape", options.shape),
         ("--release", options.release),
@@ -386,7 +386,7 @@ def _ends(options: argparse.Namespace) -> Any:
 
 
 class _Source(abc.ABC):
-    """What is faired: where it came from, and how it goes back."""
+    """Data to fair: its source, and how the result is written."""
 
     title = ""
 
@@ -415,7 +415,7 @@ def _numbers(path: str | None) -> list[float] | None:
 
 
 def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
-    """The curves that this one runs on from."""
+    """The curves that this one continues."""
     from moldloft.fairing import Spline
     from moldloft.fairing.files import read_points
 

@@ -152,7 +152,7 @@ def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
     l2
         The second body.
     a
-        Setback on the second body: where the rail meets it.
+        Setback on the second body: distance to the rail.
     b
         Setback on the first body; by default the same.
 
@@ -239,7 +239,7 @@ def fillet(
     Returns
     -------
     Blend or Set
-        What can be combined further.
+        A shape for further combination.
     """
     from moldloft.implicit.sets import Set
 
@@ -288,7 +288,7 @@ def rounded(
     Returns
     -------
     Blend
-        What can be combined further.
+        A shape for further combination.
     """
     return _blended("round", l1, l2, _setbacks(width, other), lambda_, _box(low, high))
 
@@ -330,7 +330,7 @@ def transition(
     Returns
     -------
     Blend
-        What can be combined further.
+        A shape for further combination.
     """
     from moldloft.implicit.sets import Set
 
