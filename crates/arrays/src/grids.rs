@@ -53,7 +53,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
                 .expected(format!("a first cell of at most {fits:.3e}"))
                 .help("make the first cell smaller, or the points beside the corner wider"),
             _ => with("folded-grid").expected("unfolded cells").help(
-                "march less far, smooth more, space the wall more evenly there, or take the layers below with \
+                "reduce the distance, increase the smoothing, even out the spacing of the wall there, or take the layers below with \
                  stop = \"keep\"; layers lie on the side of s_i x s_j: s[, ::-1] marches off the other one",
             ),
         },

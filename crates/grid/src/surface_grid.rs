@@ -155,7 +155,7 @@ impl<T: Real> SurfaceGrid<T> {
     }
 
     /// Refuses edges that are not finite, or that leap at a corner: an array holds one point there,
-    /// so an edge that was set without minding the other ends in a leap.
+    /// so an edge that was set inconsistently has a jump at the common corner.
     ///
     /// The first step of an edge is a leap when it is more than 25 times each of the next two; an
     /// edge that is a point but for its end is one, too.

@@ -52,7 +52,7 @@ impl<const N: usize> NewtonResult<N> {
 }
 
 impl UnknownBounds {
-    /// A shape's parameter: [0, 1] and a hair.
+    /// A shape's parameter: [0, 1] widened by `OUTSIDE`.
     pub const PARAMETER: UnknownBounds =
         UnknownBounds { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
 

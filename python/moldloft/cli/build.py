@@ -64,7 +64,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     files.add_argument(
         "--keep-going",
         action="store_true",
-        help="write what can be written: the other formats, and the model without the objects that "
+        help="write as much as possible: the other formats, and the model without the objects that "
         "could not be made, which are named; the status is still 1",
     )
     add_force(files)

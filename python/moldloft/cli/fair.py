@@ -70,7 +70,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "data, squared third differences of networks, squared second differences otherwise",
     )
     parser.add_argument(
-        "--bound", choices=["data", "curve", "points"], help="what the tolerance is a bound on"
+        "--bound", choices=["data", "curve", "points"], help="quantity bounded by the tolerance"
     )
     parser.add_argument(
         "--breaks",
@@ -135,7 +135,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=words.vector,
         help="points stay in the planes across this direction",
     )
-    parser.add_argument("--box", action="store_true", help="limit each coordinate by itself")
+    parser.add_argument("--box", action="store_true", help="limit each coordinate separately")
     for word, place, what in (
         ("through", "T", "the curve passes through X,Y[,Z] at T, or the surface at U,V"),
         ("tangent", "T", "the curve runs along X,Y[,Z] at T"),

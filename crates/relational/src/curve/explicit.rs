@@ -63,9 +63,9 @@ impl<T: Real> Build<T> for XCurve<T> {
             let fault =
                 faults::of_interpolation(error, "point", [Self::POINTS, Self::AXIS, Self::ENDS]);
             match error {
-                InterpolationError::NotClosed { .. } => {
-                    fault.help("an explicit spline never closes: its axis runs on")
-                }
+                InterpolationError::NotClosed { .. } => fault.help(
+                    "an explicit spline cannot be closed: its coordinate along the axis is monotonic",
+                ),
                 _ => fault,
             }
         })?;

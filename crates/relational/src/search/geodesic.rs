@@ -185,7 +185,7 @@ fn length<T: Real>(sheet: &SeamlessSurface<T>, places: &[[f64; 2]]) -> f64 {
 fn no_convergence() -> CallError {
     CallError::new("no-convergence", "no geodesic was found between the magnets")
         .expected("magnets with a smooth stretch of the surface between them")
-        .found("an iteration from the straight line in u and v that came to no end")
+        .found("an iteration from the straight line in u and v that did not converge")
         .help("put magnets between them, and join the geodesics by PolySnake")
 }
 

@@ -141,7 +141,7 @@ fn planes<T: Real>(
             break;
         }
     }
-    Err(CallError::new("no-intersection", "the search for the common point came to no end")
+    Err(CallError::new("no-intersection", "the search for the common point did not converge")
         .expected("shapes that have a point in common near the start")
         .found(format!("a last step of {last:.3e}"))
         .help("give a point nearer to it"))

@@ -208,7 +208,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
         let factors = Vec3::new(sx, sy, sz);
         let zeros = factors.re().to_array().iter().filter(|f| **f == 0.0).count();
         if zeros > 1 {
-            return Err(CallError::new("no-area", "two factors of 0 leave no surface")
+            return Err(CallError::new("no-area", "two zero factors: the surface has no area")
                 .expected("at most one factor of 0")
                 .found(format!("{zeros} factors of 0"))
                 .in_field(Self::SX));
