@@ -44,10 +44,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--cg", metavar="X,Y,Z", type=_numbers(3), help="centre of gravity; frees trim and heel"
     )
     parser.add_argument(
-        "--trim", metavar="DEGREES", type=float, default=0.0, help="positive: larger draft at large x"
+        "--trim", metavar="DEGREES", type=float, default=0.0, help="positive: deeper at large x"
     )
     parser.add_argument(
-        "--heel", metavar="DEGREES", type=float, default=0.0, help="positive: larger draft at large y"
+        "--heel", metavar="DEGREES", type=float, default=0.0, help="positive: deeper at large y"
     )
     parser.add_argument(
         "--fixed",
