@@ -48,7 +48,7 @@ impl fmt::Display for GridSide {
 /// Below this share of the size two points count as one: rounding of coordinates, and no more.
 pub(crate) const SAME: f64 = 1e-10;
 
-/// A first step of an edge that is so many times the next ones is a gap, not a step.
+/// Ratio of the first step of an edge to the next above which it is a gap.
 const LEAP: f64 = 25.0;
 
 impl<T: Real> SurfaceGrid<T> {

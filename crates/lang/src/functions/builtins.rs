@@ -367,7 +367,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("c", "curve or surface …", "Values to write."),
+            ("c", "curve or surface …", "Curves or surfaces to write."),
         ],
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
     },
