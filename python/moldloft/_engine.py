@@ -29,7 +29,7 @@ def command(*arguments: str) -> list[str]:
 
 
 def main() -> None:
-    """Answers the parent until it goes.
+    """Answers the parent until the connection closes.
 
     The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``, or the same for
     ``board``, which draws.

@@ -14,7 +14,7 @@ __all__ = ["Adapted"]
 
 
 class Adapted:
-    """What :mod:`moldloft.adapters` does, as methods; packages are imported on first use."""
+    """Functions of :mod:`moldloft.adapters` as methods; packages are imported on first use."""
 
     def to_pyvista(
         self,
@@ -150,7 +150,7 @@ class Adapted:
         lids
             Include lids.
         name
-            What Capytaine calls the body.
+            Name of the body in Capytaine.
         tags
             Only patches with one of these tags; by default all.
         centre

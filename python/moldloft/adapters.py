@@ -94,9 +94,10 @@ def to_pyvista(
     source
         A model, or the mesh of one.
     tags
-        Of a model: only the patches with one of these tags.
+        Tags of the patches to include; models only.
     whole, tolerance, angle
-        Of a model: both sides, and how near panels are to their surfaces; see :meth:`Model.mesh`.
+        Both halves of a symmetric model, and accuracy of the panels; models only, see
+        :meth:`Model.mesh`.
 
     Returns
     -------
@@ -157,7 +158,7 @@ def to_trimesh(
     Parameters
     ----------
     source, tags, whole, tolerance, angle
-        As for :func:`to_pyvista`.
+        See :func:`to_pyvista`.
 
     Returns
     -------
@@ -192,7 +193,7 @@ def to_meshio(
     Parameters
     ----------
     source, tags, whole, tolerance, angle
-        As for :func:`to_pyvista`.
+        See :func:`to_pyvista`.
 
     Returns
     -------
@@ -229,9 +230,9 @@ def to_capytaine(
 ) -> Any:
     """A ``capytaine.FloatingBody`` of the panels below z = 0, in metres and kilograms.
 
-    What is handed over is the GDF of panel codes, cut at z = 0: normals point into the water,
-    planes of symmetry stay such. Lengths are converted into metres, the unit of Capytaine's
-    defaults of gravity and density.
+    The mesh is the GDF for panel codes, cut at z = 0: normals point into the water, planes of
+    symmetry are kept. Lengths are converted to metres, the unit of Capytaine's defaults of gravity
+    and density.
 
     Parameters
     ----------
@@ -249,8 +250,8 @@ def to_capytaine(
         The mass in kilograms; by default that of the model's weights. Without either Capytaine
         takes the displaced mass.
     dofs
-        The six degrees of freedom of a rigid body, rotations about the centre of gravity, or about
-        the origin where none is known.
+        The six degrees of freedom of a rigid body, with rotations about the centre of gravity, or
+        about the origin if it is unknown.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """Wrong arguments of the API: an error of ours that names the argument, whatever noticed it first.
 
-Nothing is checked before a call, so that right calls cost nothing. When one fails with an error of
-Python or NumPy, its arguments are compared with their annotations; the first that does not fit is
-named. When all fit, the error goes on as it is.
+Nothing is checked before a call, so that valid calls cost nothing. When a call fails with an error
+of Python or NumPy, its arguments are compared with their annotations, and the first mismatch is
+named. Without a mismatch the original error propagates.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def _misspelt(
 
 
 def _said(function: Callable[..., Any], error: Exception) -> tuple[str, str] | None:
-    """What a function of ours says of its argument by itself, in a ``raise`` of its own."""
+    """Message of a function of this package about its argument, from its own ``raise``."""
     if isinstance(error, (OverflowError, UnicodeError)):
         # Some number or text within an argument, which no argument is as a whole.
         return "", f"`{function.__qualname__}`: {error}"
@@ -201,7 +201,7 @@ def _fits(value: Any, written: str, names: Mapping[str, Any]) -> bool:
 
 
 def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
-    """Whether a value may be of a kind; true for kinds that are not known here."""
+    """True if a value may be of a kind; also for unknown kinds."""
     head, _, inner = kind.partition("[")
     if kind == "None":
         return value is None
@@ -236,7 +236,7 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
 
 
 def _thing(head: str, names: Mapping[str, Any]) -> Any:
-    """What an annotation names; modules import some of these for the checker alone."""
+    """Object of an annotation; modules import some of these for the type checker only."""
     if head in names:
         return names[head]
     if head.startswith("_core."):
@@ -281,7 +281,7 @@ def _is_scalar(value: Any) -> bool:
 
 
 def _shown(value: Any) -> str:
-    """What was found, short."""
+    """Short text of the value found."""
     kind = type(value).__name__
     shape = getattr(value, "shape", None)
     if isinstance(shape, tuple):

@@ -79,7 +79,7 @@ def cut(blocks: Blocks, every: int = 0) -> list[Hex]:
     blocks
         The blocks.
     every
-        Cut after so many cells, too; 0: only where it must be.
+        Maximum number of cells between cuts; 0: only the cuts that blockMesh requires.
     """
     cuts: Cuts = []
     for block in blocks.blocks:
@@ -168,8 +168,8 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
     blocks
         The blocks.
     every
-        Cut the blocks after so many cells, too, so that what blockMesh interpolates is closer to
-        the grid; 0: only where it must be.
+        Maximum number of cells between cuts of the blocks, for a closer interpolation by blockMesh;
+        0: only the required cuts.
     """
     points = blocks.vertices
     if not np.isfinite(points).all():
@@ -242,7 +242,7 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
 
 
 def encode(blocks: Blocks, title: str = "") -> bytes:
-    """The dictionary, cut only where it must be; it has no place for a title.
+    """The dictionary with the required cuts only; the format has no title.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def _word(name: str) -> str:
 
 
 def _graded(lengths: NDArray[np.float64]) -> str:
-    """The gradings of an edge: one number when even, else a share of the length for each cell."""
+    """Gradings of an edge: one number if uniform, else the fraction of the length per cell."""
     total = float(lengths.sum())
     if total == 0.0 or np.ptp(lengths) <= 1e-13 * total:
         return "1"

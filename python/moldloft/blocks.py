@@ -42,7 +42,7 @@ class Block:
     """Names of its faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: of the surface that a face is,
     or the solid's with the face's."""
     cells: int
-    """How many cells it has."""
+    """Number of cells."""
     volume: float
     """Its volume, the sum of its cells'."""
     folded: int
@@ -54,7 +54,7 @@ class Block:
     worst_cell: tuple[int, int, int]
     """The cell with the least one."""
     worst_at: tuple[float, float, float]
-    """Where that is."""
+    """Position of the worst cell."""
     aspect: float
     """The largest ratio of a cell's edges."""
     indices: NDArray[np.uint32]
@@ -81,8 +81,9 @@ class Interface:
     donor_end: tuple[int, int, int]
     """The donor's vertex that is ``end``."""
     transform: tuple[int, int, int]
-    """For each axis of the block, the donor's axis (from 1) that runs along it, negative if
-    against; as in CGNS."""
+    """For each axis of the block, the parallel axis of the donor (from 1), negative if opposite; as
+    in CGNS.
+    """
 
     def reversed(self) -> Interface:
         """The same seen from the donor."""
@@ -123,8 +124,7 @@ class Boundary:
 class Blocks:
     """Hexahedra of all shown solids of a model, at one state of it.
 
-    Vertices that solids share are one vertex. Divisions that a solid leaves open (0) are those of
-    its neighbours.
+    Vertices common to solids are single. Open divisions (0) of a solid are those of its neighbours.
 
     Examples
     --------
@@ -149,7 +149,7 @@ class Blocks:
         """The unit of the positions, as ``"m"``; empty where the model has none."""
         summary = core.summary()
         self.cells: int = summary["cells"]
-        """How many cells there are."""
+        """Number of cells."""
         self.volume: float = summary["volume"]
         """The volume of all cells."""
         self.positive: bool = summary["positive"]
@@ -173,7 +173,7 @@ class Blocks:
 
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
-        """Where blocks meet, by the identity of their vertices; each once."""
+        """Interfaces of blocks, by the identity of their vertices; each once."""
         return tuple(
             Interface(*_side(own), *_side(donor), (transform[0], transform[1], transform[2]))
             for own, donor, transform in self._core.interfaces()

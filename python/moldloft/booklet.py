@@ -88,9 +88,9 @@ def booklet(
     rule, wind
         The criteria, as for :meth:`moldloft.stability.Stability.assess`.
     drafts
-        Of the hydrostatic table; by default eight about the draught of the loading.
+        Drafts of the hydrostatic table; default: eight about the draft of the loading.
     heels
-        Of the righting arms, in radians; by default 0 to 90 degrees by 5.
+        Heels of the righting arms, in radians; default: 0 to 90 degrees in steps of 5.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def _parts(
     drafts: Sequence[float],
     heels: Sequence[float],
 ) -> list[_Part]:
-    """What the booklet of a loading holds."""
+    """Contents of the booklet of a loading."""
     from moldloft.stability import cross_curves
 
     row = stability.upright
@@ -180,7 +180,7 @@ def write_booklet(
     path
         The file. PDF needs reportlab (``pip install 'moldloft[plot]'``).
     options
-        As for :func:`booklet`.
+        See :func:`booklet`.
 
     Returns
     -------
@@ -210,7 +210,7 @@ def write_booklet(
 
 
 def _short(value: float | None) -> str:
-    """Six digits; what rounding leaves of a zero is one."""
+    """Six digits; the rounding error of a zero is printed as zero."""
     if value is None:
         return "-"
     return "0" if abs(value) < 1e-11 else f"{value:.6g}"

@@ -1,4 +1,4 @@
-"""What a run may use: memory, steps, objects, seconds."""
+"""Limits of a run: memory, steps, objects, seconds."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _MOST_COUNT = (1 << 63) - 1
 
 
 class Limits(NamedTuple):
-    """What a run may use before it ends with an error.
+    """Limits of a run, beyond which it ends with an error.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ def limits(
     objects: float | None = None,
     seconds: float | None = None,
 ) -> Limits:
-    """The limits of everything that this process runs; what is given is set.
+    """The limits of all runs of this process; given arguments are set.
 
     Parameters
     ----------
@@ -130,9 +130,8 @@ def parsed(text: str) -> dict[str, str | int | float]:
 def within_limits() -> Iterator[None]:
     """Holds code of Python, such as readers of foreign files, to the limits of time and memory.
 
-    It is ended as Ctrl-C would end it: what it calls of other libraries is held as well, but not
-    within a call that is no Python. Memory is that by which the process grows, where the system
-    says it.
+    The call ends as by Ctrl-C, including its calls of other libraries, except inside compiled code.
+    Memory is the growth of the process, where the system reports it.
 
     Raises
     ------
@@ -161,7 +160,7 @@ class _Watch(threading.Thread):
     _LOOK = 0.02
     """Seconds between two looks."""
     _AGAIN = 1.0
-    """Seconds after which code that went on all the same is interrupted again."""
+    """Seconds after which code that continues is interrupted again."""
 
     def __init__(self, allowed: Limits) -> None:
         super().__init__(daemon=True)

@@ -1,8 +1,8 @@
 """Models written in Python: functions whose calls declare objects.
 
-What a model function does is written down as a program of the language, its parameters and the
-arithmetic on them included. So a model made in Python has everything that a text has: only what
-changed is evaluated again, and derivatives are exact.
+A model function is recorded as a program of the language, with its parameters and their arithmetic.
+A model made in Python is therefore equivalent to a text: only changed objects are evaluated again,
+and derivatives are exact.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ class Builder:
         Raises
         ------
         Error
-            When none is running.
+            If no model function is running.
         """
         builder = cls._current.get()
         if builder is None:
@@ -184,7 +184,7 @@ class Builder:
         Returns
         -------
         Handle
-            What later objects are made of.
+            Objects that later statements refer to.
 
         Raises
         ------
@@ -220,7 +220,7 @@ class Builder:
         Returns
         -------
         FieldShape
-            What sets are made of.
+            Primitives of sets.
 
         Raises
         ------
@@ -260,7 +260,7 @@ class Builder:
         Returns
         -------
         SetShape
-            What bodies are made of.
+            Sets of bodies.
 
         Raises
         ------
@@ -300,7 +300,7 @@ class Builder:
         name
             The name of the parameter.
         default
-            Its value when none is given.
+            Default value.
         low
             The least value.
         high
@@ -347,7 +347,7 @@ class Builder:
         Raises
         ------
         ModelError
-            When it has an error; places are those of :attr:`text`.
+            If it has an error; positions refer to :attr:`text`.
 
         Examples
         --------
@@ -379,7 +379,7 @@ class Range:
     """A parameter's default and range; made by :func:`param`."""
 
     default: float
-    """The value when none is given."""
+    """Default value."""
     low: float | None = None
     """The least value."""
     high: float | None = None
@@ -396,7 +396,7 @@ def param(
     Parameters
     ----------
     default
-        Its value when none is given.
+        Default value.
     low
         The least value.
     high

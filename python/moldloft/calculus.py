@@ -28,11 +28,11 @@ def parameter(name: str, values: ArrayLike, beyond: bool) -> Floats:
     Parameters
     ----------
     name
-        What messages call the parameter.
+        Name of the parameter in messages.
     values
         The parameters.
     beyond
-        Whether they may be outside [0, 1], where formulas are continued.
+        True to allow values outside [0, 1], where formulas are continued.
     """
     at = np.asarray(values, dtype=np.float64)
     if not np.isfinite(at).all():
@@ -47,7 +47,7 @@ def parameter(name: str, values: ArrayLike, beyond: bool) -> Floats:
 
 
 class CurveCalculus:
-    """What curves and snakes have at parameters besides their points."""
+    """Derivatives and lengths of curves and snakes at parameters."""
 
     if TYPE_CHECKING:
         name: str
@@ -87,7 +87,7 @@ class CurveCalculus:
         return np.asarray(found[order - 1]).reshape(*at.shape, 3)
 
     def tangent(self, t: ArrayLike, *, beyond: bool = False) -> Floats:
-        """Unit tangents, ``(…, 3)``; zero where the curve stands still.
+        """Unit tangents, ``(…, 3)``; zero where the speed is zero.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class CurveCalculus:
         return _unit(self.derivative(t, beyond=beyond))
 
     def curvature(self, t: ArrayLike, *, beyond: bool = False) -> Floats:
-        """Curvatures, ``(…)``, in 1 over the model's unit; ``nan`` where the curve stands still.
+        """Curvatures, ``(…)``, in 1 over the model's unit; ``nan`` where the speed is zero.
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class CurveCalculus:
 
 
 class SurfaceCalculus:
-    """What surfaces have at parameters besides their points."""
+    """Derivatives, normals and curvatures of surfaces at parameters."""
 
     if TYPE_CHECKING:
         name: str

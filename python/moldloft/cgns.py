@@ -42,7 +42,7 @@ class Zone:
     tag: str
     """Its role."""
     vertices: NDArray[np.uint32]
-    """Vertices, ``(nu, nv)``; patches that meet share numbers."""
+    """Vertices, ``(nu, nv)``; adjacent patches use common numbers."""
 
     def edge(self, side: int) -> NDArray[np.uint32]:
         """The vertices of edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0).
@@ -90,7 +90,7 @@ class Interface:
 
     @property
     def transform(self) -> tuple[int, int]:
-        """For each index of the zone, the donor's index that runs along it, negative if against."""
+        """For each index of the zone, the parallel index of the donor, negative if opposite."""
         along, across = self.side % 2, 1 - self.side % 2
         donor_along, donor_across = self.donor_side % 2, 1 - self.donor_side % 2
         steps = [0, 0]
@@ -139,9 +139,9 @@ def unique(name: str, taken: set[str]) -> str:
 
 
 def interfaces(zones: Sequence[Zone]) -> list[Interface]:
-    """All runs of edges that zones share, each seen from both sides.
+    """All common edge segments of zones, each from both sides.
 
-    Edges meet where they share vertices by identity, never because positions look alike.
+    Edges join by identity of their vertices, never by equal positions.
 
     Parameters
     ----------
@@ -200,10 +200,10 @@ def _runs(
 def write(model: Model, title: str) -> bytes:
     """The file: surface zones with families, interfaces, and the free edges as boundaries.
 
-    Each zone belongs to the family of its surface's name. Edges, or the runs of them, that meet no
-    other are boundaries named ``u0``, ``u1``, ``v0``, ``v1`` (``u0_1``, ``u0_2`` where they are
-    several): symmetry planes where they lie in one of the model's, else without a type. Interfaces
-    are written from both sides. The base has the model's unit of length.
+    Each zone belongs to the family of its surface's name. Edges, or segments of them, without a
+    neighbour are boundaries named ``u0``, ``u1``, ``v0``, ``v1`` (``u0_1``, ``u0_2`` for several):
+    symmetry planes if they are in one of the model's, else without a type. Interfaces are written
+    from both sides. The base has the model's unit of length.
 
     Parameters
     ----------
@@ -234,15 +234,14 @@ def write(model: Model, title: str) -> bytes:
 def weld(points: NDArray[np.float64], tolerance: float) -> NDArray[np.uint32]:
     """A number for each point, the same for points no further apart than the tolerance.
 
-    Chains of near points become one: what is welded to a point is welded to all that it is welded
-    to.
+    Chains of close points become one point: welding is transitive.
 
     Parameters
     ----------
     points
         Points ``(n, 3)``.
     tolerance
-        A length below which two places count as one.
+        Distance below which two points coincide.
 
     Examples
     --------
@@ -280,8 +279,8 @@ def write_grids(
 ) -> bytes:
     """The file of surfaces of points ``(ni, nj, 3)``: zones, interfaces, free edges as boundaries.
 
-    Edges meet where their points coincide, within ``tolerance`` times the size of all. What meets
-    one to one becomes an interface, seen from both sides; of edges without length (poles) none.
+    Edges join where their points coincide, within ``tolerance`` times the size of the whole.
+    One-to-one matches become interfaces, from both sides, except edges of zero length (poles).
 
     Parameters
     ----------
@@ -292,7 +291,7 @@ def write_grids(
     title
         A title, for formats that have one.
     tolerance
-        A length below which two places count as one.
+        Distance below which two points coincide.
     """
     try:
         import h5py
@@ -341,7 +340,7 @@ _LENGTHS = {"m": "Meter", "cm": "Centimeter", "mm": "Millimeter", "ft": "Foot", 
 
 
 def begin(file: Any, title: str, dimensions: int, length: str = "") -> Any:
-    """The base of a new file, of cells of so many dimensions in space.
+    """The base of a new file, with the dimensions of its cells and of space.
 
     Coordinates are dimensional where the unit of length is one of SIDS, of another unit where it is
     not, and of an unknown one where the model has none.

@@ -37,7 +37,7 @@ class Node:
     class_: str
     """Its class, which decides the colour."""
     parents: Sequence[str]
-    """What it depends on directly."""
+    """Direct dependencies."""
     ok: bool = True
     """False when it failed; drawn with a red frame."""
 
@@ -78,7 +78,7 @@ def layers(nodes: Sequence[Node]) -> list[list[Node]]:
 def _sort_by_neighbours(
     order: Sequence[list[Node]], rows: Sequence[list[Node]], neighbours: Mapping[str, list[str]]
 ) -> None:
-    """Sorts each row by the mean place of its neighbours (Sugiyama, Tagawa and Toda 1981)."""
+    """Sorts each row by the mean position of its neighbours (Sugiyama, Tagawa and Toda 1981)."""
     place = {node.name: k / max(len(row), 1) for row in rows for k, node in enumerate(row)}
     for row in order:
         mean = {

@@ -1,4 +1,4 @@
-"""How models, objects, meshes and figures show in a notebook: HTML and SVG that need no server."""
+"""Display of models, objects, meshes and figures in a notebook: HTML and SVG without a server."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _picture(data: bytes, width: int) -> str:
 
 
 def _is_points(value: object) -> bool:
-    """Whether a variable is an array of points that are not all one."""
+    """True if a variable is an array of distinct points."""
     import numpy as np
 
     array = np.asarray(value) if isinstance(value, np.ndarray) else np.empty(0)
@@ -142,7 +142,7 @@ def object_html(thing: Object) -> str:
 
 
 def _lines(thing: Object) -> list[Floats]:
-    """What is drawn of an object: the curve, or lines of even u and v of the surface."""
+    """Lines that represent an object: the curve, or lines of constant u and v of the surface."""
     import numpy as np
 
     t = np.linspace(0, 1, _POINTS)

@@ -26,15 +26,15 @@ class Error(Exception):
     Parameters
     ----------
     message
-        What to print: the rendered diagnostics, where there are any.
+        Text to print: the rendered diagnostics, if there are any.
     diagnostics
         The same facts as data.
 
     Attributes
     ----------
     diagnostics : tuple of Diagnostic
-        Each with id, severity, message, places, help. Empty when the fault has no place in a
-        model, such as a full disk.
+        Each with id, severity, message, places, help. Empty for a fault outside a model, such as a
+        full disk.
 
     Examples
     --------
@@ -111,7 +111,7 @@ class Recorded:
 
     @property
     def is_error(self) -> bool:
-        """Whether it is an error."""
+        """True for an error."""
         return self._data.get("severity") == "error"
 
     def __getattr__(self, name: str) -> Any:
@@ -140,7 +140,7 @@ class ModelError(Error, ValueError):
 
 
 class FairingError(Error, ValueError):
-    """Something cannot be faired as asked.
+    """The data cannot be faired under the given conditions.
 
     Attributes
     ----------
@@ -169,7 +169,7 @@ class FileError(Error, OSError):
 
 
 class MissingPackageError(Error, ImportError):
-    """A package of an extra is not installed, or another one is in its place."""
+    """A package of an extra is not installed, or another package provides its module."""
 
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         Error.__init__(self, message, diagnostics)
@@ -183,12 +183,11 @@ class FormatError(Error, ValueError):
     format : str
         The format.
     place : str
-        Of a file that is read, what ``number`` counts: ``line`` and ``block`` from 1, ``byte`` from
-        0; else empty.
+        Unit of ``number`` for a file: ``line`` and ``block`` from 1, ``byte`` from 0; else empty.
     number : int
         Where.
     expected, found : str
-        What should be there, and what is.
+        Expected and found content.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What each diagnostic means and how to remove its cause: ``moldloft doc ID``, docs/diagnostics.md.
+"""Meaning of each diagnostic and removal of its cause: ``moldloft doc ID``, docs/diagnostics.md.
 
 `docs/diagnostics.py` joins them with programs that are run.
 """

@@ -569,7 +569,7 @@ class SetShape(Shape):
 
 
 class AnyShape(Shape):
-    """A value whose class only the language knows: what ``max`` or ``translated`` give."""
+    """A value whose class only the language knows, such as that of ``max`` or ``translated``."""
 
     def __add__(self, other: object) -> Any:
         return self._binary(other, "+")

@@ -1,4 +1,4 @@
-"""What a model is written as, and writing it whole or not at all."""
+"""Formats of a model's files, and writing of whole files."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def file_name(stem: str, format: str) -> str:
 
 
 def ending(path: Path) -> str:
-    """What the name of a file says of its format: its ending, or the format of a longer one.
+    """Format by the name of a file: its ending, or the format of a longer one.
 
     Parameters
     ----------

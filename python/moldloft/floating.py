@@ -54,10 +54,10 @@ class Floating:
         by: Sequence[str] = (),
         accuracy: float = 1e-6,
     ) -> Hydrostatics:
-        """What the model displaces at a given draft, trim and heel, and how stiffly it floats.
+        """Hydrostatics of the model at a given draft, trim and heel: displacement and stability.
 
-        The figures are integrals over the surfaces; their bounds are in ``bounds``. What the panels
-        displace is in :meth:`panel_figures`.
+        The figures are integrals over the surfaces, with bounds in ``bounds``.
+        :meth:`panel_figures` has the displacement of the panels.
 
         Parameters
         ----------
@@ -146,14 +146,13 @@ class Floating:
         cg
             The centre of gravity in the model's axes.
         free
-            What is sought besides the draft: ``"trim"``, ``"heel"``, or both, which is the default
-            where ``cg`` is given. A model mirrored in y = 0 with its centre of gravity there stays
-            upright by default; where that is unstable, the attitude is that of loll, and ``lolls``
-            is true.
+            Unknowns besides the draft: ``"trim"``, ``"heel"``, or both (the default with ``cg``). A
+            model mirrored in y = 0 with its centre of gravity there is upright by default; if that
+            is unstable, the attitude is that of loll, and ``lolls`` is true.
         trim, heel
             Kept where they are not free; else where the search begins, in radians.
         density, gravity, sides, by, accuracy
-            As for :meth:`hydrostatics`. Derivatives are those of the whole solution.
+            See :meth:`hydrostatics`. Derivatives are those of the whole solution.
 
         Returns
         -------
@@ -231,8 +230,7 @@ class Floating:
         density
             ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
         gravity
-            Acceleration, in the model's units; by default that of the earth where units are
-            known.
+            Acceleration, in the model's units; default: that of the earth, if units are known.
         sides
             ``"both"`` counts a mirrored model with its image, ``"one"`` alone.
         by
@@ -287,9 +285,9 @@ class Floating:
         cg
             The centre of gravity in the model's axes.
         trim, free_trim
-            Whether the body trims freely at each heel, else the trim it keeps.
+            True for free trim at each heel; False for constant trim.
         density, gravity, by, accuracy
-            As for :meth:`hydrostatics`.
+            See :meth:`hydrostatics`.
 
         Returns
         -------
@@ -400,7 +398,7 @@ class Floating:
         return unit, Units(unit).metres
 
     def tonnes(self, mass: float) -> float | None:
-        """A mass of the model in tonnes; ``None`` where its unit is not known.
+        """A mass of the model in tonnes; ``None`` if its unit is unknown.
 
         Parameters
         ----------
@@ -459,11 +457,11 @@ class Floating:
         density
             The water, as for :meth:`hydrostatics`.
         trim, free_trim
-            Whether the body trims freely at each heel, else the trim it keeps.
+            True for free trim at each heel; False for constant trim.
         openings
             Points by name through which water enters: the angle of flooding.
         gravity, accuracy
-            As for :meth:`hydrostatics`.
+            See :meth:`hydrostatics`.
 
         Returns
         -------
@@ -535,7 +533,7 @@ class Floating:
         Parameters
         ----------
         stations
-            Places along x, in model units.
+            Positions along x, in model units.
         levels
             Heights of the water, in model units.
         accuracy
@@ -562,7 +560,7 @@ class Floating:
         return np.array(areas, dtype=np.float64)[..., 0]
 
     def panel_figures(self, level: float = 0.0) -> dict[str, float]:
-        """What the panels displace below an upright level: what a panel code computes with.
+        """Displacement of the panels below an upright level, as seen by a panel code.
 
         ``volume``, ``wetted_area`` and ``waterplane_area``; those of the shape are in
         :meth:`hydrostatics`.

@@ -1,4 +1,4 @@
-"""The table of formats: what a model is written as.
+"""The table of formats that models are written in.
 
 The rows are those of the Rust crate ``export``, and those of the formats that Python writes:
 :data:`PYTHON_ROWS`, each with the function that makes its file.
@@ -36,7 +36,7 @@ class Format:
     suffix: str = ""
     """The end of its files' names; the name where it is empty."""
     other_suffix: str = ""
-    """Another end that its files are known by, which does not tell the format."""
+    """Another usual ending of its files, which does not determine the format."""
     aliases: tuple[str, ...] = ()
     """Other names that mean it."""
     holds: str = "panels"
@@ -45,7 +45,7 @@ class Format:
     symmetry: str = ""
     """The planes of symmetry that a file can name: ``y``; ``y, xy``; or ``x, y, xy``."""
     lids: bool = False
-    """Lids are written only when they are asked for."""
+    """Lids are written only on request."""
     immersed: bool = False
     """The immersed part alone can be written."""
     text: bool = False
@@ -68,20 +68,20 @@ class Format:
 
     @property
     def plain_panels(self) -> bool:
-        """Whether the files hold panels and cannot name planes of symmetry.
+        """True if the files hold panels and cannot name planes of symmetry.
 
-        Of a symmetric model they hold one side, or the whole when it is asked for.
+        Files of a symmetric model hold one half, or the whole on request.
         """
         return self.holds.startswith("panels") and not self.symmetry and not self.writer
 
     @property
     def panel_code(self) -> bool:
-        """Whether a panel code reads the files."""
+        """True if a panel code reads the files."""
         return self.immersed
 
     @property
     def volume(self) -> bool:
-        """Whether the files hold the cells of solids."""
+        """True if the files hold the cells of solids."""
         return self.holds == "volumes"
 
     def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
@@ -202,7 +202,7 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     Raises
     ------
     FormatError
-        When there is none of that name, or several.
+        If there is no format of that name, or several.
 
     Examples
     --------

@@ -37,7 +37,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Plot3DVariant:
-    """What Plot3D leaves open; the reader finds it out, the writer takes it."""
+    """Variant of a Plot3D file; detected by the reader, chosen for the writer."""
 
     layout: str = "stream"
     """``text``, ``stream`` (plain binary, as C writes it) or ``records`` (Fortran)."""
@@ -66,7 +66,7 @@ class Aerofoil:
     nose: int
     """Index of the nose."""
     listing: str
-    """How the file listed the points: ``selig`` or ``lednicer``."""
+    """Order of the points in the file: ``selig`` or ``lednicer``."""
 
     @property
     def upper(self) -> NDArray[np.float64]:
@@ -123,7 +123,7 @@ def read_plot3d(
     blocks
         An array (ni, nj, 3) for each surface, (ni, nj, nk, 3) for each volume.
     variant
-        What the file is.
+        Variant of the file.
     iblank
         An array (ni, nj) or (ni, nj, nk) for each block, if the file has them.
 
@@ -173,8 +173,8 @@ def decode_plot3d(
 def read_cgns(path: str | Path) -> dict[str, NDArray[np.float64]]:
     """The points of the structured zones of a CGNS file, by name.
 
-    Files are HDF5, what the CGNS library writes unless asked for the older ADF; h5py is not needed.
-    Boundaries, solutions and interfaces are left out.
+    Files are HDF5, the default of the CGNS library; older ADF files are not read. h5py is not
+    needed. Boundaries, solutions and interfaces are ignored.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ def write(
     grids
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
-        Of the zones of a CGNS file.
+        Names of the zones of a CGNS file.
 
     Returns
     -------
@@ -342,7 +342,7 @@ def encoded(
     grids
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
-        Of the zones of a CGNS file.
+        Names of the zones of a CGNS file.
 
     Returns
     -------
@@ -396,7 +396,7 @@ def write_cgns(
     names
         The zones' names; ``grid1``, ``grid2``, ... by default.
     tolerance
-        Points of edges are the same when they are no further apart, as a share of the size of all.
+        Distance relative to the size of the whole below which points of edges coincide.
 
     Returns
     -------
@@ -427,8 +427,8 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
     """Write surface grids as one binary STL.
 
     Quads are split along their shorter diagonal; triangles without area, at poles, are left out.
-    Facets face out of closed bodies, whichever way their surfaces run, and out of open ones as far
-    as their rims say where that is; nearly flat surfaces face along r_i x r_j.
+    Facets of closed bodies are oriented outward for any orientation of their surfaces, those of
+    open bodies outward as far as their rims determine it; nearly flat surfaces along r_i x r_j.
 
     Parameters
     ----------
@@ -437,7 +437,7 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
     grids
         Arrays (ni, nj, 3).
     flip
-        Facets face the other way.
+        Reverses the facets.
 
     Returns
     -------

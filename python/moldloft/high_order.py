@@ -72,10 +72,10 @@ def patches(
     model
         The model.
     tolerance
-        The largest distance from the surface, by default 1e-5 of the model's diagonal. It is
-        checked at four places of each span in each direction.
+        Largest distance from the surface, checked at four points per span and direction; default:
+        1e-5 of the model's diagonal.
     lids
-        Whether lids are among the patches.
+        True to include lids.
     """
     return [
         SplinePatch(name, (degree[0], degree[1]), (spans[0], spans[1]), points, deviation)

@@ -1,4 +1,4 @@
-"""What a hull displaces and how stiffly it floats."""
+"""Hydrostatics of a hull: displacement and stability."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
 
 
 def faceted(model: Model) -> list[str]:
-    """Bodies of sets: they are measured on facets, at a distance from the set not known."""
+    """Bodies of sets: measured on facets, whose distance from the set is unknown."""
     names = {patch.name.split(".")[0]: None for patch in model.mesh().patches}
     known = [name for name in names if name in model.objects]
     return [name for name in known if model.facts(name)["kind"] == "SetBody"]
@@ -122,7 +122,7 @@ class Hydrostatics:
     waterline_beam: float | None = None
     """Extent of the waterline in y."""
     midship_area: float | None = None
-    """Immersed area of the section half-way between the ends of the waterline."""
+    """Immersed area of the section midway between the ends of the waterline."""
     cb: float | None = None
     """Block coefficient, volume / (length beam draft); the form coefficients are those of an
     upright body and ``None`` where it heels."""
@@ -178,11 +178,13 @@ class Hydrostatics:
     iterations: int = 0
     """Newton steps to the sought attitude."""
     residual: float = 0.0
-    """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
+    """Residual of the equations of equilibrium: volume relative to volume, arms relative to the
+    body's diagonal.
+    """
     stable: bool | None = None
-    """Whether the stiffness in heel and trim is positive, with a centre of gravity: at rest all
-    small turns are righted then, free or not. Under water the metacentre is the centre of
-    buoyancy."""
+    """True for positive stiffness in heel and trim, with a centre of gravity: small rotations from
+    equilibrium are righted, free or not. Under water the metacentre is the centre of buoyancy.
+    """
     lolls: bool = False
     """True when the attitude where the search began is at rest but unstable, and this is the stable
     one that the body finds beyond it: the angle of loll."""
@@ -190,22 +192,25 @@ class Hydrostatics:
     """Bounds of the errors of the main figures, by name: estimates of what quadrature and the
     interpolation of the surfaces leave."""
     units: Units = field(default_factory=Units)
-    """What the figures are in."""
+    """Units of the figures."""
     accuracy: float = 0.0
-    """The relative accuracy that was asked for."""
+    """Requested relative accuracy."""
     on_triangles: list[str] = field(default_factory=list)
-    """Trimmed surfaces that are measured on the triangles of their panels. What these miss of
-    volume and area is estimated in ``bounds``."""
+    """Trimmed surfaces that are measured on the triangles of their panels. Their errors of volume
+    and area are estimated in ``bounds``.
+    """
     faceted: list[str] = field(default_factory=list)
-    """Bodies of sets, which are measured on their facets. How far these are from the set is not
-    known, so there are no ``bounds``."""
+    """Bodies of sets, which are measured on their facets. Their distance from the set is unknown,
+    so there are no ``bounds``.
+    """
     inner_skins: list[str] = field(default_factory=list)
     """Plates inside a body and bodies that overlap, as remarks; see ``Model.inner_skins``."""
     partial: bool = False
-    """True for figures of a model of which objects failed, or whose panels contradict each other in
-    their counts; see ``Model.partial``."""
+    """True for a model with failed objects, or with contradictory divisions of panels; see
+    ``Model.partial``.
+    """
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
-    """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
+    """Exact derivatives ``[figure][parameter]``, for the requested parameters."""
 
     @property
     def floods(self) -> bool:
@@ -214,7 +219,7 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Openings under water, overlaps, surfaces on triangles, figures not known well."""
+        """Immersed openings, overlaps, surfaces measured on triangles, inaccurate figures."""
         lines = []
         if self.partial:
             lines.append("the model is not whole: the figures are those of what was made")
@@ -340,7 +345,7 @@ _NUMBERS = [
 
 
 class _Rows:
-    """Rows of figures: what tables and curves have in common."""
+    """Rows of figures: common part of tables and curves."""
 
     rows: tuple[Hydrostatics, ...]
     """One for each draft or heel."""
@@ -350,7 +355,7 @@ class _Rows:
 
     @property
     def units(self) -> Units:
-        """What the figures are in."""
+        """Units of the figures."""
         return self.rows[0].units if self.rows else Units()
 
     def __len__(self) -> int:
@@ -393,7 +398,7 @@ class _Rows:
         name
             The name of a figure, such as ``"volume"``.
         by
-            One of the parameters that were asked for.
+            One of the requested parameters.
 
         Returns
         -------
@@ -403,7 +408,7 @@ class _Rows:
         Raises
         ------
         UnknownNameError
-            When there is no such figure, or no derivatives by this parameter were asked for.
+            If there is no such figure, or no derivative with respect to this parameter.
         """
         import numpy as np
 
@@ -440,7 +445,7 @@ class _Rows:
         Returns
         -------
         list of dict
-            As of :meth:`Hydrostatics.as_dict`.
+            See :meth:`Hydrostatics.as_dict`.
         """
         return [row.as_dict() for row in self.rows]
 
@@ -571,7 +576,7 @@ class RightingCurve(_Rows):
     def vanishing(self) -> float | None:
         """The positive heel, in radians, at which a positive arm falls to zero.
 
-        It lies on the straight line between two rows; ``None`` when the arm stays positive.
+        The arm is interpolated linearly between two rows; ``None`` if the arm stays positive.
         """
         rows = [(row.heel, row.gz) for row in self.rows if row.gz is not None]
         for (a, p), (b, q) in pairwise(rows):
@@ -658,7 +663,7 @@ def plot_curves(
     curves
         A curve for each name, as many values as ``along`` has.
     labels
-        Of the quantity, and of the curves.
+        Labels of the quantity and of the curves.
     """
     figure, (axis,) = _axes(1)
     for name, values in curves.items():

@@ -1,6 +1,6 @@
 """The kinds of entities, for models written in Python.
 
-Each kind of the registry is an attribute, made from the registry when first asked for:
+Each kind of the registry is an attribute, made from the registry on first use:
 
 >>> from moldloft import kinds
 >>> kinds.AbsPoint

@@ -117,7 +117,7 @@ def entry(name: str) -> dict[str, Any]:
 
 
 def meaning(field: dict[str, Any]) -> str:
-    """What an argument is, as docstrings have it: its help, unit, range and default.
+    """Description of an argument, as in docstrings: its help, unit, range and default.
 
     Parameters
     ----------
@@ -360,7 +360,7 @@ _GUIDES = (
 
 
 def guides(words: str) -> list[tuple[str, str]]:
-    """Pages of the documentation that a phrase may ask for: what each is about, and its address.
+    """Pages of the documentation for a search: topic and address of each.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def format_text(name: str, text: bytes) -> str:
     Parameters
     ----------
     name
-        What messages call it.
+        Name in messages.
     text
         In UTF-8 or an older code.
 
@@ -440,7 +440,7 @@ def check_language(text: str, name: str) -> None:
     text
         The program.
     name
-        What the message calls it.
+        Name in messages.
 
     Raises
     ------

@@ -73,7 +73,7 @@ def _field(text: str, said: dict[str, str]) -> dict[str, Any]:
 
 
 def picture(row: dict[str, Any]) -> bytes | None:
-    """A PNG of the curve or surface that a routine's example fills; none of examples without.
+    """A PNG of the curve or surface in a routine's example; None for other examples.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ class Path2:
     layer: str
     points: np.ndarray[Any, np.dtype[np.float64]]
     straight: bool = False
-    """Whether every piece is a straight line."""
+    """True if every piece is a straight line."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,9 @@ class Plan:
     """A sheet."""
 
     width: float
-    """Of the sheet, in mm."""
+    """Width of the sheet, in mm."""
     height: float
-    """Of the sheet, in mm."""
+    """Height of the sheet, in mm."""
     scale: float
     """Its denominator."""
     unit: str
@@ -92,7 +92,7 @@ class Plan:
     texts: list[Text] = field(default_factory=list)
     """The texts."""
     left_out: list[str] = field(default_factory=list)
-    """Labels that found no free place."""
+    """Labels without a free position."""
 
     def line(self, layer: str, *points: tuple[float, float]) -> None:
         """A polyline.
@@ -120,22 +120,22 @@ class Plan:
         anchor: str = "middle",
         needed: bool = True,
     ) -> bool:
-        """A text about (x, y); where it would overlap another it is left out, and listed.
+        """A text at (x, y); a text that would overlap another is left out and listed.
 
         Parameters
         ----------
         x
-            Place on the sheet, millimetres.
+            Position on the sheet, in mm.
         y
-            Place on the sheet, millimetres.
+            Position on the sheet, in mm.
         text
             The text.
         size
             Height of the letters, millimetres.
         anchor
-            ``"start"``, ``"middle"`` or ``"end"``: what of the text is at the place.
+            Part of the text at the position: ``"start"``, ``"middle"`` or ``"end"``.
         needed
-            Whether to list it when it is left out.
+            True to list it if it is left out.
         """
         wide = text_width(text, size)
         shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
@@ -304,7 +304,7 @@ def lines_plan(
     scale
         The denominator; by default the largest scale that fits.
     stations
-        Whether station 0 is at the ``bow`` or at the ``stern`` end of the waterline.
+        End of the waterline with station 0: ``bow`` or ``stern``.
     waterline_spacing, buttock_spacing
         In the model's unit; by default round numbers.
     diagonals

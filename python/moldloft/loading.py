@@ -23,7 +23,7 @@ __all__ = ["Origin", "load", "loads", "restored"]
 
 @dataclass(frozen=True)
 class Origin:
-    """What a model was made of besides its text: enough to make it again, here or elsewhere."""
+    """Origin of a model besides its text: the data to make it again, here or elsewhere."""
 
     name: str
     """The name that messages show."""
@@ -34,7 +34,7 @@ class Origin:
     functions: dict[str, Any] = field(default_factory=dict)
     """Python functions by the names that the text calls them."""
     edited: bool = False
-    """Whether the text is being written: what can be understood of a faulty one is run."""
+    """True while the text is being edited: the valid part of a faulty one is run."""
 
 
 def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
@@ -47,7 +47,7 @@ def restored(origin: Origin | None, text: str, values: Mapping[str, float], refi
     Parameters
     ----------
     origin
-        Where the model came from.
+        Origin of the model.
     text
         The text of the model.
     values
@@ -85,18 +85,16 @@ def load(
     library
         Folders, besides the model's own, from which it may load.
     functions
-        Python functions that the model may call, by the names it calls them. They take and
-        return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
-        :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
-        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is
-        called without arguments: ``field f = scan();``.
+        Python functions that the model may call, by name. They take and return floats, vectors
+        ``(3,)`` and arrays; for derivatives they receive :class:`moldloft.numbers.Dual` numbers, on
+        which arithmetic and NumPy's elementary functions work. A :class:`moldloft.implicit.Field`
+        or :class:`moldloft.implicit.Set` is called without arguments: ``field f = scan();``.
     strict
-        Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
-        what does not depend on a failed object lives on. Of a text that cannot be parsed
-        nothing is run.
+        True to raise errors. Otherwise they are in :attr:`Model.diagnostics` only, and objects that
+        do not depend on a failed one are evaluated. Nothing of a text with a syntax error is run.
     edited
-        Whether the text is being written, as in an editor: what can be understood of one that
-        cannot be parsed is run. Then nothing raises.
+        True while the text is being edited: the valid part of a text with a syntax error is run,
+        and nothing raises.
 
     Returns
     -------
@@ -160,9 +158,9 @@ def loads(
     library
         Folders from which the text may load.
     functions
-        As for :func:`load`.
+        See :func:`load`.
     strict, edited
-        As for :func:`load`.
+        See :func:`load`.
 
     Returns
     -------

@@ -19,7 +19,7 @@ __all__ = ["Mesh", "Patch", "Quality"]
 
 @dataclass(frozen=True)
 class Patch:
-    """The panels of one surface: a run of the mesh's faces, all of which it measures."""
+    """The panels of one surface: a range of the mesh's faces, with its measures."""
 
     name: str
     """The surface's name."""
@@ -42,15 +42,17 @@ class Patch:
     closed: bool
     """True when its panels alone enclose a volume."""
     volume: float
-    """The volume that it encloses by itself. For an open patch the signed volume of the cone from
-    the origin to it: of no meaning alone, but the sum over a closed mesh is the enclosed volume."""
+    """The enclosed volume. For an open patch, the signed volume of the cone from the origin to it:
+    meaningless alone, but the sum over a closed mesh is the enclosed volume.
+    """
     vertices: int
     """Vertices that its panels use."""
     quality: dict[str, Any]
     """Aspect ratio, skewness, warp, smallest angle (radians), and jump of area to the neighbours:
     ``min``, ``max`` and ``mean`` of each, and its worst panel by index in the mesh (``worst``), in
-    the patch (``panel``), along u and v (``place``) and by its ``centre``; and the counts of quads,
-    triangles and panels without area."""
+    the patch (``panel``), along u and v (``place``) and by its ``centre``; and the numbers of
+    quads, triangles and panels of zero area.
+    """
 
     @property
     def panels(self) -> int:
@@ -59,7 +61,7 @@ class Patch:
 
 
 class Quality(dict[str, dict[str, Any]]):
-    """How well shaped the panels are, by patch; a table in a notebook."""
+    """Quality of the panels by patch; a table in a notebook."""
 
     def _repr_html_(self) -> str:
         from moldloft.display import quality_html
@@ -70,7 +72,7 @@ class Quality(dict[str, dict[str, Any]]):
 class Mesh:
     """Panels of all shown surfaces of a model, at one state of it.
 
-    Panels are counter-clockwise seen from outside. Vertices that patches share are one vertex.
+    Panels are counter-clockwise seen from outside. Vertices common to patches are single.
 
     Examples
     --------
@@ -119,7 +121,7 @@ class Mesh:
         Returns
         -------
         Patch
-            Its panels and what is known of them.
+            Its panels with their measures.
 
         Raises
         ------
@@ -146,7 +148,7 @@ class Mesh:
         raise UnknownNameError(f"unknown patch `{name}`; expected one of: {known or 'none'}")
 
     def quality(self) -> Quality:
-        """How well shaped the panels are, by patch: see :attr:`Patch.quality`.
+        """Quality of the panels by patch: see :attr:`Patch.quality`.
 
         Returns
         -------
@@ -168,7 +170,7 @@ class Mesh:
         return Quality({patch.name: patch.quality for patch in self.patches})
 
     def closure(self, *, level: float | None = 0.0) -> dict[str, Any]:
-        """What is open, by patch and edge, and what closes it.
+        """Open edges, by patch and edge, and their closures.
 
         Parameters
         ----------
@@ -231,7 +233,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class _Frozen:
-    """A mesh without its model: what a pickle holds."""
+    """A mesh without its model, for pickles."""
 
     arrays: tuple[Any, Any]
     data: tuple[dict[str, Any], list[Any], list[dict[str, Any]]]

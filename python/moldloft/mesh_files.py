@@ -27,7 +27,7 @@ _METRES = {"gdf", "mar", "dat", "pnl", "hst"}
 
 
 def holds_mesh(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is of a mesh that is read, by its ending.
+    """True if the ending is that of a readable mesh file.
 
     Parameters
     ----------
@@ -90,12 +90,12 @@ def read_mesh(path: str | os.PathLike[str], *, units: str = "", file_units: str 
     Parameters
     ----------
     path, units, file_units
-        As for :func:`mesh_program`.
+        See :func:`mesh_program`.
 
     Returns
     -------
     Model
-        Its panels are those of the file; vertices in one place are one.
+        Its panels are those of the file; coincident vertices are merged.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def _numbers(corners: NDArray[np.int64]) -> str:
 def _joined(
     points: NDArray[np.float64], faces: NDArray[np.uint32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Vertices in one place as one, and the faces that are left: a triangle repeats its last."""
+    """Merged coincident vertices, and the remaining faces: a triangle repeats its last vertex."""
     kept, number = np.unique(points + 0.0, axis=0, return_inverse=True)
     corners = np.asarray(number).ravel()[faces.astype(np.int64)]
     found = []

@@ -107,7 +107,7 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         Model
-            One that shares nothing with this.
+            An independent copy.
 
         Examples
         --------
@@ -159,12 +159,12 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def has_errors(self) -> bool:
-        """Whether one of the diagnostics is an error."""
+        """True if one of the diagnostics is an error."""
         return self._document.has_errors()
 
     @property
     def partial(self) -> bool:
-        """Whether figures and files may be those of a part of the model.
+        """True if figures and files may cover a part of the model only.
 
         ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
@@ -211,7 +211,7 @@ class Model(Floating, Writable, Adapted):
         return {name: shape for name, shape, _ in self._document.variables()}
 
     def facts(self, name: str) -> dict[str, Any]:
-        """What is known of an object without asking for its shape.
+        """Known facts about an object, without evaluation of its shape.
 
         Parameters
         ----------
@@ -243,7 +243,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.object(name)
 
     def completions(self, line: str) -> list[str]:
-        """The words that may stand at the end of the text followed by ``line``.
+        """Possible words at the end of the text followed by ``line``.
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def evaluated(self) -> int:
-        """How many objects the last change evaluated again."""
+        """Number of objects evaluated by the last change."""
         return self._document.evaluated()
 
     @property
@@ -290,7 +290,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def printed(self) -> list[str]:
-        """What the program printed, a line each."""
+        """Output of the program, by line."""
         return self._document.printed()
 
     @property
@@ -300,7 +300,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def written(self) -> dict[str, bytes]:
-        """What the program wrote, by file name; ``moldloft run`` puts it on the disk."""
+        """Files written by the program, by name; ``moldloft run`` puts them on the disk."""
         files = dict(self._document.written())
         for name, blocks, joints, ends in self._document.written_for_cgns():
             # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
@@ -345,7 +345,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def text(self) -> str:
-        """The model's text, with direct edits written in. Assigning runs the new text."""
+        """The model's text, with direct edits included. Assignment runs the new text."""
         return self._document.text()
 
     @text.setter
@@ -494,13 +494,13 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When the text is not an expression, or has no value; the diagnostics have its place.
+            If the text is not an expression, or has no value; the diagnostics give the position.
 
         Warns
         -----
         UserWarning
-            When the value is not known as well as asked, such as the volume of a set with
-            walls thinner than any cell.
+            If the value misses the requested accuracy, such as the volume of a set with walls
+            thinner than any cell.
 
         Examples
         --------
@@ -541,7 +541,7 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         Mesh
-            Quadrilaterals and triangles, joined where patches share curves.
+            Quadrilaterals and triangles, joined at common curves of patches.
 
         Raises
         ------
@@ -569,10 +569,10 @@ class Model(Floating, Writable, Adapted):
         return Mesh(made, symmetry="" if whole else self.symmetry)
 
     def inner_skins(self) -> list[_core.Diagnostic]:
-        """Plates of the skin that lie inside a body, and bodies that overlap.
+        """Plates of the skin inside a body, and overlapping bodies.
 
-        Each is a warning: a plate inside counts as skin, and what two bodies share counts twice.
-        Middles and corners of panels decide, by how often the other body winds round them.
+        Each is a warning: a plate inside counts as skin, and the common part of two bodies counts
+        twice. The test is the winding number of the other body at centres and corners of panels.
 
         Returns
         -------
@@ -593,7 +593,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.inner_skins()
 
     def junctions(self) -> list[_core.Diagnostic]:
-        """Edges of patches in one place, and corners on edges of others, that are not joined.
+        """Coincident edges of patches, and corners on edges of others, that are not joined.
 
         Each is an error: the mesh is open where the shape is closed.
 
@@ -621,7 +621,7 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         Blocks
-            Vertices and cells, with the faces that blocks share.
+            Vertices and cells, with the common faces of blocks.
 
         Raises
         ------
@@ -650,7 +650,7 @@ class Model(Floating, Writable, Adapted):
         UnknownNameError
             When there is no such parameter or number.
         ModelError
-            As for :meth:`blocks`.
+            See :meth:`blocks`.
         """
         return self._document.block_jacobian(names_of(by))
 
@@ -702,7 +702,7 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         float or numpy.ndarray
-            Of the shape of the value, per unit of the parameter.
+            An array of the shape of the value, per unit of the parameter.
 
         Raises
         ------
@@ -761,23 +761,22 @@ class Model(Floating, Writable, Adapted):
     def view(self, *, height: int = 600, follow: bool = True) -> Any:
         """The workbench's page in a notebook's cell: sliders, drags, typing, hydrostatics.
 
-        The page computes by itself, with the engine in WebAssembly, and gives the same bits. With
-        ``anywidget`` installed (extra ``notebook``) this model follows what is done in the page;
-        after changes in Python ``refresh()`` of the result shows them. Without it, or with
-        ``follow=False``, the page is part of the notebook, stays alive in an exported one, and
-        changes no model of Python.
+        The page has its own engine in WebAssembly, with the same bits. With ``anywidget`` installed
+        (extra ``notebook``) this model follows changes in the page; after changes in Python
+        ``refresh()`` of the result shows them. Without it, or with ``follow=False``, the page is
+        part of the notebook, stays interactive in an exported one, and changes no model of Python.
 
         Parameters
         ----------
         height
-            Of the cell, in pixels.
+            Size of the cell, in pixels.
         follow
-            Whether this model follows the page.
+            True if this model follows the page.
 
         Returns
         -------
         object
-            What the notebook shows.
+            Display of the notebook.
 
         Raises
         ------

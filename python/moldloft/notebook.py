@@ -65,16 +65,16 @@ export default { render }
 
 
 class ModelPage:
-    """The page of a model for a cell without widgets: alive by itself, and Python does not follow.
+    """The page of a model for a cell without widgets: interactive, without a link to Python.
 
     Parameters
     ----------
     page
         The page.
     title
-        What it is called.
+        Name of the model.
     height
-        Of the cell, in pixels.
+        Size of the cell, in pixels.
     """
 
     def __init__(self, page: bytes, title: str, height: int) -> None:

@@ -1,8 +1,8 @@
 """Numbers that know their derivatives, as a user's functions receive them.
 
-A Python function that takes part in a model is called with plain floats in a plain run, and with
-:class:`Dual` numbers when derivatives are asked for. Arithmetic and NumPy's elementary functions
-work on both; turning a dual number into a float would lose the derivative and raises.
+A Python function in a model is called with plain floats in a plain run, and with :class:`Dual`
+numbers for derivatives. Arithmetic and NumPy's elementary functions work on both; conversion of a
+dual number to a float would lose the derivative and raises.
 """
 
 from __future__ import annotations
@@ -286,7 +286,7 @@ def _call(
     """Call a user's function with plain or dual arguments.
 
     An argument is a text, or a shape with its numbers in C order; a number is its value, followed
-    by its derivatives when derivatives are asked for. So is the result.
+    by its derivatives if they are requested. The result has the same form.
     """
     import numpy as np
 

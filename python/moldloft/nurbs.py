@@ -50,14 +50,15 @@ class Nurbs:
     """Control points, not multiplied by weights: ``(n, 3)``, ``(nu, nv, 3)`` or
     ``(nu, nv, nw, 3)``."""
     weights: Floats | None = None
-    """Weights in the shape of the points; None when all are 1."""
+    """Weights in the shape of the points; None if all are 1."""
     error: float = 0.0
-    """A bound of the distance from the shape at equal places, in its unit of length."""
+    """Bound of the distance from the shape at equal parameters, in its unit of length."""
     exact: bool = True
-    """Whether the shape is this NURBS but for rounding."""
+    """True if the NURBS equals the shape to rounding."""
     angles: tuple[float, ...] = ()
-    """For each parameter in which the shape runs evenly in an angle, that angle in radians: there
-    the NURBS is the same set of points at other parameters (see :meth:`parameters`). Else 0."""
+    """For each parameter that is linear in an angle, that angle in radians: there the NURBS is the
+    same set of points at other parameters (see :meth:`parameters`). Else 0.
+    """
 
     def __post_init__(self) -> None:
         if len(self.knots) != len(self.degrees):
@@ -104,7 +105,7 @@ class Nurbs:
     def parameters(self, *parameters: ArrayLike) -> tuple[Floats, ...]:
         """The shape's own parameters at parameters of the NURBS.
 
-        They are the same but along what runs evenly in an angle, where the NURBS does not.
+        They are equal except along parameters linear in an angle, where those of the NURBS are not.
 
         Parameters
         ----------

@@ -49,7 +49,7 @@ _OWN = frozenset({"_model", "name"})
 
 
 class WrongClassError(ModelError, AttributeError):
-    """An object was asked for what objects of its class do not have."""
+    """A method or member that objects of this class do not have."""
 
 
 def wrapped(value: Any) -> Any:
@@ -58,7 +58,7 @@ def wrapped(value: Any) -> Any:
     Parameters
     ----------
     value
-        What the core made of an expression; lists are gone through.
+        Python object for a value of the core; lists are converted item by item.
     """
     if isinstance(value, _core.Field):
         from moldloft.implicit import Field
@@ -76,9 +76,9 @@ def wrapped(value: Any) -> Any:
 class Object:
     """A named object of a model.
 
-    It is a name and no copy: after a change of the model it shows the new shape. Calling it
-    evaluates a curve or a surface; its numbers are read and written as attributes. What it can do
-    depends on its class, which is its type: :class:`Point`, :class:`Curve`, :class:`Surface`, ...
+    It is a reference, not a copy: after a change of the model it shows the new shape. A call
+    evaluates a curve or a surface; its numbers are read and written as attributes. Its methods
+    depend on its class, which is its type: :class:`Point`, :class:`Curve`, :class:`Surface`, ...
 
     Examples
     --------
@@ -116,7 +116,7 @@ class Object:
 
     @property
     def class_(self) -> str:
-        """What kind of thing it is, such as ``"point"``, ``"curve"`` or ``"surface"``."""
+        """Class, such as ``"point"``, ``"curve"`` or ``"surface"``."""
         return str(self._facts()["class"])
 
     @property
@@ -286,7 +286,7 @@ class Ring(Bead, Magnet):
 
 
 class _Located(Object):
-    """What searches go to: curves and surfaces."""
+    """Targets of searches: curves and surfaces."""
 
     def nearest(self, points: ArrayLike) -> NearestPoints:
         """The points of a curve or surface that are nearest to given ones, all at once.
@@ -325,7 +325,7 @@ class _Located(Object):
         return nearest(self, points)
 
     def intersect(self, other: Object | str | tuple[ArrayLike, ArrayLike]) -> Intersection:
-        """What a curve or surface has in common with another, or with a plane.
+        """Intersection of a curve or surface with another, or with a plane.
 
         Two surfaces, or a surface and a plane, cross in branches; a curve meets the other in
         points. All branches longer than 2 % of the size are found that cross at an angle somewhere,
@@ -388,7 +388,7 @@ class _Located(Object):
         ModelError
             When the object is something else.
         Error
-            When no NURBS comes near enough, with the bound that was reached and its place.
+            If no NURBS reaches the accuracy, with the bound reached and its position.
 
         Examples
         --------
@@ -471,7 +471,7 @@ class Surface(SurfaceCalculus, _Located):
 
     @property
     def divisions(self) -> tuple[int, int] | None:
-        """Panels along u and v as they are made; None where the surface has no such panels.
+        """Actual panels along u and v; None for a surface without such panels.
 
         >>> import moldloft
         >>> m = moldloft.loads('''
@@ -593,7 +593,7 @@ class Solid(Object):
         ModelError
             When the object is something else.
         Error
-            When no NURBS comes near enough, with the bound that was reached and its place.
+            If no NURBS reaches the accuracy, with the bound reached and its position.
         """
         from moldloft import _core
         from moldloft.nurbs import Nurbs
@@ -735,10 +735,10 @@ def object_of(model: Model, name: str) -> Object:
 if TYPE_CHECKING:
 
     class Entry(Surface, Curve, Ring, Solid, Body, FieldObject, SetObject, float):
-        """What ``m["name"]`` is to a type checker: a number or an object of any class.
+        """Type of ``m["name"]`` for a type checker: a number or an object of any class.
 
-        ``isinstance(m["hull"], moldloft.Surface)`` narrows it. When the program runs it is a float
-        or an object of one class.
+        ``isinstance(m["hull"], moldloft.Surface)`` narrows it. At run time it is a float or an
+        object of one class.
         """
 
         length: float

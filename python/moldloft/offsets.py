@@ -6,9 +6,9 @@ lines that begin with ``#`` are skipped. Or it is a matrix of half-breadths: the
 ``waterline`` and the stations, each row a waterline and its half-breadths; or ``station`` and the
 waterlines.
 
-A blank half-breadth says that there is no hull. A height may have several half-breadths: a flat of
-keel, a knuckle. Zeros below the hull, as a skeg or deadwood has them, and above it are no part of
-its sections.
+A blank half-breadth means no hull at that height. A height may have several half-breadths: a flat
+of keel, a knuckle. Zeros below the hull, as at a skeg or deadwood, and above it are not part of its
+sections.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def parse(text: str, name: str = "offsets") -> Offsets:
     text
         The text.
     name
-        What messages call the text.
+        Name of the text in messages.
 
     Returns
     -------
@@ -307,7 +307,7 @@ def _upwards(points: list[tuple[float, float]]) -> tuple[tuple[float, float], ..
 
 
 def encode(model: Model, title: str = "") -> bytes:
-    """The file of :func:`even`; it has no place for a title.
+    """The file of :func:`even`; the format has no title.
 
     Parameters
     ----------

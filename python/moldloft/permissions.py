@@ -1,4 +1,4 @@
-"""What a program or a sketch that somebody else wrote may write; SECURITY.md has the whole table.
+"""Files that a program or sketch of unknown origin may write; the table is in SECURITY.md.
 
 The names that a person gives on the command line or in Python are the person's own affair. Names
 that come out of a model are not: they stay inside of the folder for output, hide nothing, start
@@ -19,7 +19,7 @@ from moldloft.storage import Lock, Output, commit, digest, digest_of, make_folde
 __all__ = ["RECORD", "check_not_source", "checked_name", "write_outputs"]
 
 RECORD = ".moldloft-written"
-"""The file that lists what the last runs wrote into a folder, with hashes."""
+"""The file that lists the output of the last runs in a folder, with hashes."""
 
 _DEEPEST = 8
 _LONGEST = 200
@@ -125,14 +125,14 @@ def write_outputs(
     files
         Contents by name.
     sources
-        What was read: it is not overwritten.
+        Input file, which is not overwritten.
     force
-        Overwrite files that an earlier run did not write, too.
+        True to overwrite files that an earlier run did not write.
 
     Raises
     ------
     FileError
-        When one may not be written; then none is.
+        If one of the files may not be written; then no file is written.
     """
     if not files:
         return []
@@ -182,7 +182,7 @@ def _write(folder: Path, files: dict[str, bytes], force: bool) -> list[Path]:
 
 
 def _written_before(folder: Path) -> dict[str, str]:
-    """The hashes of what earlier runs wrote into a folder, by name."""
+    """The hashes of the output of earlier runs in a folder, by name."""
     try:
         data = json.loads(read_bytes(folder / RECORD, 16 << 20))
         return {str(name): str(hash_) for name, hash_ in data["files"].items()}

@@ -30,15 +30,15 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 class NearestPoints:
     """The points of a curve or surface that are nearest to given ones.
 
-    All arrays begin with the shape of the points that were asked for, without its last extent.
+    All arrays begin with the shape of the given points, without its last extent.
     """
 
     parameters: Floats
-    """Of a surface u and v, shape ``(…, 2)``; of a curve t, shape ``(…)``."""
+    """Parameters: u and v on a surface, shape ``(…, 2)``; t on a curve, shape ``(…)``."""
     points: Floats
     """The feet, shape ``(…, 3)``."""
     distances: Floats
-    """How far each is from its point."""
+    """Distances from the given points."""
     statuses: NDArray[np.str_]
     """``"ok"``; ``"edge-clamped"`` at an edge or end because the shape is over there;
     ``"multiple"`` where others are equally near, to 1e-9 of the size; ``"tangent"`` where the
@@ -73,18 +73,18 @@ class Branch:
 
 @dataclass(frozen=True)
 class Intersection:
-    """What two shapes have in common."""
+    """Intersection of two shapes."""
 
     branches: list[Branch]
-    """Curves in which surfaces cross; none when one of the two is a curve."""
+    """Curves of intersection of two surfaces; empty if one of the shapes is a curve."""
     points: Floats
-    """Single common points, shape ``(n, 3)``: those of a curve, or places where surfaces touch."""
+    """Single common points, shape ``(n, 3)``: intersections of a curve, or contacts of surfaces."""
     parameters: Floats
-    """Of the points, on the first: u and v, or t; shape ``(n, 2)`` or ``(n, 1)``."""
+    """Parameters on the first shape: u and v, or t; shape ``(n, 2)`` or ``(n, 1)``."""
     other_parameters: Floats
     """On the second; of a plane shape ``(n, 0)``."""
     tangent: NDArray[np.bool_]
-    """Whether the shapes touch at the point instead of crossing."""
+    """True if the shapes touch at the point without crossing."""
     complete: bool
     """False when the search ran into its limit, as where shapes coincide: there may be more."""
     smallest: float

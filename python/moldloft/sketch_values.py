@@ -1,4 +1,4 @@
-"""Values of sketches: what commands answer and change, and the parts of an object."""
+"""Values of sketches: replies and changes of commands, and the parts of an object."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ __all__ = [
 
 @dataclass(frozen=True)
 class ReplySubject:
-    """What a reply is about.
+    """Subject of a reply.
 
     Attributes
     ----------
     kind
-        What is said, a stable word: ``"missing-dimension"``, ``"doubtful-type"``, ``"gap"``,
+        Type of the message, a stable word: ``"missing-dimension"``, ``"doubtful-type"``, ``"gap"``,
         ``"planes-passed"``, ``"type-contradiction"``, ``"chain"``, ``"open-body"``, ...
     points, lines, faces
         Labels, in the order of the sentence; the points of a chain from its start to its end, the
@@ -49,7 +49,7 @@ class ReplySubject:
     value
         The number of the sentence: a distance, a coordinate, a confidence from 0 to 1.
     place
-        The place in space, ``(x, y, z)``.
+        Position in space, ``(x, y, z)``.
     suggestion
         The dimension that would supply what is missing.
     """
@@ -86,14 +86,14 @@ class ReplySubject:
 
 @dataclass(frozen=True)
 class Reply:
-    """What a command answered.
+    """Reply of a command.
 
     Attributes
     ----------
     severity
         ``"error"`` (the command was refused and changed nothing), ``"warning"`` or ``"note"``.
     text
-        What is said.
+        Text of the reply.
     next
         The next step, for errors and questions.
     code
@@ -101,7 +101,7 @@ class Reply:
     file
         Name and content of a file that SAVE or EXPORT made.
     about
-        What the sentence is about, as data; None for plain answers.
+        Subject of the sentence, as data; None for plain answers.
     """
 
     severity: str
@@ -118,7 +118,7 @@ class Reply:
         Parameters
         ----------
         row
-            Severity, number, text, what is asked for next, file and subject.
+            Severity, number, text, next input, file and subject.
 
         Returns
         -------
@@ -131,7 +131,7 @@ class Reply:
 
     @property
     def is_error(self) -> bool:
-        """Whether the command was refused."""
+        """True if the command failed."""
         return self.severity == "error"
 
     def __str__(self) -> str:
@@ -154,7 +154,7 @@ class Reply:
 
 @dataclass(frozen=True)
 class Gradient:
-    """Exact derivatives by dimensions, in the order they were asked for.
+    """Exact derivatives with respect to dimensions, in the requested order.
 
     Attributes
     ----------
@@ -165,8 +165,8 @@ class Gradient:
     centroid
         Shape ``(n, 3)``.
     points
-        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``;
-        NaN where one becomes several.
+        Derivatives of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n,
+        vertices, 3)``; NaN where a vertex splits.
     kinks
         For each name None, or where and why the area, or all three figures, have no derivative
         but one on each side; those are NaN.
@@ -182,16 +182,16 @@ class Gradient:
 
 @dataclass(frozen=True)
 class ObjectChange:
-    """What happened to an object of a sketch.
+    """Change of an object of a sketch.
 
     Attributes
     ----------
     name
         The object.
     added, removed
-        Whether it is new, or gone.
+        True if it is new, or deleted.
     body
-        Whether the finished body is another.
+        True if the finished body has changed.
     drawn
         Points that are new or elsewhere on the page.
     moved
@@ -232,9 +232,9 @@ class SketchSnap:
     Attributes
     ----------
     at
-        The place, ``(u, v)``.
+        Position, ``(u, v)``.
     point
-        The point that is there, or that the extension runs through.
+        The point at the position, or the origin of the extension.
     line
         The line that is there.
     part
@@ -282,7 +282,7 @@ class SketchChain:
     axis
         ``"X"``, ``"Y"`` or ``"Z"``.
     points
-        The points on the way.
+        Intermediate points.
     names
         The dimensions between them; empty for points of one plane.
     value
@@ -319,24 +319,24 @@ class PlaneOfPoints:
 
 @dataclass(frozen=True)
 class DimensionMark:
-    """Where a dimension stands on a drawing, v up.
+    """Position of a dimension on a drawing, v up.
 
     Attributes
     ----------
     name
         The dimension.
     text
-        What is written, in brackets when it only measures.
+        Text, in brackets for a measured dimension.
     value
         Its value; None while it is unknown.
     reference
-        Whether it only measures.
+        True for a measured dimension.
     axis
-        The axis that it runs along; None for lengths, slopes, angles and equal lengths.
+        Its axis; None for lengths, slopes, angles and equal lengths.
     at
         The middle of the text, ``(u, v)``.
     line
-        The dimension line, ``((u, v), (u, v))``; None where there is none.
+        The dimension line, ``((u, v), (u, v))``; None without one.
     witnesses
         The witness lines.
     """
@@ -379,9 +379,9 @@ class SketchPoint:
     id
         Its label.
     at
-        Its coordinates, None where they are free.
+        Its coordinates, None for free ones.
     page
-        Where it is drawn; None for a tangent point of a curve.
+        Position in the drawing; None for a tangent point of a curve.
     """
 
     id: int
@@ -400,12 +400,12 @@ class SketchLine:
     points
         Its ends.
     type
-        What changes along it: ``"X"``, ``"XY"``, ``"O"``, ...; empty while it is unknown.
+        Coordinates that change along it: ``"X"``, ``"XY"``, ``"O"``, ...; empty while unknown.
     source
         Who typed it: ``"user"``, ``"auto"`` by its slope or all strokes together, ``"inferred"``
         from the planes of the others.
     certainty
-        How sure the type is, from 0 to 1; 1 when the user typed it.
+        Confidence of the type, from 0 to 1; 1 for a type set by the user.
     """
 
     id: int
@@ -443,7 +443,7 @@ class SketchDimension:
     name
         Its name.
     measures
-        What it measures, as a command says it: ``"X 1 TO 2"``, ``"LENGTH 4"``, ...
+        Measured quantity, in the form of a command: ``"X 1 TO 2"``, ``"LENGTH 4"``, ...
     value
         Its value; None while it is unknown.
     """
@@ -468,9 +468,9 @@ class SketchObject:
     dimensions
         Its dimensions by name.
     missing
-        How many dimensions are missing on each axis.
+        Number of missing dimensions on each axis.
     volume, area, centroid
-        Of the finished body; None without one, the volume also of a cross section.
+        Measures of the finished body; None without one, except the volume of a cross section.
     """
 
     name: str

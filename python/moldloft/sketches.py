@@ -74,7 +74,7 @@ class Sketch:
     Parameters
     ----------
     folder
-        Where INPUT and RUN look first; then in the present folder.
+        First folder in which INPUT and RUN look; the second is the current one.
 
     Examples
     --------
@@ -226,7 +226,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object, or none is active.
+            If there is no such object, or no object is active.
         SketchError
             When it has no body to write.
         FileError
@@ -279,7 +279,7 @@ class Sketch:
         Parameters
         ----------
         points
-            Places on the page, ``(n, 2)``.
+            Points on the page, ``(n, 2)``.
         lines
             Ends of lines as rows of ``points``, from 0, ``(m, 2)``.
         types
@@ -359,21 +359,21 @@ class Sketch:
     def snap(
         self, u: float, v: float, reach: float, *, name: str | None = None
     ) -> SketchSnap | None:
-        """What a pointer snaps to: the nearest point, line, or extension along an axis.
+        """Snap of a pointer: the nearest point, line, or extension along an axis.
 
         Parameters
         ----------
         u, v
-            The place on the page.
+            Position on the page.
         reach
-            How far off it may be.
+            Maximum distance.
         name
             The object; by default the active one.
 
         Returns
         -------
         SketchSnap or None
-            The place, and the point, line or axis that it is on; None when nothing is within reach.
+            The position, and the point, line or axis there; None if nothing is within reach.
         """
         found = self._session.snap(self._name(name), [float(u), float(v)], float(reach))
         if found is None:
@@ -393,7 +393,7 @@ class Sketch:
         Returns
         -------
         list of SketchSuggestion or None
-            One for each loose part; None where the picture does not determine a value.
+            One for each separate part; None if the picture does not determine a value.
         """
         rows = self._session.suggestions(self._name(name))
         return [None if row is None else SketchSuggestion(*row) for row in rows]
@@ -430,13 +430,13 @@ class Sketch:
         -------
         (ndarray, ndarray) or None
             Vertices, ``(n, 3)``, and faces, ``(m, 4)``, a triangle with its last vertex twice; None
-            when no body is known.
+            without a known body.
         """
         found = self._session.candidates(self._name(name), True)
         return found[0] if found else None
 
     def check(self, *, name: str | None = None) -> list[Reply]:
-        """What is doubtful, missing or contradictory, as data.
+        """Doubtful, missing or contradictory data.
 
         Parameters
         ----------
@@ -446,9 +446,8 @@ class Sketch:
         Returns
         -------
         list of Reply
-            Those whose ``about`` says what they are about: doubtful types, gaps, contradictions,
-            missing dimensions with a suggestion, planes that passed each other, what is wrong with
-            the body.
+            Replies with a subject in ``about``: doubtful types, gaps, contradictions, missing
+            dimensions with a suggestion, planes in the wrong order, faults of the body.
 
         Examples
         --------
@@ -479,7 +478,7 @@ class Sketch:
         Returns
         -------
         SketchChain
-            Points and dimensions on the way from ``p`` to ``q``, and the distance.
+            Points and dimensions between ``p`` and ``q``, and the distance.
         """
         about = self.run(f"WHY {axis} {int(p)} {int(q)}")[-1].about
         assert about is not None and about.axis is not None
@@ -501,7 +500,7 @@ class Sketch:
         ]
 
     def marks(self, *, name: str | None = None, view: str | None = None) -> list[DimensionMark]:
-        """Where the dimensions stand on the drawing: dimension lines, witness lines, texts.
+        """Layout of the dimensions on the drawing: dimension lines, witness lines, texts.
 
         Parameters
         ----------
@@ -545,12 +544,12 @@ class Sketch:
         Returns
         -------
         SketchObject
-            As it is now: later edits do not change it.
+            A snapshot: later edits do not change it.
 
         Raises
         ------
         UnknownNameError
-            When there is no such object, or none is active.
+            If there is no such object, or no object is active.
 
         Examples
         --------
@@ -579,7 +578,7 @@ class Sketch:
 
     @property
     def objects(self) -> dict[str, dict[str, Any]]:
-        """All objects by name as data: what ``moldloft sketch --json`` prints."""
+        """All objects by name as data: the output of ``moldloft sketch --json``."""
         found = json.loads(self._session.objects_json())["objects"]
         return {one["name"]: one for one in found}
 
@@ -618,7 +617,7 @@ class Sketch:
 
     @property
     def missing(self) -> dict[str, int]:
-        """How many dimensions are missing on each axis of the active object."""
+        """Number of missing dimensions on each axis of the active object."""
         missing: dict[str, int] = self._data()["missing"]
         return missing
 
@@ -637,7 +636,7 @@ class Sketch:
         name
             The object; by default the active one.
         tolerance
-            How far chords may miss curves; by default a thousandth of the body's size.
+            Maximum distance of chords from curves; default: a thousandth of the body's size.
 
         Returns
         -------
@@ -647,7 +646,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object, or none is active.
+            If there is no such object, or no object is active.
 
         Notes
         -----
@@ -668,9 +667,10 @@ class Sketch:
         Returns
         -------
         Gradient
-            For each dimension the change of each figure for a change of 1. It is NaN where there
-            is one on each side: where faces of combined bodies lie in each other, or an edge in a
-            face, and do not move alike. ``kinks`` says where; :meth:`sweep` gives differences.
+            For each dimension the derivative of each figure. It is NaN where the two one-sided
+            derivatives differ: where faces of combined bodies coincide, or an edge is in a face,
+            and they move differently. ``kinks`` gives the positions; :meth:`sweep` gives
+            differences.
 
         Raises
         ------
@@ -742,7 +742,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object, or none is active.
+            If there is no such object, or no object is active.
         """
         return self._session.picture(self._name(name), width, height, azimuth, elevation)
 
@@ -793,7 +793,7 @@ class Drag:
     Attributes
     ----------
     changes
-        What all of them changed, when it has ended.
+        Total change, after the end.
     """
 
     def __init__(self, sketch: Sketch) -> None:
@@ -808,7 +808,7 @@ class Drag:
         point
             Its label.
         u, v
-            The new place.
+            New position.
         """
         self._sketch.run(f"POINT {int(point)} AT {float(u)!r} {float(v)!r}")
 

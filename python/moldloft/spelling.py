@@ -8,7 +8,7 @@ __all__ = ["distance", "nearest"]
 
 
 def distance(a: str, b: str) -> int:
-    """How many letters differ: put in, left out, exchanged, or swapped with the next.
+    """Number of edits: insertion, deletion, substitution, transposition of neighbours.
 
     The restricted Damerau-Levenshtein distance (Boytsov 2011, section 2.1.1).
 
@@ -34,14 +34,14 @@ def distance(a: str, b: str) -> int:
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """The known name that differs least, if it differs in a third of its letters at most.
+    """The known name with the fewest edits, at most a third of its letters.
 
     Parameters
     ----------
     word
-        What was written.
+        The word as written.
     known
-        The names that there are; of two that are as near the first is taken.
+        Known names; of two at equal distance the first is the result.
 
     Examples
     --------

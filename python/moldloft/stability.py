@@ -56,7 +56,7 @@ class Opening:
     name: str
     """Its name in reports."""
     place: tuple[float, float, float]
-    """Its place in the model's axes."""
+    """Position in the model's axes."""
 
     def height(self, heel: float, trim: float, level: float) -> float:
         """Its height over the water.
@@ -76,7 +76,7 @@ class Opening:
 
 @dataclass(frozen=True)
 class Wind:
-    """What the weather criterion of the 2008 IS Code needs of the wind, in metres."""
+    """Wind data of the weather criterion of the 2008 IS Code, in metres."""
 
     area: float
     """Projected lateral area of the ship and deck cargo above the water, m²."""
@@ -256,7 +256,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """Whether the upright body rights small turns in heel and trim."""
+        """True if small rotations in heel and trim of the upright body are righted."""
         row = self.upright
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
@@ -305,7 +305,7 @@ class Stability:
         return heels[k], self.gz(heels[k])
 
     def vanishing(self, most: float = math.pi) -> float | None:
-        """The angle of vanishing stability: where a righting arm first ceases to right.
+        """The angle of vanishing stability: the first heel at which the righting arm becomes zero.
 
         The arm falls to zero there, or jumps below where the body turns over its ends.
         ``None`` when it was never righting, or stays so up to ``most``.
@@ -506,9 +506,9 @@ class CrossCurves:
     kn: tuple[tuple[float, ...], ...]
     """The arms, ``[volume][heel]``, from the upright body's lowest height on the centre line."""
     free_trim: bool
-    """Whether the body trims freely, about the centre of buoyancy of its upright level state."""
+    """True for free trim about the centre of buoyancy of the upright level state."""
     units: Units
-    """What the numbers are in."""
+    """Units of the numbers."""
 
     def as_list(self) -> list[dict[str, Any]]:
         """The rows as dictionaries; heels in degrees."""
@@ -593,10 +593,10 @@ def cross_curves(
     heels
         In radians.
     free_trim
-        Whether the body trims freely: the centre of gravity is then over the centre of buoyancy of
-        the upright level state, as is the custom.
+        True for free trim: the centre of gravity is then over the centre of buoyancy of the upright
+        level state, as is customary.
     accuracy
-        Of the integrals, relative.
+        Relative accuracy of the integrals.
     """
     lowest = model.hydrostatics(level=0.0, accuracy=accuracy)
     keel = lowest.level - lowest.draft_mid if lowest.draft_mid is not None else 0.0
@@ -614,7 +614,7 @@ def cross_curves(
 
 
 def _root(f: Callable[[float], float], low: float, high: float) -> float:
-    """A root between two places of different signs (Brent 1973, chapter 4)."""
+    """A root between two arguments with values of different signs (Brent 1973, chapter 4)."""
     a, b, fa, fb = low, high, f(low), f(high)
     if fa == 0:
         return a
@@ -657,7 +657,7 @@ class Check:
     clause: str
     """The clause of the rule."""
     what: str
-    """What it asks for."""
+    """Requirement."""
     unit: str
     """The unit of the numbers."""
     required: float | None
@@ -671,7 +671,7 @@ class Check:
 
     @property
     def margin(self) -> float | None:
-        """What is attained beyond what is required."""
+        """Attained value minus required value."""
         if self.attained is None or self.required is None:
             return None
         return self.attained - self.required
@@ -691,7 +691,7 @@ class Assessment:
     rule: str
     """The rule's name."""
     source: str
-    """Where it stands."""
+    """Source in the rules."""
     checks: tuple[Check, ...]
     """One for each clause."""
     details: Mapping[str, float] = field(default_factory=dict)

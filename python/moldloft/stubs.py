@@ -1,7 +1,7 @@
 """The types of kinds and functions, written from the registry: ``kinds.pyi`` and ``functions.pyi``.
 
-``python -m moldloft.stubs`` writes both beside this file (``make reference`` runs it). With them
-type checkers know each kind and function by its arguments, and editors show its documentation.
+``python -m moldloft.stubs`` writes both beside this file (``make reference`` runs it). They give
+type checkers the arguments of each kind and function, and editors its documentation.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def _type(field: dict[str, Any]) -> str:
 
 
 def _parameters(row: dict[str, Any]) -> list[str]:
-    """The arguments as a signature has them; those that Python cannot name are by place only."""
+    """The arguments as in a signature; those with invalid Python names are positional only."""
     fields = row["fields"]
     if row.get("signature"):
         # Part of the language itself: some take any number of arguments, or words before them.

@@ -15,7 +15,7 @@ def table(header: list[str], rows: list[list[str]], *, left: int = 1) -> str:
     rows
         Rows of as many texts.
     left
-        How many columns are aligned to the left.
+        Number of left-aligned columns.
 
     Examples
     --------

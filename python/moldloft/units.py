@@ -1,4 +1,4 @@
-"""Units of a model: what its numbers are in, and the same numbers in others.
+"""Units of a model, and conversion of its numbers.
 
 >>> units = Units.parse("ft lb")
 >>> units.of("volume"), units.of("displacement"), units.of("heel")
@@ -67,7 +67,7 @@ ANGLES = ("trim", "heel")
 
 @dataclass(frozen=True)
 class Units:
-    """Units by their words; empty where none is stated."""
+    """Units by their words; empty if not stated."""
 
     length: str = ""
     mass: str = ""
@@ -86,7 +86,7 @@ class Units:
         Returns
         -------
         Units
-            What is not named is empty.
+            Unnamed units are empty.
         """
         found: dict[str, str] = {}
         for word in text.replace(",", " ").split():
@@ -124,7 +124,7 @@ class Units:
         return _MASSES[self.mass]
 
     def complete(self) -> Units:
-        """The units with mass and force filled in where the length is known.
+        """The units with mass and force filled in if the length is known.
 
         With metric lengths kg and N, with feet, inches and yards lb and lbf.
 
@@ -168,7 +168,7 @@ class Units:
         Returns
         -------
         float or None
-            Mass per volume; None where none is given.
+            Mass per volume; None if not given.
         """
         if density is None:
             return None
@@ -209,7 +209,7 @@ class Units:
         return "·".join(words) if all(words) else ""
 
     def factor(self, figure: str, to: Units) -> float:
-        """What a figure is multiplied by to be in other units.
+        """Conversion factor of a figure to other units.
 
         Parameters
         ----------
@@ -254,7 +254,7 @@ def shown(name: str, value: Any) -> Any:
     Returns
     -------
     float, str or None
-        What is not an angle stays as it is.
+        Figures that are not angles are unchanged.
 
     Examples
     --------
@@ -272,7 +272,7 @@ def header(name: str, units: Units) -> str:
     name
         Which figure it is.
     units
-        What the figures are in.
+        Units of the figures.
 
     Returns
     -------

@@ -28,11 +28,13 @@ _KINDS = {
 }
 
 Side = tuple[int, int, Sequence[int], Sequence[int]]
-"""A part of a face: block, face from 0, first and last place (i, j, k) from 0."""
+"""A part of a face: block, face from 0, first and last index (i, j, k) from 0."""
 
 
 Movement = tuple[Sequence[float], Sequence[float], Sequence[float]]
-"""Of a periodic joint: the centre and the angles of a rotation, in radians, and a translation."""
+"""Motion of a periodic joint: the centre and the angles of a rotation, in radians, and a
+translation.
+"""
 
 
 @dataclass(frozen=True)
@@ -78,14 +80,14 @@ def write_grids(
     title
         The name of the base.
     names
-        Those of the zones.
+        Names of the zones.
     points
         The points of each block.
     joints
-        Where blocks meet: (block, face, begin, end) of both sides, the transform of CGNS,
-        and how the second lies to the first when they are periodic.
+        Interfaces of blocks: (block, face, begin, end) of both sides, the transform of CGNS, and
+        the motion from the second to the first if they are periodic.
     boundaries
-        What meets nothing: its place, name and type.
+        Boundaries: range, name and type.
     """
 
     def place(side: Side) -> tuple[int, int, tuple[int, int, int], tuple[int, int, int]]:
@@ -106,8 +108,8 @@ def write_grids(
 def write(blocks: Blocks | _GridBlocks, title: str) -> bytes:
     """The file: a zone per block.
 
-    Interfaces are written from both sides. What meets nothing is a boundary of the family of its
-    name: a wall where it is a surface object, a symmetry plane where it lies in one.
+    Interfaces are written from both sides. Faces without a neighbour are boundaries of the family
+    of their name: a wall for a surface object, a symmetry plane for faces in one.
 
     Parameters
     ----------
@@ -194,7 +196,7 @@ def _joints(zone: Any, blocks: Blocks | _GridBlocks, zones: Sequence[str], numbe
 
 
 def _periodic(joint: Any, movement: Movement, sign: float) -> None:
-    """How the donor lies to the zone's own side (SIDS 8.5)."""
+    """Position of the donor relative to the zone's own side (SIDS 8.5)."""
     centre, angles, translation = movement
     group = cgns.node(joint, "GridConnectivityProperty", "GridConnectivityProperty_t")
     periodic = cgns.node(group, "Periodic", "Periodic_t")

@@ -194,7 +194,7 @@ class Writable:
 
     @property
     def export_remarks(self) -> list[_core.Diagnostic]:
-        """What the text or file that was written last does not keep of the model, or not exactly.
+        """Content of the model that the last text or file omits or approximates.
 
         Notes, such as the error of fitted surfaces, are no warnings of Python.
         """
@@ -238,7 +238,7 @@ class Writable:
         return bytes(self._document.picture(width, height))
 
     def kind_picture(self, kind: str, width: int = 360, height: int = 240) -> bytes:
-        """A picture, as PNG, in which the objects of one kind stand out among the others.
+        """A picture, as PNG, that emphasises the objects of one kind.
 
         Parameters
         ----------
@@ -286,10 +286,10 @@ class Writable:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``.
 
         A program becomes a model file of its objects. Parameters become ``Variable``, variables
-        that are assigned once ``Formula``, expressions of the main program in arguments ``[...]``;
-        what routines and loops compute becomes numbers. Arguments that have no column are
-        attributes ``A:Moldloft(name value)``. The text is read again, and refused where it makes
-        another object.
+        with a single assignment ``Formula``, expressions of the main program in arguments
+        ``[...]``; results of routines and loops become numbers. Arguments without a column are
+        attributes ``A:Moldloft(name value)``. The text is read back; an error reports any object
+        that differs.
 
         Parameters
         ----------

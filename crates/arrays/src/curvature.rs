@@ -1,4 +1,4 @@
-//! How arrays of points bend.
+//! Curvature of arrays of points.
 
 use crate::grids::jets;
 use crate::value::{GridArg, Points, farray, numbers, vectors};
@@ -26,7 +26,7 @@ fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError
 /// The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
 /// the inverse radius of the circle through them; at an end that of its neighbour.
 ///
-/// Of curves with a parameter there are `curvc` and `curvature`.
+/// For curves with a parameter use `curvc` and `curvature`.
 ///
 /// `curvature(c)` of a curve of points is the same; `curvature(c, t)` asks a parametric curve.
 #[derive(Kind)]
@@ -114,7 +114,8 @@ impl<T: Scalar> Build<T> for Torsions<T> {
     }
 }
 
-/// Normal and the six coefficients of the fundamental forms; `None` where the surface is singular.
+/// Normal and the six coefficients of the fundamental forms; `None` at a singular point of the
+/// surface.
 fn forms<T: Real>(jet: &SurfJet<T>) -> Option<(Vec3<T>, [T; 6])> {
     let cross = jet.u.cross(jet.v);
     let square = cross.norm_sq();
@@ -195,7 +196,7 @@ impl<T: Scalar> Build<T> for Gauss<T> {
 /// The mean curvatures at the points of a surface, positive where it bends towards its natural
 /// normal s_i x s_j: H = (E N - 2 F M + G L) / (2 (E G - F^2)), of the bicubic spline through them.
 ///
-/// Of numbers and vectors `mean` is their average: see `average`.
+/// For numbers and vectors `mean` is their average: see `average`.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

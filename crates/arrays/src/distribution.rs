@@ -117,10 +117,10 @@ impl<T: Real> Build<T> for Cosine<T> {
     }
 }
 
-/// `n` numbers from `start` to `end` whose steps grow by one ratio, the first step being `ds1`.
+/// `n` numbers from `start` to `end` with steps in geometric progression; the first step is `ds1`.
 ///
-/// The ratio solves ds1 (r^N - 1) / (r - 1) = |end - start| for N = n - 1 steps; it is below 1 where
-/// `ds1` is more than the mean step.
+/// The ratio solves ds1 (r^N - 1) / (r - 1) = |end - start| for N = n - 1 steps; it is below 1 if
+/// `ds1` exceeds the mean step.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -149,8 +149,8 @@ impl<T: Real> Build<T> for Geometric<T> {
     }
 }
 
-/// `n` numbers from `start` to `end` whose steps grow by one ratio from both ends inward, the first
-/// step being `ds1` and the last `ds2`.
+/// `n` numbers from `start` to `end` with steps that grow by one ratio from both ends inward; the
+/// first step is `ds1`, the last `ds2`.
 ///
 /// The step at which the two progressions meet is chosen so that they meet as evenly as whole
 /// numbers of steps allow.
@@ -252,11 +252,12 @@ impl<T: Real> Build<T> for DTanh<T> {
     }
 }
 
-/// `n` numbers from `start` to `end` by the hyperbolic tangent law whose first and last steps are
-/// `ds1` and `ds2` to the bit.
+/// `n` numbers from `start` to `end` by the hyperbolic tangent law, with first and last steps of
+/// exactly `ds1` and `ds2`.
 ///
-/// 0 leaves that end free, both 0 gives uniform spacing. On coarse rows `d_tanh`, whose spacings are slopes, misses
-/// the asked cells by a third; this one solves for the slopes that give them.
+/// A step of 0 leaves that end free; two give uniform spacing. On coarse rows `d_tanh`, whose `ds1`
+/// and `ds2` are slopes, misses the requested cells by up to a third; this function solves for the
+/// slopes that give them.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

@@ -1,4 +1,4 @@
-//! What curves and surfaces with parameters are at given parameters.
+//! Evaluation of curves and surfaces at given parameters.
 
 use crate::value::{Farray, Numbers, Points, vectors};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
@@ -8,7 +8,7 @@ use moldloft_registry::{
 };
 use moldloft_spline::arclen;
 
-/// The accuracy of lengths, as a share of a rough one.
+/// Accuracy of lengths relative to a rough estimate.
 const LENGTH_ACCURACY: f64 = 1e-12;
 
 /// The fault of a parameter outside [0, 1], in field `field`.

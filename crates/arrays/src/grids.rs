@@ -15,10 +15,10 @@ use moldloft_registry::{
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
-/// Boundary points farther than this share of the size from the surface are not on it.
+/// Distance relative to the size beyond which boundary points are not on the surface.
 const OFF_WALL: f64 = 1e-6;
 
-/// Points within this share of their size about a line have no plane of their own.
+/// Distance from a line, relative to their size, within which points have no plane of their own.
 const NO_WIDTH: f64 = 1e-12;
 
 /// The fault of a grid, about field 0.
@@ -53,7 +53,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
                 .expected(format!("a first cell of at most {fits:.3e}"))
                 .help("make the first cell smaller, or the points beside the corner wider"),
             _ => with("folded-grid").expected("unfolded cells").help(
-                "march less far, smooth more, space the wall more evenly there, or take the layers below with \
+                "reduce the distance, increase the smoothing, even out the spacing of the wall there, or take the layers below with \
                  stop = \"keep\"; layers lie on the side of s_i x s_j: s[, ::-1] marches off the other one",
             ),
         },
@@ -81,11 +81,12 @@ fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallErro
 /// Transfinite interpolation: the surface with the four edges of `s`, to the bit, and its inside
 /// interpolated from them.
 ///
-/// `s` is a surface whose edges are set (what is inside does not matter); or a list of four curves,
-/// s[1,], s[m,], s[,1], s[,n], which must meet in the corners; or a list of six surfaces, the faces
-/// i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is that block. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
-/// length with cubic blending: blocks join smoothly) or "soni2" (arc lengths averaged rather than
-/// intersected). An edge without length, a pole, takes the spacing of the opposite one.
+/// `s` is a surface with its edges set (inner points are ignored); or a list of four curves, s[1,],
+/// s[m,], s[,1], s[,n], which must meet at the corners; or a list of six surfaces, the faces i = 1,
+/// i = ni, j = 1, j = nj, k = 1, k = nk of a block, for which the value is that block. `kind` is
+/// "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc length with cubic
+/// blending: blocks join smoothly) or "soni2" (averaged arc lengths instead of their intersection).
+/// An edge of zero length, a pole, takes the spacing of the opposite one.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -201,14 +202,15 @@ const EDGES: [(&str, GridSide); 4] = [
 /// A grid smoothed by the elliptic equations
 /// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.
 ///
-/// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (the spacing of the edges is carried
+/// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
 /// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
-/// 1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one on the
-/// surface `on`, or, if that is not given, on the spline surface through its own points. `n` sweeps are done
-/// at most, fewer when no point moves by more than `tol` of the size and walls have what is asked; when they
-/// are not enough, a remark says how far off the grid is. For "sorenson" `walls` names edges, "i1", "im", "j1",
-/// "jn", blank-separated, `spacing` is the first cell there, `angle` the angle of the grid lines to
-/// the wall. A result with folded cells is refused, unless `folded` is "allow".
+/// 1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one
+/// on the surface `on`, by default on the spline surface through its own points. The iteration ends
+/// after `n` sweeps, or once no point moves by more than `tol` of the size and the walls have the
+/// requested spacing and angle; without convergence a remark gives the residual. For "sorenson"
+/// `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
+/// height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
+/// error, unless `folded` is "allow".
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -221,10 +223,10 @@ const EDGES: [(&str, GridSide); 4] = [
 pub struct EllipticGrid<T: Scalar> {
     /// The grid.
     s: GridArg<T>,
-    /// The most sweeps.
+    /// Maximum number of sweeps.
     #[field(default = 5000, min = 0, max = 1e6)]
     n: usize,
-    /// Stops when no point moves by more than this share of the size.
+    /// Convergence: maximum displacement of a point in a sweep, relative to the size.
     #[field(default = 1e-8, min = 0)]
     tol: T,
     /// "laplace", "middlecoff" or "sorenson".
@@ -234,10 +236,10 @@ pub struct EllipticGrid<T: Scalar> {
     on: Option<SurfaceRef<T>>,
     /// Walls, for the method sorenson: "i1", "im", "j1", "jn".
     walls: Option<Arc<str>>,
-    /// Spacing off the walls.
+    /// First cell height at the walls.
     #[field(min = 0)]
     spacing: Option<T>,
-    /// Angle to the walls; a right one if not given.
+    /// Angle to the walls; default: a right angle.
     #[field(angle, default = std::f64::consts::FRAC_PI_2)]
     angle: T,
     /// Over-relaxation.
@@ -340,7 +342,8 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
     }
 }
 
-/// Refuses points that are all at one place: nothing can be smoothed, as where no element was set.
+/// Error for points that all coincide, such as an array without any element set: there is nothing
+/// to smooth.
 pub(crate) fn extended<T: Real>(planes: &[Vec<T>; 3], field: FieldId) -> Result<(), CallError> {
     let still = |plane: &Vec<T>| plane.iter().all(|x| x.re() == plane[0].re());
     if !planes.iter().all(still) {
@@ -352,7 +355,7 @@ pub(crate) fn extended<T: Real>(planes: &[Vec<T>; 3], field: FieldId) -> Result<
         .in_field(field))
 }
 
-/// What a smoothing that has not converged came to.
+/// Remark on a smoothing that has not converged.
 pub(crate) fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
     use std::fmt::Write;
     let Smoothed { sweeps, change, walls, .. } = done;
@@ -389,7 +392,7 @@ fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, C
     Ok(walls)
 }
 
-/// True when all points lie in one plane, to rounding.
+/// True if all points are coplanar, to rounding.
 fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
     let plain = grid.re();
     let points: Vec<Vec3> = plain.points().collect();
@@ -432,7 +435,7 @@ fn through<T: Real>(
         })
 }
 
-/// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
+/// The parameters of the points of a surface nearest to those of a grid, which must be on it.
 fn on_surface<T: Scalar>(
     grid: &SurfaceGrid<T>,
     on: &SurfaceRef<T>,
@@ -456,17 +459,19 @@ fn on_surface<T: Scalar>(
 /// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
 /// and Steger 1992): lines leave it at right angles, with the layers at given heights.
 ///
-/// Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve, to the
-/// left of its direction as seen against `normal`: the value is the surface whose line g[k,] is layer k; it
-/// lies in the plane of the curve, or on the surface `on` (a collar). The first layer has its height
-/// everywhere, at corners and sharp tails too; heights farther out are means. `sides` says what happens at
-/// edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an edge that is one point, "symmetry x", "y"
-/// or "z" for one in a plane of symmetry of constant x, y or z, "constant x", "y" or "z" for one that only
-/// keeps that coordinate, "periodic" for two that are one line; edges that are not named are free. The ends of
-/// a curve are "i1" and "im". Every cell is tested; what would fold is marched with less constraint and more
-/// smoothing, or refused with the layer, the place and the cause. `stop` ends a march early: "keep" (below the
-/// layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the first layer with a worse
-/// cell), "isotropic" (with the first layer whose cells are as high as long).
+/// Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
+/// to the left of its direction for a view against `normal`: the value is the surface whose line
+/// g[k,] is layer k, in the plane of the curve or on the surface `on` (a collar). The first layer
+/// has its height everywhere, also at corners and sharp tails; heights farther out are means.
+/// `sides` gives conditions at edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an
+/// edge that is one point; "symmetry x", "y" or "z" for an edge in a symmetry plane of constant x,
+/// y or z; "constant x", "y" or "z" for an edge that only keeps that coordinate; "periodic" for two
+/// coincident edges; edges without a condition are free. The ends of a curve are "i1" and "im".
+/// Every cell is tested; a layer that would fold is marched with weaker constraints and more
+/// smoothing, or is an error with layer, position and cause. `stop` ends a march early: "keep"
+/// (below the layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the
+/// first layer with a worse cell), "isotropic" (with the first layer whose cells are as high as
+/// long).
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -484,10 +489,10 @@ pub struct HyperbolicGrid<T: Scalar> {
     /// "symmetry z", "constant x", "constant y" or "constant z".
     #[field(default = "")]
     sides: Arc<str>,
-    /// How strongly converging lines are smoothed apart; 0 for not at all.
+    /// Strength of the smoothing of converging lines; 0: none.
     #[field(default = 1, min = 0, max = 10)]
     smoothing: T,
-    /// Normal of the plane of a curve, z if not given; with `on`, the side of the surface that is seen.
+    /// Normal of the plane of a curve, default z; with `on`, the visible side of the surface.
     normal: Option<Vec3<T>>,
     /// When the march ends early: "keep", "jacobian 0.1", "skew 0.9", "growth 1.5" or "isotropic".
     #[field(default = "")]
@@ -653,15 +658,16 @@ fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {
 
 /// The quality of the cells of a grid [m,n]: numbers [m-1,n-1]; of a block [l,m,n]: numbers [l-1,m-1,n-1].
 ///
-/// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
-/// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
-/// "growth_i", "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the
-/// corners from a plane over the size; "turn": the greatest angle by which grid lines turn there;
-/// "area". Cells at poles count as triangles.
+/// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative at an inverted
+/// corner; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best; "growth_i",
+/// "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the corners
+/// from a plane relative to the size; "turn": the greatest angle between consecutive segments of a
+/// grid line; "area". Cells at poles count as triangles.
 ///
-/// Of blocks: "sj", the least triple product of the unit edges at a corner, negative where it is turned over against
-/// the block's own hand; "skew" of all angles of faces; "aspect" of the lines between the middles of opposite faces;
-/// "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners at edges without length do not count.
+/// Blocks: "sj", the least triple product of the unit edges at a corner, negative if opposite to
+/// the block's own orientation; "skew" of all angles of faces; "aspect" of the lines between the
+/// middles of opposite faces; "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners
+/// at edges of zero length are ignored.
 #[derive(Kind)]
 #[kind(
     class = Any,

@@ -1,15 +1,15 @@
 //! The intrinsics of the array language: distributions, splines, measures, moves, meetings,
 //! structured grids.
 //!
-//! Each is a documented struct whose fields are its arguments and which builds its value; the
-//! derive macro makes a row of the registry of it. Adding one is adding a struct and a line in
-//! [`rows`]. All are generic over the scalar, so derivatives flow through every one.
+//! Each is a documented struct whose fields are its arguments; the derive macro generates its row
+//! of the registry. A new function needs a struct and a line in [`rows`]. All are generic over the
+//! scalar and propagate derivatives.
 //!
 //! `farray, curve, surface (arrays); pcurve, psurface (shapes) -> intrinsic -> array or shape`
 //!
-//! How arrays are held is known to `value` only.
+//! Only `value` depends on the representation of arrays.
 //!
-//! Invariant: this crate knows no graph, no language and no file.
+//! Invariant: no dependency on graph, language or files.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // `!(a > b)` refuses NaN, `a <= b` lets it pass.

@@ -1,4 +1,4 @@
-//! Where arrays and shapes come together: nearest points, projections, intersections.
+//! Arrays against shapes: nearest points, projections, intersections.
 
 use crate::value::{Shaped, VectorArray, numbers, vectors};
 use moldloft_locate::march::{Branch, Crossing};
@@ -85,7 +85,7 @@ fn curve_foot<T: Real>(curve: &CurveRef<T>, p: Vec3<T>, t: f64) -> T {
 /// The parameter of the point of a curve that is nearest to a point; for each point of a curve of
 /// points, an farray.
 ///
-/// Of equally near ones the first. Ends count.
+/// With several at equal distance, the first. Ends are included.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -115,11 +115,11 @@ impl<T: Scalar> Build<T> for Closest<T> {
     }
 }
 
-/// The points of a surface that are nearest to the points of an array ("closest"), or that lie behind
-/// or before them along a direction.
+/// The points of a surface nearest to the points of an array ("closest"), or their projections
+/// along a direction, either way.
 ///
-/// Of several meetings along a direction the nearest counts. With "closest" edges count: a point
-/// beyond an edge comes to lie on it.
+/// Along a direction the nearest of several intersections counts. With "closest" a point beyond an
+/// edge is projected to the edge.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -289,7 +289,7 @@ impl<T: Scalar> Build<T> for Intersections<T> {
     }
 }
 
-/// How many branches there are, and the points of all of them or of the one asked for (from 0).
+/// The number of branches, and the points of all of them or of the requested one (from 0).
 fn meetings<T: Real>(
     a: &Value<T>,
     b: &Value<T>,

@@ -1,4 +1,5 @@
-//! Masks and what is taken by them: choices, counts, positions; sorted, summed and interpolated rows.
+//! Functions of masks: choices, counts, positions; sorting, cumulative sums and interpolation of
+//! rows.
 //!
 //! A mask is an array of 0 and 1, as comparisons of arrays give; any number but 0 counts as 1.
 
@@ -22,7 +23,7 @@ fn differ(a: ArrayShape, b: ArrayShape, field: FieldId) -> CallError {
         .in_field(field)
 }
 
-/// What is chosen by a mask: `a` where it holds, else `b`, element by element.
+/// Choice by a mask: `a` where the mask is true, else `b`, element by element.
 ///
 /// Numbers or vectors; each a single one or an array of the mask's shape. Both are computed before one is chosen.
 #[derive(Kind)]
@@ -35,9 +36,9 @@ fn differ(a: ArrayShape, b: ArrayShape, field: FieldId) -> CallError {
 pub struct Where<T: Scalar> {
     /// The mask.
     mask: Numbers<T>,
-    /// What is taken where it holds.
+    /// Value where the mask is true.
     a: Value<T>,
-    /// What is taken where it does not.
+    /// Value where it is false.
     b: Value<T>,
 }
 
@@ -105,7 +106,7 @@ impl<T: Scalar> Build<T> for Where<T> {
 
 /// Numbers kept between two bounds, element by element; the bounds are numbers or arrays of the same shape.
 ///
-/// The derivative is that of what the value is: of a bound, where it holds.
+/// The derivative is that of the number or bound that is returned.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -188,8 +189,8 @@ impl<T: Scalar> Build<T> for All<T> {
     }
 }
 
-/// The positions, from 1, at which a mask of a row holds; none when it holds nowhere. Of a text the position of the
-/// first occurrence of a part, 0 where there is none.
+/// The positions, from 1, of the true elements of a row; empty if there are none. For a text: the
+/// position of the first occurrence of a part, or 0.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -201,7 +202,7 @@ impl<T: Scalar> Build<T> for All<T> {
 pub struct Find<T: Scalar> {
     /// The mask, or the text.
     a: Value<T>,
-    /// What is looked for in a text.
+    /// Part of the text to find.
     part: Option<Arc<str>>,
 }
 
@@ -250,7 +251,7 @@ impl<T: Scalar> Build<T> for Sort<T> {
     }
 }
 
-/// So many numbers are sorted between two looks at what is left of the budget.
+/// Numbers sorted between two checks of the remaining budget.
 const SORTED_AT_ONCE: usize = 1 << 16;
 
 /// The numbers in order, equal ones as they were: long rows piece by piece, then merged.
@@ -346,7 +347,7 @@ pub struct Interp<T: Scalar> {
     x: Numbers<T>,
     /// Ascending.
     xs: Farray<T>,
-    /// As many.
+    /// Ordinates, one for each abscissa.
     ys: Farray<T>,
 }
 

@@ -1,4 +1,4 @@
-//! Arrays of points moved as a whole, and what follows a curve.
+//! Rigid motions of arrays of points, and frames along curves.
 
 use crate::value::{Points, Shaped, vectors};
 use moldloft_num::{Real, Vec3};
@@ -106,9 +106,9 @@ impl<T: Scalar> Build<T> for Mirror<T> {
     }
 }
 
-/// A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
-/// axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840). Quarter turns are
-/// exact: those of multiples of PI/2.
+/// A vector, curve, surface or block rotated about an axis, right-handed: rotate(o, axis, angle)
+/// about the axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues
+/// 1840). Rotations by multiples of PI/2 are exact.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -123,7 +123,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
 pub struct Rotate<T: Scalar> {
     /// The points to turn.
     o: Shaped<T>,
-    /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
+    /// A point of the axis with four arguments; the direction of the axis with three.
     p: Vec3<T>,
     /// Direction of the axis; or the angle, in radians.
     axis: Value<T>,
@@ -155,11 +155,12 @@ impl<T: Scalar> Build<T> for Rotate<T> {
     }
 }
 
-/// The surface of a curve turned about the x axis: line s[,j] at the j-th of `n` even angles from
-/// `a0` to `a1`.
+/// The surface of revolution of a curve about the x axis: line s[,j] is at the j-th of `n` equally
+/// spaced angles from `a0` to `a1`.
 ///
-/// A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
-/// exactly: the surface has a pole. Lines at multiples of PI/2 lie exactly in the planes of the axes.
+/// A point (x, y, z) maps to (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay
+/// there exactly: the surface has a pole. Lines at multiples of PI/2 are exactly in the coordinate
+/// planes.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -269,8 +270,8 @@ impl<T: Scalar> Build<T> for Tangents<T> {
 /// `tangents(c)` and their vector product a frame at each point (double reflection: Wang and others,
 /// ACM Trans. Graph. 27, 2008).
 ///
-/// The first normal is `n0` made normal to the first tangent; if not given, one normal to the tangent
-/// and to the axis that is furthest from it.
+/// The first normal is the component of `n0` normal to the first tangent; by default `n0` is the
+/// coordinate axis with the largest angle to the tangent.
 #[derive(Kind)]
 #[kind(
     class = Vectors,

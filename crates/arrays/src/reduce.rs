@@ -1,4 +1,4 @@
-//! What an array is as a whole: products, lengths, boxes, centroids.
+//! Reductions of an array: products, lengths, boxes, centroids.
 
 use crate::value::{Farray, Items, Points, Shaped, VectorArray, farray};
 use moldloft_num::{Real, Vec3};
@@ -87,7 +87,7 @@ impl<T: Scalar> Build<T> for Argmax<T> {
 pub struct Dot<T: Scalar> {
     /// Numbers.
     a: Farray<T>,
-    /// As many.
+    /// Second row, of equal length.
     b: Farray<T>,
 }
 
@@ -203,8 +203,8 @@ impl<T: Scalar> Build<T> for Cumlen<T> {
     }
 }
 
-/// The centroid of a curve of points, its steps weighted by their length, or of a surface, its cells
-/// by their area; of what has no extent, the mean of the points.
+/// The centroid of a curve of points (segments weighted by length) or of a surface (cells weighted
+/// by area); for zero length or area, the mean of the points.
 #[derive(Kind)]
 #[kind(
     class = Vector,

@@ -9,8 +9,8 @@ use moldloft_grid::{
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
-/// A section as a closed curve in z = const, clockwise from its tail, so that the left of it is outside; a blunt tail
-/// is closed with `base` cells.
+/// A section as a closed curve in z = const, clockwise from its tail, with the outside on its left;
+/// a blunt tail is closed with `base` cells.
 fn closed_section<T: Real>(
     mut points: Vec<Vec3<T>>,
     base: usize,
@@ -85,12 +85,12 @@ fn marched<T: Scalar>(
     Ok(grids.next().expect("one grid off a curve"))
 }
 
-/// An O-grid round a section in x and y: the surface whose line g[k,] is layer k, its first and last columns the same
-/// line from the tail.
+/// An O-grid round a section in x and y: the surface whose line g[k,] is layer k; its first and
+/// last columns coincide in a line from the tail.
 ///
-/// The section is given once round, from the tail to the tail, either way; the gap of a blunt tail is closed with
-/// `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its angle: a C-grid has better cells
-/// there.
+/// The section is a closed curve from tail to tail, in either direction; the gap of a blunt tail is
+/// closed with `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its
+/// angle: a C-grid has better cells there.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -122,12 +122,13 @@ impl<T: Scalar> Build<T> for OGrid<T> {
     }
 }
 
-/// A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end of the wake below
-/// the section round its nose to the far end above it.
+/// A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end
+/// of the wake below the section round its nose to the far end above it.
 ///
-/// The section is given once round, from the tail to the tail, either way, the tail at its greatest x. The wake runs
-/// along x for the length `wake` in `n` cells that grow from the cell at the tail; both its sides have the same
-/// points, to the bit. A blunt tail is an error: close it, or make an O-grid.
+/// The section is a closed curve from tail to tail, in either direction, with the tail at its
+/// greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
+/// cell at the tail; both its sides have identical points. A blunt tail is an error: close it, or
+/// make an O-grid.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -172,16 +173,17 @@ impl<T: Scalar> Build<T> for CGrid<T> {
     }
 }
 
-/// An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
-/// section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
-/// last height below the lower and above the upper end of the section.
+/// An H-grid round a section in x and y: the list of two surfaces, below and above it. Their lines
+/// g[,1] are the section's side between the stagnation line ahead of the nose and the wake; their
+/// lines g[,n] are straight, at the last height below and above the section.
 ///
-/// The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
-/// greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the
-/// section's own at nose and tail. Both surfaces share their points there to the bit; both are right-handed, so the
-/// lower one runs upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
-/// first height, at right angles; a remark says how far off it is when `sweeps` are not enough. With `sweeps` 0 the
-/// grid is that of `tfi`.
+/// The section is a closed curve from tail to tail, in either direction, with the nose at its least
+/// x and a sharp tail at its greatest. The lines ahead and behind are parallel to x over `ahead`
+/// and `behind`, with `n` cells each that grow from the section's own at nose and tail. Both
+/// surfaces have identical points there; both are right-handed, so the lower one is directed
+/// upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
+/// first height, at right angles; without convergence in `sweeps` a remark gives the residual. With
+/// `sweeps` 0 the grid is that of `tfi`.
 #[derive(Kind)]
 #[kind(
     class = List,
@@ -337,7 +339,7 @@ fn self_smoothed<T: Scalar>(
     Ok(done.grid)
 }
 
-/// That a section's tail is open.
+/// Error for an open tail of a section.
 fn blunt<T: Real>(section: &[Vec3<T>], count: usize, field: FieldId) -> CallError {
     let gap = section[count - 1].re().distance(section[count].re());
     CallError::new("edges-apart", format!("the tail is blunt, {gap:.3e} thick"))

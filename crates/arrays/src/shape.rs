@@ -1,4 +1,4 @@
-//! Arrays made of arrays: turned round, joined, spread, stacked.
+//! Arrays from arrays: reversed, joined, spread, stacked.
 
 use crate::value::{Items, MORE_MEMORY, Points, farray, gathered, vectors, within_share};
 use moldloft_num::{Real, Vec3};
@@ -69,11 +69,10 @@ impl<T: Scalar> Build<T> for Swap<T> {
     }
 }
 
-/// Ends that are nearer than this share of the curves' size are one point.
+/// Distance relative to the curves' size within which two ends are one point.
 const SAME: f64 = 1e-12;
 
-/// Curves (or farrays) one after the other, as one; where one ends at the start of the next, that
-/// point comes once.
+/// Curves (or farrays) joined end to end; a common point of two is kept once.
 ///
 /// Ends count as one when they differ by less than 1e-12 of the size: by rounding. The point of the
 /// first of the two stays.
@@ -245,8 +244,8 @@ impl<T: Scalar> Build<T> for PointsOf<T> {
     }
 }
 
-/// The surface whose lines s[1,], s[2,], ... are these curves, all equally long; of surfaces of one shape the block
-/// whose layers b[,,1], b[,,2], ... they are.
+/// The surface with these curves, of equal length, as lines s[1,], s[2,], ...; or the block with
+/// these surfaces, of equal shape, as layers b[,,1], b[,,2], ....
 #[derive(Kind)]
 #[kind(
     class = Any,

@@ -1,4 +1,4 @@
-//! The inverse questions of distributions: how many points, which spacing.
+//! Inverse functions of distributions: number of points, spacing.
 
 use crate::distribution::{Arguments, MOST_NUMBERS, fault};
 use crate::value::{Numbers, VectorArray};
@@ -9,7 +9,7 @@ use moldloft_spline::distribution::{count_for, first_for, growth};
 /// The fewest numbers with which `d_tanhx(0, length, ds1, ds2, n)` grows by at most the factor
 /// `growth` from step to step; with 0 for a free end, as there.
 ///
-/// A whole number: it has no derivatives.
+/// The value is an integer and has no derivatives.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -51,8 +51,8 @@ impl<T: Real> Build<T> for CountFor<T> {
     }
 }
 
-/// The first step of `n` numbers over `length` whose steps grow by the factor `growth`:
-/// length (growth - 1) / (growth^(n-1) - 1).
+/// The first step of `n` numbers over `length` with steps that grow by the factor `growth`: length
+/// (growth - 1) / (growth^(n-1) - 1).
 #[derive(Kind)]
 #[kind(
     class = Number,

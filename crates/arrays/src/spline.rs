@@ -11,8 +11,8 @@ use moldloft_spline::{
 };
 use std::sync::Arc;
 
-/// The fault of a spline through the points of an argument, with the end conditions of another; `of` says
-/// what a point is there.
+/// The error of a spline through the points of an argument, with the end conditions of another;
+/// `of` names a point there.
 pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) -> CallError {
     match error {
         InterpolationError::Coincident { first, second } => {
@@ -49,7 +49,7 @@ pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) 
 const ENDS: &str = "\"natural\", \"quadratic\", \"specified\", \"notaknot\", \"bessel\" or \
                     \"periodic\", or two of them such as \"natural,specified\"";
 
-/// What holds at one end, before its slope is known.
+/// Condition at one end, before its slope is computed.
 #[derive(Clone, Copy, PartialEq)]
 enum EndCondition {
     Natural,
@@ -107,7 +107,7 @@ fn condition<T>(name: EndCondition, slope: Vec3<T>) -> End<T> {
     }
 }
 
-/// What the parameter of a spline is.
+/// Parameter of a spline.
 #[derive(Clone, Copy, PartialEq)]
 struct SplineParametrization {
     law: Parametrization,
@@ -138,16 +138,16 @@ fn basis(word: &str, field: FieldId) -> Result<SplineParametrization, CallError>
 
 /// The cubic spline through the points of a curve, as a pcurve.
 ///
-/// `ends` says what holds at the ends: "natural" (no curvature), "quadratic" (the end piece is a
-/// parabola), "specified" (the tangents `t1`, `t2`), "notaknot", "bessel", "periodic"; or one of each
-/// as "natural,specified". `basis` is the parameter: "arc", the cumulative chord over the whole;
-/// "index"; "centripetal"; "arclen", the true arc length; "arclen+breaks", true arc length of splines
-/// that end wherever the curvature jumps, which a plain spline rounds off. It passes through every
-/// point, the two ends to the bit.
+/// `ends` gives the end conditions: "natural" (zero second derivative), "quadratic" (the end piece
+/// is a parabola), "specified" (the tangents `t1`, `t2`), "notaknot", "bessel", "periodic"; or one
+/// of each as "natural,specified". `basis` is the parameter: "arc", the cumulative chord over the
+/// whole; "index"; "centripetal"; "arclen", the true arc length; "arclen+breaks", true arc length
+/// of splines that end at jumps of curvature, which a plain spline rounds off. The curve
+/// interpolates every point, the two ends exactly.
 ///
-/// Tangents are dr/ds for the length-like bases and dr/d(index) for "index". Where curvature jumps is
-/// found from the points: continued from both sides, the curvatures of circles through three neighbours
-/// miss each other there by a quarter and more. `breaks` gives the points by their indices instead.
+/// Tangents are dr/ds for the length-like bases and dr/d(index) for "index". Jumps of curvature are
+/// detected from the points: the curvatures of circles through three neighbours, extrapolated from
+/// both sides, differ there by a quarter or more. `breaks` gives them by indices of points instead.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -165,11 +165,11 @@ pub struct Makecc<T: Scalar> {
     /// The parameter: "arc", "index", "centripetal", "arclen", "arclen+breaks" or "arc+breaks".
     #[field(default = "arc")]
     basis: Arc<str>,
-    /// Tangent at the start, where it is "specified".
+    /// Tangent at the start, for "specified".
     t1: Option<Vec3<T>>,
-    /// Tangent at the end, where it is "specified".
+    /// Tangent at the end, for "specified".
     t2: Option<Vec3<T>>,
-    /// Indices of the points at which the spline is split; found where not given.
+    /// Indices of the points at which the spline is split; default: detected.
     #[field(min = 1)]
     breaks: Option<Vec<usize>>,
 }
@@ -241,12 +241,12 @@ impl<T: Scalar> Build<T> for Makecc<T> {
     }
 }
 
-/// The condition at a break, whose sides know nothing of each other.
+/// The condition at a break, whose sides are independent.
 fn inner(outer: EndCondition) -> EndCondition {
     if outer == EndCondition::NotAKnot { EndCondition::NotAKnot } else { EndCondition::Quadratic }
 }
 
-/// dC/dt at an end from the asked tangent.
+/// dC/dt at an end from the specified tangent.
 fn slope<T: Real>(
     law: Parametrization,
     points: &[Vec3<T>],
@@ -415,8 +415,8 @@ fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> Cal
     fault(error, line, [points, points])
 }
 
-/// The bicubic spline surface through the points of a surface, as a psurface: u runs along the first
-/// index, v along the second.
+/// The bicubic spline surface through the points of a surface, as a psurface, with u along the
+/// first index and v along the second.
 ///
 /// `ends` as for `makecc`, without "specified"; `ends_v` for the lines along the second index. Parameters
 /// are means over the lines: "arc" chords, "index" or "centripetal". Lines that are one point (a nose,
@@ -440,8 +440,8 @@ pub struct Makecs<T: Scalar> {
     /// The parameters: "arc", "index" or "centripetal".
     #[field(default = "arc")]
     basis: Arc<str>,
-    /// End conditions of the lines along the second index, those of the first if not given: "natural", "quadratic",
-    /// "specified", "notaknot", "bessel" or "periodic".
+    /// End conditions of the lines along the second index (default: those of the first): "natural",
+    /// "quadratic", "specified", "notaknot", "bessel" or "periodic".
     ends_v: Option<Arc<str>>,
 }
 

@@ -1,4 +1,5 @@
-//! Texts cut, searched, replaced and turned into numbers. Characters are counted from 1.
+//! Functions of texts: parts, search, replacement, conversion to numbers. Characters are counted
+//! from 1.
 
 use crate::value::TextArg;
 use moldloft_num::Real;
@@ -92,9 +93,9 @@ impl<T: Scalar> Build<T> for NumberOf<T> {
 pub struct Replace<T: Scalar> {
     /// The text.
     text: TextArg<T>,
-    /// What is replaced, at least one character.
+    /// Part to replace, at least one character.
     part: Arc<str>,
-    /// What takes its place.
+    /// Replacement.
     by: Arc<str>,
 }
 
@@ -133,7 +134,7 @@ fn nothing(field: FieldId) -> CallError {
 pub struct SplitText<T: Scalar> {
     /// The text.
     text: TextArg<T>,
-    /// What stands between the parts.
+    /// Separator of the parts.
     separator: Option<Arc<str>>,
 }
 
@@ -207,7 +208,7 @@ impl<T: Scalar> Build<T> for Upper<T> {
     }
 }
 
-/// The position, from 1, of the first occurrence of a part in a text; 0 where there is none.
+/// The position, from 1, of the first occurrence of a part in a text, or 0.
 pub fn place_in<T: Real>(text: &str, part: &str) -> Value<T> {
     let place = text.find(part).map_or(0, |at| text[..at].chars().count() + 1);
     Value::Number(T::from(place as f64))
@@ -225,7 +226,7 @@ pub fn place_in<T: Real>(text: &str, part: &str) -> Value<T> {
 pub struct Append<T: Scalar> {
     /// The list.
     items: Value<T>,
-    /// What is added.
+    /// Item to append.
     value: Value<T>,
 }
 

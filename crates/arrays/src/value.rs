@@ -1,4 +1,5 @@
-//! Arrays in and out: the one place that knows how a value holds its numbers and vectors.
+//! Arrays in and out: the only module that depends on the representation of numbers and vectors in
+//! a value.
 
 use moldloft_grid::{SurfaceGrid, VolumeGrid};
 use moldloft_num::{Real, Vec3};
@@ -31,7 +32,7 @@ pub struct VectorArray<T> {
     pub items: Vec<Vec3<T>>,
 }
 
-/// A number or an farray; what is computed for each of its numbers has its shape.
+/// A number or an farray; results element by element have its shape.
 pub enum Numbers<T> {
     One(T),
     Many(Farray<T>),
@@ -43,7 +44,7 @@ fn not_finite(index: usize) -> CallError {
         .in_item(index)
 }
 
-/// What a value is, in the words of the array language.
+/// Type of a value, in the terms of the array language.
 pub fn type_name<T: Real>(value: &Value<T>) -> &'static str {
     match value {
         Value::Numbers(_) => "an farray",
@@ -205,14 +206,14 @@ impl<T: Real> Numbers<T> {
     }
 }
 
-/// One array takes at most this share of the memory that is allowed: a statement on it has several more such arrays
-/// under way.
+/// Fraction of the allowed memory that one array may take: a statement needs several such arrays at
+/// a time.
 const SHARE_OF_MEMORY: u64 = 16;
 
-/// Whether one array may have so many elements of that many numbers.
+/// True if an array of `count` elements of `numbers` numbers each is within the limit.
 ///
 /// # Errors
-/// How many it may have, in words.
+/// Otherwise: the limit, as text.
 pub fn within_share(count: f64, numbers: u64) -> Result<(), String> {
     let allowed = moldloft_budget::limits().memory;
     let most = allowed / SHARE_OF_MEMORY / (8 * numbers);
@@ -225,7 +226,7 @@ pub fn within_share(count: f64, numbers: u64) -> Result<(), String> {
     ))
 }
 
-/// How to have greater arrays.
+/// Remedy for an array above the limit.
 pub const MORE_MEMORY: &str = "allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`";
 
 /// Numbers as a value.
@@ -243,8 +244,8 @@ pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
     numbers(ArrayShape::Row(items.len()), items)
 }
 
-/// A list of numbers, of vectors, of rows of equal length, or of three coordinates of which one at least is an array,
-/// as the array that it spells; anything else as it is.
+/// A list of numbers, of vectors, of rows of equal length, or of three coordinates at least one an
+/// array, converted to an array; any other value unchanged.
 pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     let Value::List(items) = value else { return Cow::Borrowed(value) };
     let all_numbers: Option<Vec<T>> = items
@@ -310,7 +311,7 @@ fn by_coordinates<T: Real>(items: &[Value<T>]) -> Option<Value<T>> {
     Some(Value::Vectors(Arc::new(Planes { shape: all, planes: [plane(x)?, plane(y)?, plane(z)?] })))
 }
 
-/// A vector, a curve or a surface: what is moved keeps its shape.
+/// A vector, a curve or a surface; a motion keeps the shape.
 pub enum Shaped<T> {
     One(Vec3<T>),
     Many(VectorArray<T>),
@@ -458,7 +459,7 @@ impl<T: Scalar> FromValue<T> for BlockArg<T> {
 /// The layers of a grid as a block.
 ///
 /// # Panics
-/// When there are none, or they differ in shape.
+/// For no layers, or layers of different shapes.
 pub fn block<T: Real>(layers: impl IntoIterator<Item = SurfaceGrid<T>>) -> Value<T> {
     Value::block(layers.into_iter().map(surface)).expect("layers of one shape")
 }

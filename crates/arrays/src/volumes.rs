@@ -11,10 +11,10 @@ use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Sc
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// The number of cells of a block that are turned over at a corner.
+/// The number of cells of a block with an inverted corner.
 ///
 /// # Errors
-/// What the budget is spent on.
+/// Label in the budget.
 pub fn folded<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<usize, Spent> {
     let quality = grid.cell_quality_until(budget)?;
     // A left-handed block has all its corners the other way.
@@ -57,7 +57,7 @@ pub fn quality<T: Scalar>(
 /// The figures of a block, by the rules of OpenFOAM's checkMesh and beyond them.
 ///
 /// # Errors
-/// What the budget is spent on.
+/// Label in the budget.
 pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String, Spent> {
     let [ni, nj, nk] = grid.size;
     let mesh = HexMesh::of_blocks_until(std::slice::from_ref(grid), &[], budget)?;
@@ -88,10 +88,10 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
 
 /// A block smoothed by the elliptic equations; its faces stay.
 ///
-/// `method`: "laplace" evens lines out, "middlecoff" carries the spacing of the edges inward. `walls` names faces,
-/// "i1", "in", "j1", "jn", "k1", "kn", blank-separated, off which lines leave at right angles with the first cell
-/// `spacing` (by the iteration of Hilgenstock 1988). A remark says how far off the block is when `n` sweeps are not
-/// enough; folded cells are refused.
+/// `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
+/// `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
+/// lines are perpendicular with the first cell height `spacing` (by the iteration of Hilgenstock
+/// 1988). Without convergence in `n` sweeps a remark gives the residual; folded cells are an error.
 #[derive(Kind)]
 #[kind(
     class = Block,
@@ -103,10 +103,10 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
 pub struct EllipticBlock<T: Scalar> {
     /// The block.
     b: BlockArg<T>,
-    /// The most sweeps.
+    /// Maximum number of sweeps.
     #[field(default = 2000, min = 0, max = 1e6)]
     n: usize,
-    /// Stops when no point moves by more than this share of the size.
+    /// Convergence: maximum displacement of a point in a sweep, relative to the size.
     #[field(default = 1e-8, min = 0)]
     tol: T,
     /// "laplace" or "middlecoff".
@@ -115,7 +115,7 @@ pub struct EllipticBlock<T: Scalar> {
     /// Walls: "i1", "in", "j1", "jn", "k1", "kn".
     #[field(default = "")]
     walls: Arc<str>,
-    /// The first cell off the walls.
+    /// First cell height at the walls.
     #[field(min = 0)]
     spacing: Option<T>,
     /// Over-relaxation.

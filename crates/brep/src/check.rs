@@ -3,7 +3,7 @@
 use crate::{Brep, BrepFace, Coedge, Shell, SurfaceShape};
 use moldloft_num::Vec3;
 
-/// What counts of a shell.
+/// Counts and flags of a shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShellFacts {
     /// Vertices, edges, faces, loops.

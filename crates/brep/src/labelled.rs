@@ -14,10 +14,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// What counts as in a surface, as a share of the size.
+/// Relative distance within which a point is on a surface.
 const NEAR: f64 = 1e-9;
 
-/// Corners may be so many cells off where faces meet at small angles.
+/// Maximum displacement of a corner, in cells, at small angles between faces.
 const REACH: f64 = 4.0;
 
 /// Vertices that are farther from a surface, in cells, are not on it.

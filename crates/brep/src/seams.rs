@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-/// Parts of the full angle of which the free ones are looked for.
+/// Sectors of the circle that are searched for one free of vertices.
 const PARTS: usize = 240;
 
 /// So many parts in a row without the face are a gap.

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Integrals along a part of an edge are those of so many steps and twice and four times as many.
 const STEPS: usize = 16;
-/// What a winding is off a whole number.
+/// Maximum deviation of a winding number from an integer.
 const WHOLE: f64 = 1e-3;
 
 /// A volume with an estimate of the error of its integrals.

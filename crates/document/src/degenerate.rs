@@ -1,5 +1,5 @@
-//! Curves without length, surfaces and bodies without area, surfaces that cover themselves: nothing is wrong with them for
-//! the kernel, and hardly ever are they meant.
+//! Curves of zero length, surfaces and bodies of zero area, surfaces that cover themselves: valid
+//! for the kernel and rarely intended.
 
 use moldloft_model::{Graph, Object};
 use moldloft_num::{Order, Pace, Real, Vec3};

@@ -759,7 +759,7 @@ impl Document {
         self.run()
     }
 
-    /// Runs the program with so many steps at most, for tests of that limit.
+    /// Runs the program with a maximum number of steps, for tests of that limit.
     #[doc(hidden)]
     pub fn with_steps(&mut self, most: u64) -> Applied {
         self.settings.most_steps = Some(most);

@@ -315,11 +315,11 @@ type Block<P> = Cell<[<P as Packs>::Pack; BLOCK]>;
 /// The memory that all rows of a stretch take together at most, in bytes: well inside a first cache of 32 KiB.
 const STRETCH: usize = 30 << 10;
 
-/// The same where sources and results are in no cache: writing to such memory waits for it, less so when
-/// there is other work between.
+/// The same for sources and results that exceed the cache: writing to such memory waits for it,
+/// less so when there is other work between.
 const STRETCH_FAR: usize = 16 << 10;
 
-/// From so many bytes of sources and results on they are taken to be in no cache.
+/// Size of sources and results, in bytes, above which they are assumed to exceed the cache.
 const FAR: usize = 16 << 20;
 
 /// Carries the orders out for all elements, stretch by stretch.

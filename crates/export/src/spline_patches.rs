@@ -25,7 +25,7 @@ const MOST_PIECES: usize = 16;
 const FIT_DEGREE: usize = 3;
 const FIT_SPANS: [usize; 5] = [2, 4, 8, 16, 32];
 
-/// How often a patch is halved, in each direction, before its fit is given up.
+/// Maximum number of halvings of a patch per direction before its fit fails.
 const DEEPEST: usize = 4;
 
 /// Deviation over the size of the model that counts as rounding.

@@ -125,7 +125,7 @@ pub enum FieldError {
         /// How many edges have not as many triangles on one side as on the other.
         edges: usize,
     },
-    /// A body of so many faces that its set would be larger than allowed.
+    /// A body with too many faces for the allowed size of its set.
     ManyFaces {
         /// The most primitives that a set may name.
         most: usize,

@@ -66,7 +66,7 @@ fn pair<T: Real>(a: &[Vec3<T>], b: &[Vec3<T>], size: f64, blend: Blend) -> [Vec<
     }
 }
 
-/// From so many points on several threads share the work.
+/// Number of points from which several threads divide the work.
 const PARALLEL: usize = 1 << 15;
 
 /// The grid with the edges of this one, to the bit, and its inside interpolated from them.

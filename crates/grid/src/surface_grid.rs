@@ -48,7 +48,7 @@ impl fmt::Display for GridSide {
 /// Below this share of the size two points count as one: rounding of coordinates, and no more.
 pub(crate) const SAME: f64 = 1e-10;
 
-/// A first step of an edge that is so many times the next ones is a gap, not a step.
+/// Ratio of the first step of an edge to the next above which it is a gap.
 const LEAP: f64 = 25.0;
 
 impl<T: Real> SurfaceGrid<T> {
@@ -155,7 +155,7 @@ impl<T: Real> SurfaceGrid<T> {
     }
 
     /// Refuses edges that are not finite, or that leap at a corner: an array holds one point there,
-    /// so an edge that was set without minding the other ends in a leap.
+    /// so an edge that was set inconsistently has a jump at the common corner.
     ///
     /// The first step of an edge is a leap when it is more than 25 times each of the next two; an
     /// edge that is a point but for its end is one, too.

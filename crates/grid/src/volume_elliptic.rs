@@ -22,7 +22,7 @@ pub struct FaceWall<T> {
 pub struct EllipticVolume<T> {
     /// Whether the spacing of the edges is carried inward (Thomas and Middlecoff 1980); without, lines even out.
     pub keep_spacing: bool,
-    /// The most sweeps.
+    /// Maximum number of sweeps.
     pub sweeps: usize,
     /// Stops when no point moves by more than this share of the size, and walls have what is asked.
     pub tolerance: f64,

@@ -42,7 +42,7 @@ pub fn solve<T: Real, const N: usize>(a: &[[T; N]; N], b: [T; N]) -> Option<[T; 
 }
 
 /// The unknowns with their derivatives in T, from the plain solution: one Newton step in T, of
-/// which the real part is left out, because the solution is as good as it gets.
+/// which the real part is left out, because the solution has already converged.
 pub fn refined<T: Real, const N: usize, F: Implicit<T, N>>(
     f: &F,
     q: [f64; N],

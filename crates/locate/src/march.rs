@@ -108,7 +108,7 @@ struct MarchResidual {
     gap: f64,
     /// From the plane across.
     off: f64,
-    /// Of the second shape; of no certain length.
+    /// Normal of the second shape; not normalised.
     normal: Vec3,
     j: Tangents,
     k: Option<Tangents>,

@@ -270,7 +270,7 @@ fn rises([before, after]: [f64; 2], goal: f64) -> bool {
     before <= goal && after >= -goal
 }
 
-/// The corner near a place at which a descent came to no end, if that is where the distance is least.
+/// The corner near a point at which a descent did not converge, if the distance is least there.
 fn at_corner(
     curve: &dyn Curve<f64>,
     p: Vec3,
@@ -321,8 +321,8 @@ pub(crate) fn on_whole_surface(
     foot
 }
 
-/// The foot along a joint, or where two meet, near a place at which a descent came to no end, if that is where
-/// the distance is least.
+/// The foot along a joint, or at the junction of two, near a point at which a descent did not
+/// converge, if that is where the distance is least.
 fn at_knuckle(
     surface: &dyn Surface<f64>,
     p: Vec3,

@@ -9,7 +9,7 @@ pub const LONGEST_STEP: f64 = 0.2;
 /// How far a solution may lie outside of [0, 1].
 pub const OUTSIDE: f64 = 1e-6;
 
-/// The most steps.
+/// Maximum number of steps.
 pub const MOST_STEPS: u32 = 50;
 
 /// Residuals below this share of the size count as zero.
@@ -52,7 +52,7 @@ impl<const N: usize> NewtonResult<N> {
 }
 
 impl UnknownBounds {
-    /// A shape's parameter: [0, 1] and a hair.
+    /// A shape's parameter: [0, 1] widened by `OUTSIDE`.
     pub const PARAMETER: UnknownBounds =
         UnknownBounds { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
 

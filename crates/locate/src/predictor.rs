@@ -26,7 +26,7 @@ fn slope(a: &Row, b: &Row, by: f64) -> Row {
     out
 }
 
-/// a + b by a number.
+/// a + s b.
 #[inline(always)]
 fn plus(a: &Row, b: &Row, by: f64) -> Row {
     let mut out = [0.0; 8];

@@ -58,7 +58,7 @@ pub struct Graph<T: Scalar> {
     memo: Memo<T>,
     /// Objects that sweep a point; some may have gone, some stand twice.
     sweeps: Vec<Key>,
-    /// Objects that were not found out, because the budget was spent; some may have gone.
+    /// Objects that were not evaluated because the budget was spent; some may no longer exist.
     unfinished: Vec<Key>,
     context: Context,
 }
@@ -173,7 +173,7 @@ impl<T: Scalar> Graph<T> {
         self.context.budget = budget;
     }
 
-    /// Says where calls keep what spares work later.
+    /// Sets the cache that calls share.
     pub fn keep_in(&mut self, kept: Kept) {
         self.context.kept = kept;
     }
@@ -764,7 +764,7 @@ impl<T: Scalar> Run<'_, T> {
         path.push(name(key));
         Err(CallError::new("cycle", format!("`{}` would depend on itself", name(key)))
             .found(path.join(" -> "))
-            .help("an object may only be built on objects that are not built on it"))
+            .help("remove the circular dependency"))
     }
 
     /// The class of an object, known without evaluating it.

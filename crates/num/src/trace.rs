@@ -287,7 +287,7 @@ pub struct Edges<T> {
 }
 
 impl<T: Real> Edges<T> {
-    /// Four edges of the surface's own.
+    /// Four edges that are their own roots.
     pub fn own() -> Self {
         Edges { edges: [Edge::Own, Edge::Own, Edge::Own, Edge::Own], corners: [None; 4] }
     }

@@ -54,7 +54,7 @@ impl<T> ParallelSliceMut<T> for [T] {
     }
 }
 
-/// Methods that iterators have not.
+/// Methods of parallel iterators that sequential ones lack.
 pub trait ParallelIterator: Iterator + Sized {
     /// `map`, with something that a thread makes once.
     fn map_init<R, S>(

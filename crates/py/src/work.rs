@@ -103,7 +103,7 @@ pub fn interruptible_shared<R: Send + 'static>(
     outcome
 }
 
-/// How many threads are in Python on behalf of work of ours.
+/// Number of threads of this package that run Python code.
 static VISITORS: AtomicUsize = AtomicUsize::new(0);
 
 /// The interpreter is about to end: nobody enters any more.

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// masters.
 pub const RELABEL_FIELD: FieldSpec = FieldSpec {
     name: "relabel",
-    help: "Reparametrisation of t (surfaces: v). Default: none.",
+    help: "Reparametrisation of t (surfaces: v).",
     class: Class::Relabel,
     many: false,
     default: Some(DefaultValue::Unset),

@@ -1,4 +1,4 @@
-//! Maps of space by which curves and points are copied and turned.
+//! Affine maps for copies and rotations of curves and points.
 
 use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::CurveRef;
@@ -20,7 +20,7 @@ impl<T: Real> PivotTransform<T> {
         Self { from, to, columns }
     }
 
-    /// Turned about an axis by `angle` radians, right-handed.
+    /// Rotation about an axis by `angle` radians, right-handed.
     pub fn turned(axis: Axis<T>, angle: T) -> Self {
         let about = Axis { point: Vec3::zero(), direction: axis.direction };
         let (c, s) = (angle.cos(), angle.sin());

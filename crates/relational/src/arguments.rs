@@ -1,4 +1,4 @@
-//! Types of arguments that kinds share: beads, magnets, snakes, the sides of patches.
+//! Common types of arguments: beads, magnets, snakes, the sides of patches.
 
 use moldloft_num::trace::Key;
 use moldloft_num::{CurveJet, Order, Real};
@@ -15,7 +15,7 @@ fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
 pub struct Bead<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The curve it is on.
+    /// Host curve.
     pub curve: CurveRef<T>,
     /// Its parameter there.
     pub t: T,
@@ -53,7 +53,7 @@ impl<T: Real> FromValue<T> for Ring<T> {
 pub struct Magnet<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The surface it is on.
+    /// Host surface.
     pub surface: SurfaceRef<T>,
     /// Its parameters (u, v) there.
     pub uv: [T; 2],
@@ -77,7 +77,7 @@ impl<T: Real> FromValue<T> for Magnet<T> {
 pub struct Snake<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
-    /// The surface it is on.
+    /// Host surface.
     pub surface: SurfaceRef<T>,
 }
 
@@ -113,7 +113,7 @@ pub enum Side<T: Real> {
 }
 
 impl<T: Real> Side<T> {
-    /// The surface it is on.
+    /// Host surface.
     pub fn surface(&self) -> &SurfaceRef<T> {
         match self {
             Side::Snake(snake) => &snake.surface,
@@ -192,7 +192,7 @@ fn same_surface<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> bool {
     if a.key.is_some() || b.key.is_some() { a.key == b.key } else { a.same(b) }
 }
 
-/// The one surface that all of `items` lie on; `place` puts a fault where item k was given.
+/// The common surface of all `items`; `place` assigns an error to item k.
 ///
 /// # Errors
 /// `wrong-surface` at the first item on another surface than the first item.
@@ -218,10 +218,10 @@ pub fn common_surface<T: Real>(
     Ok(first.clone())
 }
 
-/// The one curve that both beads lie on.
+/// The common curve of both beads.
 ///
 /// # Errors
-/// `wrong-curve`, in field `field`, when they lie on different curves.
+/// `wrong-curve`, in field `field`, if they are on different curves.
 pub fn common_curve<T: Real>(
     [a, b]: [&Bead<T>; 2],
     field: FieldId,
@@ -304,7 +304,7 @@ impl<T: Real> FromValue<T> for AxisName {
     }
 }
 
-/// Where a length along a curve begins: at a bead, or at the start of a curve.
+/// Start of a length along a curve: a bead, or the start of a curve.
 #[derive(Clone, Debug)]
 pub struct Start<T: Real> {
     /// The curve.

@@ -1,4 +1,5 @@
-//! Chains of polynomials through given places, for what can only be evaluated at some parameters.
+//! Chains of polynomials through samples, for functions that can be evaluated only at some
+//! parameters.
 
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use std::f64::consts::PI;
@@ -6,10 +7,10 @@ use std::f64::consts::PI;
 /// The degree of a polynomial.
 const DEGREE: usize = 16;
 
-/// So many places determine one.
+/// Number of samples of one polynomial.
 pub const NODES: usize = DEGREE + 1;
 
-/// Pieces are halved that many times at most, and so many there are at most: beyond, a kink stays.
+/// Maximum number of halvings of a piece, and of pieces: beyond, a kink remains.
 pub const DEEPEST: u32 = 16;
 pub const MOST_PIECES: usize = 256;
 
@@ -22,16 +23,16 @@ fn cosine(k: usize) -> f64 {
     }
 }
 
-/// The parameters of the places between `a` and `b`, both included, ascending.
+/// The parameters of the samples between `a` and `b`, both included, ascending.
 pub fn nodes(a: f64, b: f64) -> impl Iterator<Item = f64> {
     (0..NODES).map(move |k| 0.5 * (a + b) - 0.5 * (b - a) * cosine(k))
 }
 
 /// A polynomial on a stretch of the parameter, by its Chebyshev coefficients.
 pub struct ChebyshevPiece<T> {
-    /// Where it begins.
+    /// Start.
     pub from: f64,
-    /// Where it ends.
+    /// End.
     pub to: f64,
     coefficients: Vec<Vec3<T>>,
 }
@@ -55,7 +56,7 @@ impl<T: Real> ChebyshevPiece<T> {
         Self { from, to, coefficients: (0..=n).map(coefficient).collect() }
     }
 
-    /// How large the last coefficients are.
+    /// Magnitude of the last coefficients.
     pub fn rest(&self) -> f64 {
         self.coefficients[DEGREE - 2..].iter().map(|c| c.re().norm()).fold(0.0, f64::max)
     }

@@ -56,7 +56,7 @@ fn contours<T: Real>(
     Ok(Value::Contours(Arc::new(Contours { axis, family, values })))
 }
 
-/// What cannot be cut, of a shape or a list of shapes.
+/// The entry of a shape or a list of shapes that has no section.
 fn not_cut<T: Real>(shape: &Value<T>) -> Option<&Value<T>> {
     match shape {
         Value::Surface(_) | Value::Body(_) => None,
@@ -79,7 +79,7 @@ macro_rules! contour_kind {
             start: T,
             /// Distance of neighbouring sections.
             step: T,
-            /// The surfaces and bodies to cut; all that are shown when none are given.
+            /// Surfaces and bodies to cut; default: all visible ones.
             surfaces: Option<Vec<Value<T>>>,
         }
 
@@ -114,8 +114,8 @@ contour_kind!(
      ZContours waterlines(-2, 4, 0, 0.5);"
 );
 
-/// Sections by planes parallel to a given one, at the distances start + i step from it along its
-/// normal, for i from first to last: diagonals, cant frames.
+/// Sections by planes parallel to a given one, at the distances start + i step along its normal,
+/// for i from first to last: diagonals, cant frames.
 #[derive(Kind)]
 #[kind(
     class = Contours,
@@ -136,7 +136,7 @@ pub struct PlaneContours<T: Real> {
     start: T,
     /// Distance of neighbouring sections.
     step: T,
-    /// The surfaces and bodies to cut; all that are shown when none are given.
+    /// Surfaces and bodies to cut; default: all visible ones.
     surfaces: Option<Vec<Value<T>>>,
 }
 
@@ -169,7 +169,7 @@ pub struct CylinderContours<T: Real> {
     start: T,
     /// Difference of neighbouring radii.
     step: T,
-    /// The surfaces and bodies to cut; all that are shown when none are given.
+    /// Surfaces and bodies to cut; default: all visible ones.
     surfaces: Option<Vec<Value<T>>>,
 }
 
@@ -218,7 +218,7 @@ pub struct AngleContours<T: Real> {
     step: T,
     /// A point in the half-plane of angle 0.
     zero: Option<Point<T>>,
-    /// The surfaces and bodies to cut; all that are shown when none are given.
+    /// Surfaces and bodies to cut; default: all visible ones.
     surfaces: Option<Vec<Value<T>>>,
 }
 

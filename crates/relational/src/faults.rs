@@ -1,9 +1,9 @@
-//! What the mathematics below refuses, as faults with a place.
+//! Errors of the mathematical crates, with the argument at fault.
 
 use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::{ArcError, InterpolationError, KnotError, SplineError};
 
-/// The fault of a B-spline whose control points are the list in field `items` and whose degree is
+/// The error of a B-spline whose control points are the list in field `items` and whose degree is
 /// the number in field `degree`.
 pub fn of_spline(error: SplineError, items: FieldId, degree: FieldId) -> CallError {
     match error {
@@ -20,8 +20,8 @@ pub fn of_spline(error: SplineError, items: FieldId, degree: FieldId) -> CallErr
     }
 }
 
-/// The fault of an interpolating spline through the list in field `items`, of the type in field
-/// `degree`, with the end conditions in field `ends`; `noun` says what the items are.
+/// The error of an interpolating spline through the list in field `items`, of the type in field
+/// `degree`, with the end conditions in field `ends`; `noun` names the items.
 pub fn of_interpolation(
     error: InterpolationError,
     noun: &str,
@@ -74,12 +74,12 @@ pub fn of_arc(error: ArcError, field: FieldId) -> CallError {
     fault.in_field(field)
 }
 
-/// A number to nine digits, as messages show what was computed.
+/// A number to nine digits, as shown in messages.
 pub fn digits(x: f64) -> f64 {
     format!("{x:.8e}").parse().unwrap_or(x)
 }
 
-/// A parameter from 0 to 1 to nine places.
+/// A parameter from 0 to 1 to nine digits.
 pub fn parameter(t: f64) -> f64 {
     (t * 1e9).round() / 1e9
 }

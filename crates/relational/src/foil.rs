@@ -1,5 +1,5 @@
-//! What foil curves, foil snakes and foil lofts have in common: their arguments, and their section
-//! from them.
+//! Common part of foil curves, foil snakes and foil lofts: their arguments, and the section they
+//! define.
 
 use crate::arguments::NamedOption;
 use crate::third_derivatives;
@@ -21,12 +21,12 @@ pub struct FoilFields {
     pub tail: FieldId,
     pub offset: FieldId,
     pub ordinates: FieldId,
-    /// That of the points where a kind has no metric.
+    /// Field of the points, for a kind without a metric.
     pub metric: FieldId,
 }
 
-/// Declares a kind of foil: a list of what the section is laid between, the arguments that say
-/// which section it is, and those of its own after them. `parts` takes it apart again.
+/// Declares a kind of foil: a list of the points or curves of the section, the arguments that
+/// define the section, and further arguments of the kind. `parts` separates them again.
 macro_rules! foil_kind {
     ($(#[$kind:meta])* $name:ident {
         $(#[$first:meta])* $items:ident ($ITEMS:ident): $Item:ty
@@ -45,15 +45,15 @@ macro_rules! foil_kind {
             /// the usual one of the family.
             #[field(default = "")]
             mean: std::sync::Arc<str>,
-            /// Place of the greatest camber of the parabolic mean line, in chords.
+            /// Position of the greatest camber of the parabolic mean line, in chords.
             #[field(default = 0.4)]
             camber_at: T,
-            /// Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not given.
+            /// Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
             load: Option<T>,
             /// Nose index of the modified form: 6 is the plain nose, 0 a sharp one.
             #[field(default = 6)]
             nose_index: T,
-            /// Place of the greatest thickness of the modified form, from 0.2 to 0.6.
+            /// Position of the greatest thickness of the modified form, from 0.2 to 0.6.
             #[field(default = 0.3)]
             thickness_at: T,
             /// "closed" draws the tail to its points, "open" leaves the thickness that the form has there.
@@ -70,7 +70,7 @@ macro_rules! foil_kind {
         }
 
         impl<T: Real> $name<T> {
-            /// What the section is laid between, and which section it is.
+            /// Points or curves of the section, and its definition.
             fn parts(self) -> (Vec<$Item>, crate::foil::FoilArguments<T>) {
                 let metric: Option<moldloft_num::Vec3<T>> = None;
                 $(let metric: $Metric = metric.or(self.metric);)?
@@ -124,7 +124,7 @@ pub struct FoilArguments<T: Real> {
     pub section: Option<CurveRef<T>>,
     pub ordinates: Option<Vec<Vec3<T>>>,
     pub metric: Option<Vec3<T>>,
-    /// Where faults are reported.
+    /// Fields of errors.
     pub fields: FoilFields,
 }
 
@@ -141,8 +141,8 @@ fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, CallErro
     }
 }
 
-/// The share of their size within which the points of a section are one: more than the rounding of a chord, below which it
-/// has no direction.
+/// Distance relative to their size within which points of a section coincide: above the rounding of
+/// a chord, below which it has no direction.
 const ONE_PLACE: f64 = 64.0 * f64::EPSILON;
 
 impl<T: Real> FoilArguments<T> {
@@ -158,8 +158,8 @@ impl<T: Real> FoilArguments<T> {
         Ok((Profile { section, layout, offset }, closed, nesting))
     }
 
-    /// The same in numbers that may depend on a parameter, for lofts; points that all are in one
-    /// place make a foil without size.
+    /// The same with numbers that may depend on a parameter, for lofts; a foil whose points all
+    /// coincide has zero size.
     pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, CallError> {
         let fixed = |v: Vec3<T>| v.map(J::fixed);
         let arguments = FoilArguments::<J> {
@@ -188,7 +188,8 @@ impl<T: Real> FoilArguments<T> {
         Ok(Profile { section: Arc::new(section), layout, offset })
     }
 
-    /// The section, where it lies, how thickness is set off, and how deep shapes are nested in it.
+    /// The section, its position, the direction of its thickness, and the nesting depth of its
+    /// shapes.
     fn laid(self, layout: Layout<T>) -> Result<(Section<T>, Layout<T>, Offset, u32), CallError> {
         let fields = self.fields;
         let families = Section::<T>::FAMILIES;
@@ -258,8 +259,8 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
             third_derivatives::tangent(|t, order| self.0.jet(t, order), || self.0.breaks(), t)
         };
         let d = if order == Order::Zero { Vec3::zero() } else { along(t) };
-        // Sections are run through alike at all places of a loft, so t has no derivatives that the
-        // second one would pass on.
+        // All sections of a loft have the same parametrisation, so t has no derivatives along the
+        // second parameter.
         [self.0.at(t), d, dd.map(J::fixed)]
     }
     moldloft_num::curve_facts!(breaks of [self.0], open, not_rational);

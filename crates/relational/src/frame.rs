@@ -4,8 +4,8 @@ use moldloft_num::{Axis, Frame, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 use std::sync::Arc;
 
-/// The frame of three points: its origin is the first, its x axis points to the second, and the
-/// third lies in its xy plane on the side of positive y.
+/// The frame of three points: the first is the origin, the second is on the positive x axis, and
+/// the third is in the xy plane with y > 0.
 #[derive(Kind)]
 #[kind(
     class = Frame,
@@ -39,8 +39,8 @@ impl<T: Real> Build<T> for ThreePointFrame<T> {
     }
 }
 
-/// The frame at a point, turned from the axes of another (of the world when none is given) by yaw
-/// about z, then by pitch about the new y, then by roll about the new x; all right-handed.
+/// The frame at a point, rotated from the axes of another frame (default: world) by yaw about z,
+/// then pitch about the new y, then roll about the new x; all right-handed.
 #[derive(Kind)]
 #[kind(
     class = Frame,
@@ -60,14 +60,14 @@ pub struct RPYFrame<T: Real> {
     /// Angle about the z axis.
     #[field(angle, default = 0)]
     yaw: T,
-    /// The frame whose axes are turned.
+    /// Frame of the initial axes; default: world axes.
     frame: Option<Frame<T>>,
 }
 
 impl<T: Real> Build<T> for RPYFrame<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let base = self.frame.unwrap_or_else(Frame::world).axes;
-        // Turned about the fixed axes in the opposite order, which is the same.
+        // Rotations about the fixed axes in the opposite order, which is the same.
         let turned = |d: Vec3<T>| {
             let about = |k: usize, d: Vec3<T>, angle: T| {
                 Axis { point: Vec3::zero(), direction: base[k] }.rotated(d, angle)

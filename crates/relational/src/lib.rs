@@ -1,16 +1,16 @@
 //! The relational kinds: points, curves, snakes, surfaces, solids, planes and contours that are made from
 //! one another.
 //!
-//! Each kind is a documented struct whose fields are its arguments; the derive macro makes a row of
-//! the registry of it. A new kind is one file and one line in [`rows`].
+//! Each kind is a documented struct whose fields are its arguments; the derive macro generates its
+//! row of the registry. A new kind needs one file and one line in [`rows`].
 //!
 //! `arguments (numbers, points, shapes) -> kind -> shape that evaluates itself`
 //!
-//! Shapes made of points hold positions, not their points; shapes made of shapes hold those. What a
-//! curve or an edge runs along ([`moldloft_num::trace`]) is stated by the kinds, so that meshes join
-//! by identity.
+//! Shapes made of points hold positions, not their points; shapes made of shapes hold those. The
+//! kinds state the trace of a curve or an edge ([`moldloft_num::trace`]), so that meshes join by
+//! identity.
 //!
-//! Invariant: this crate knows no graph, no language and no file.
+//! Invariant: no dependency on graph, language or files.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -23,8 +23,7 @@ impl<T: Real> Build<T> for RealList<T> {
     }
 }
 
-/// A list of knots under a name: non-decreasing numbers, for use wherever a list of numbers is
-/// asked for.
+/// A named list of knots: non-decreasing numbers, accepted as any list of numbers.
 ///
 /// The spline determines the number of knots and their multiplicity.
 #[derive(Kind)]

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 /// Triangles between points of the model: a body where they close, else an open sheet.
 ///
-/// With `levels` each triangle becomes four, so many times, and the vertices move as in Loop's
-/// subdivision surfaces (Loop 1987): smooth within, cubic B-splines along open edges. Points of the
-/// model stay the parents: moving one moves the sheet, with derivatives.
+/// `levels` times, each triangle is divided into four and the vertices move as in Loop's
+/// subdivision surfaces (Loop 1987): smooth inside, cubic B-splines along open edges. The vertices
+/// keep points of the model as parents: a moved point moves the sheet, with derivatives.
 #[derive(Kind)]
 #[kind(
     class = Mesh,
@@ -25,7 +25,7 @@ pub struct TriMesh<T: Real> {
     /// Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
     #[field(min_items = 3)]
     triangles: Vec<u32>,
-    /// How often the triangles are divided.
+    /// Number of subdivisions.
     #[field(default = 0, max = 8)]
     levels: usize,
 }

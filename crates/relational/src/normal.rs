@@ -7,8 +7,8 @@ use moldloft_registry::CallError;
 /// Below this the sine of the angle between S_u and S_v, or the ratio of their lengths, is rounding.
 const SINGULAR: f64 = 1e-10;
 
-/// The unit normal S_u x S_v at a magnet. Where one of the two vanishes (a pole) it is the limit
-/// along the parameter line that leads there from inside.
+/// The unit normal S_u x S_v at a magnet. If one of the two vanishes (a pole), the limit from
+/// inside along the parameter line that ends there.
 ///
 /// # Errors
 /// `no-normal` where there is no such limit either.
@@ -25,7 +25,7 @@ pub fn normal<T: Real>(magnet: &Magnet<T>) -> Result<Vec3<T>, CallError> {
     })
 }
 
-/// A vector along the normal, or its limit; `None` where there is none.
+/// A vector along the normal, or its limit; `None` if neither exists.
 fn product<T: Real>(jet: &SurfJet<T>, [u, v]: [f64; 2]) -> Option<Vec3<T>> {
     let regular = |a: Vec3<T>, b: Vec3<T>| {
         let n = a.cross(b);

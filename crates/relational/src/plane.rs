@@ -44,7 +44,7 @@ coordinate_plane!(
     ZPlane, z, "ZPlane waterline(0.25);", |z, o| Vec3::new(o, o, z), [0.0, 0.0, 1.0]
 );
 
-/// The plane at a given distance from another, on the side of its normal if positive.
+/// The plane at a signed distance from another, positive along its normal.
 #[derive(Kind)]
 #[kind(
     class = Plane,
@@ -52,7 +52,7 @@ coordinate_plane!(
     example = "ZPlane waterline(0); OffsetPlane deck(waterline, 1.5);"
 )]
 pub struct OffsetPlane<T: Real> {
-    /// The plane it is parallel to.
+    /// Reference plane.
     plane: Plane<T>,
     /// The distance.
     distance: T,
@@ -138,7 +138,7 @@ impl<T: Real> Build<T> for TwoPointPlane<T> {
 pub struct PlaneThroughPoint<T: Real> {
     /// A point of the plane.
     point: Point<T>,
-    /// The plane it is parallel to.
+    /// Reference plane.
     plane: Plane<T>,
 }
 

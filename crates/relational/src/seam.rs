@@ -1,4 +1,5 @@
-//! Surfaces whose opposite sides are one line by identity, for joins; that they coincide is `SurfaceRef::closed`.
+//! Surfaces whose opposite sides are one line by identity, for joins; `SurfaceRef::closed` states
+//! that they coincide.
 
 use moldloft_num::Real;
 use moldloft_num::trace::Edge;

@@ -58,8 +58,8 @@ pub struct TabCurve<T: Real> {
 
 /// A surface through the points of a table: a C-loft of the curves through its rows.
 ///
-/// The rows of points come one after the other, as many points in each; u runs along them, v across.
-/// Empty lines between the rows say how many there are, and so does a Plot3D file of one grid.
+/// Consecutive rows with equal numbers of points; u runs along a row, v across the rows. Empty
+/// lines between the rows, or the header of a Plot3D file with one grid, give their number.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -82,7 +82,7 @@ pub struct TabSurf<T: Real> {
     points: Option<Vec<Vec3<T>>>,
 }
 
-/// The points of a table, or the fault that there are none.
+/// The points of a table; a table without points is an error.
 fn table<T: Real>(
     file: &str,
     points: Option<Vec<Vec3<T>>>,

@@ -1,5 +1,4 @@
-//! Derivatives of shapes as functions of the parameters: what fillets, sweeps and offsets are made
-//! of.
+//! Third derivatives of shapes with respect to their parameters, for fillets, sweeps and offsets.
 //!
 //! A shape has derivatives up to the second. First derivatives of a shape made of tangents are
 //! exact, therefore; its second derivatives need third ones of its parents, which are differences
@@ -78,15 +77,16 @@ pub fn tangent<T: Real, J: Jet<T>>(
     x
 }
 
-/// A derivative of less than this share of the next one is none: the curve stands still.
+/// Derivative relative to the next one below which it counts as zero speed.
 const STILL: f64 = 1e-12;
 
-/// So near to an end at which the curve stands still its direction is a series: the tangent is mostly rounding there. What
-/// the series leaves out is the fourth power of this at a double end, the third at a triple one.
+/// Distance in t from an end of zero speed within which the direction is evaluated as a series,
+/// since the tangent is mostly rounding there. The neglected part is of the fourth power of this at
+/// a double end, of the third at a triple one.
 const NEAR_END: f64 = 1e-3;
 
-/// A vector along the tangent, at t = 0 and 1 its limit from inside: where an end is double or triple, so that the curve
-/// stands still there, its direction is that of the first derivative that does not vanish. Zero where there is none.
+/// A vector along the tangent, at t = 0 and 1 its limit from inside: at a double or triple end of
+/// zero speed, the direction of the first derivative that does not vanish. Zero if undefined.
 ///
 /// With C2 .. C5 the derivatives at the end t0 and s = t - t0, the first derivative is s (C2 + C3 s / 2 + C4 s^2 / 6 + C5 s^3 /
 /// 24) at a double end and s^2 (C3 / 2 + C4 s / 6 + C5 s^2 / 24) at a triple one; the factor in brackets counts.
@@ -128,11 +128,11 @@ pub fn direction<T: Real, J: Jet<T>>(
     series([(c3, 0.5), (c4, 1.0 / 6.0), (c5, 1.0 / 24.0), (Vec3::zero(), 0.0)])
 }
 
-/// Each smooth stretch of a curve is looked at in so many parts for where it stands still.
+/// Parts of each smooth piece of a curve that are searched for zero speed.
 const STANDSTILL_TRIALS: usize = 32;
 
-/// An interior parameter at which a curve stands still, if there is one: its speed is at most `least`. `ends` are the
-/// ascending ends of its smooth stretches, from 0 to 1; those inside count.
+/// An interior parameter of zero speed (at most `least`), if there is one. `ends` are the ascending
+/// ends of the smooth pieces, from 0 to 1; the inner ones are tested.
 pub fn standstill<T: Real>(curve: &CurveRef<T>, ends: &[f64], least: f64) -> Option<f64> {
     let jet = |t: f64| {
         let [_, d, dd] = curve.jet(T::from(t), Order::Second);
@@ -151,7 +151,8 @@ pub fn standstill<T: Real>(curve: &CurveRef<T>, ends: &[f64], least: f64) -> Opt
             let t = span[0] + (span[1] - span[0]) * k as f64 / STANDSTILL_TRIALS as f64;
             t.clamp(span[0].next_up(), span[1].next_down())
         };
-        // Between two places the speed has a least value where it falls at the first and rises at the second.
+        // Between two parameters the speed has a minimum if it falls at the first and rises at the
+        // second.
         let slowest = (1..=STANDSTILL_TRIALS)
             .filter(|&k| gain(at(k - 1)) < 0.0 && gain(at(k)) > 0.0)
             .filter_map(|k| find_root(gain, at(k - 1), at(k)).ok());

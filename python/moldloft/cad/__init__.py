@@ -25,14 +25,14 @@ def needed(module: str, package: str, purpose: str) -> ModuleType:
     module
         Its name.
     package
-        What installs it.
+        Command that installs it.
     purpose
-        What it is for.
+        Purpose of the package.
 
     Raises
     ------
     MissingPackageError
-        Where it is not installed, or OCP is that of another package.
+        If it is not installed, or OCP belongs to another package.
     """
     try:
         found = import_module(module)
@@ -46,7 +46,7 @@ def needed(module: str, package: str, purpose: str) -> ModuleType:
 
 
 def _clash(purpose: str, package: str) -> str:
-    """What to do where another package has installed the same module."""
+    """Remedy if another package has installed the same module."""
     installed = []
     for name in ("cadquery-ocp", "cadquery-ocp-proxy", package):
         with suppress(PackageNotFoundError):

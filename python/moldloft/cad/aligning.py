@@ -1,8 +1,8 @@
-"""Sides that two faces share but run along differently, made to run alike.
+"""Reparametrisation of common sides of two faces with different parametrisations.
 
-A program may write the circle between two faces once as a spline of one parametrisation, once of
-another. A join compares its sides at equal parameters: the path of one side in its surface's
-parameters is fitted anew, to run as the other does. It stays on the old path.
+A program may write the circle between two faces as splines of two parametrisations. A join compares
+its sides at equal parameters: the path of one side in its surface's parameters is fitted again with
+the parametrisation of the other. It stays on the old path.
 """
 
 from __future__ import annotations
@@ -25,14 +25,16 @@ if TYPE_CHECKING:
 __all__ = ["align"]
 
 _NEAR = 1e-7
-"""Sides that are as near at equal parameters, as a share of their length, run alike."""
+"""Distance at equal parameters, relative to the length, below which two sides have the same
+parametrisation.
+"""
 
 _PARTED = 1e-4
-"""Sides farther apart as curves, as a share of their length, are not one."""
+"""Distance of two curves, relative to their length, above which they are distinct."""
 
 _PLACES = 1025
 _STEPS = 14
-"""Steps towards a place of the other curve: Newton's, kept between the bounds that are known."""
+"""Steps towards a point of the other curve: Newton's, within the known bounds."""
 
 _PARTS = (1, 2, 4, 8, 16, 32)
 _DEGREE = 7
@@ -48,7 +50,7 @@ _BEZIER = np.linalg.inv(
         axis=1,
     )
 )
-"""Control points of the polynomial through places at the nodes."""
+"""Control points of the polynomial through points at the nodes."""
 
 
 def align(faces: list[ImportedFace]) -> None:
@@ -138,12 +140,12 @@ def _reversed(trace: Nurbs) -> Nurbs:
 def _rerun(
     own: Nurbs, surface: Nurbs, wanted: Callable[[Floats], Floats], length: float
 ) -> Nurbs | None:
-    """The path with the parameters of another curve; none where that is another curve."""
+    """The path with the parameters of another curve; ``None`` if that is a distinct curve."""
     fine = np.linspace(0, 1, _PLACES)
     known = _on(surface, own(fine))
 
     def parameters(t: Floats) -> Floats:
-        """Where the path is nearest to places of the other curve."""
+        """Parameters at which the path is nearest to points of the other curve."""
         goals = wanted(t)
         nearest = np.array([int(np.argmin(((known - p) ** 2).sum(axis=1))) for p in goals])
         low, high = fine[np.maximum(nearest - 1, 0)], fine[np.minimum(nearest + 1, _PLACES - 1)]

@@ -32,19 +32,19 @@ SECONDS, SECONDS_A_MEGABYTE = 10.0, 30.0
 a time. Sound files take a tenth of that."""
 
 PATIENCE = 20
-"""So many times the processor time an answer is waited for: others may have the processor."""
+"""Ratio of waiting time to allowed processor time of an answer, for a busy machine."""
 
 _MORE = "help: allow more: `--limit seconds=600`, `moldloft.limits(seconds=...)`"
 
 _IDLE = 30.0
-"""After so many seconds without a request the other process ends."""
+"""Seconds without a request after which the other process ends."""
 
 _TRIES = 24
-"""How often a file is read in parts to find what OCCT ends over."""
+"""Maximum number of partial reads of a file in the search for the entity that crashes OCCT."""
 
 
 def read(path: Path, metres: float) -> Imported:
-    """The faces and curves of a STEP or IGES file, in units of so many metres.
+    """The faces and curves of a STEP or IGES file; ``metres`` is the size of its unit.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def read(path: Path, metres: float) -> Imported:
 def _by_halves(
     path: Path, metres: float, numbers: list[int], tries: int, spending: _Spending
 ) -> tuple[list[Imported], list[int], int]:
-    """What can be read of some faces, the faces that cannot, and how many tries are left."""
+    """Readable part of some faces, the unreadable faces, and the remaining number of tries."""
     if not numbers or tries <= 0 or spending.left < _LEAST:
         return [], numbers, tries
     answer = _asked(path, metres, numbers, spending)
@@ -135,7 +135,7 @@ class _Spending:
 
     @property
     def clock(self) -> float:
-        """How long an answer is waited for."""
+        """Maximum waiting time of an answer."""
         return self.left if math.isfinite(limits().seconds) else PATIENCE * self.left
 
 
@@ -147,7 +147,7 @@ class _Worker:
         self._process: ChildProcess | None = None
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any] | str:
-        """What it answers, or how it ended."""
+        """Its answer, or the cause of its end."""
         with self._lock:
             while True:
                 process = self._process
@@ -182,7 +182,7 @@ _worker = _Worker()
 def _asked(
     path: Path, metres: float, numbers: list[int] | None, spending: _Spending
 ) -> Imported | str:
-    """What another process reads, of these faces or of all, or how it ended."""
+    """Data read by another process, of these faces or of all, or the cause of its end."""
     before = _children()
     request = {
         "path": str(path.absolute()),
@@ -250,7 +250,7 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
 
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
-    """What is read, as data; the largest part is numbers."""
+    """Data of the answer, mostly numbers."""
     try:
         found = of_part(Path(request["path"]), request["metres"], request["faces"])
     except Error as error:

@@ -39,11 +39,11 @@ class Side:
     edge: int
     """The edge."""
     forward: bool
-    """Whether the loop runs with the edge's curve."""
+    """True if the loop has the direction of the edge's curve."""
     trace: Nurbs | None
     """The curve in the parameters (u, v, 0) of the surface; None on planes."""
     alike: bool
-    """Whether the trace is at the edge's place at equal parameters."""
+    """True if the trace has the parametrisation of the edge."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +57,11 @@ class Face:
     layers: tuple[str, ...]
     """Its tags."""
     reversed: bool
-    """Whether its normal is opposite to that of the surface."""
+    """True if its normal is opposite to that of the surface."""
     error: float
     """A bound of the distance from the model's surface."""
     exact: bool
-    """Whether that is rounding only."""
+    """True if the deviation is rounding only."""
     plane: tuple[Floats, Floats, Floats] | None
     """For a plane: a point, the normal and a direction in it."""
     surface: Nurbs | None
@@ -71,7 +71,7 @@ class Face:
 
     @property
     def natural(self) -> bool:
-        """Whether its loops are the whole edges of its surface's parameters."""
+        """True if its loops are the whole edges of its surface's parameters."""
         if self.surface is None:
             return False
         sides = [side for cycle in self.loops for side in cycle]
@@ -94,7 +94,7 @@ class Part:
     wires: tuple[tuple[str, tuple[int, int, int] | None, Nurbs], ...]
     """Curves that bound no face: name, colour, curve."""
     points: tuple[tuple[str, tuple[int, int, int] | None, tuple[float, float, float]], ...]
-    """Points by themselves: name, colour, place."""
+    """Isolated points: name, colour, position."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Boundary:
     vertices: Floats
     """Positions, ``(n, 3)``."""
     edges: tuple[Edge, ...]
-    """The edges; what two faces share is one."""
+    """The edges; an edge common to two faces is single."""
     faces: tuple[Face, ...]
     """The faces."""
     parts: tuple[Part, ...]
@@ -127,7 +127,7 @@ def boundary(
     name
         The name of parts of many objects.
     facing
-        Whether surfaces of reversed faces are turned, so that every normal is that of the surface.
+        True to reverse the surfaces of reversed faces, so that every normal is that of the surface.
 
     Examples
     --------

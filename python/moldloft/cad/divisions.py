@@ -25,16 +25,16 @@ _LEAST, _MOST = 8, 500
 """Divisions along u or v, at least and at most."""
 
 _PLACES, _LINES = 97, 5
-"""Places along a line of the surface, and lines, at which the turn is measured."""
+"""Number of points along a line of the surface, and of lines, at which the turn is measured."""
 
 _KINK = 0.5
-"""A larger turn between two places, in radians, is a kink."""
+"""Turn between two points, in radians, above which it is a kink."""
 
 
 def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
     """The divisions along u and v of the faces that are whole surfaces, by name.
 
-    Those of two faces are equal along an edge that both have.
+    Divisions along a common edge of two faces are equal.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
 
 
 def _count(surface: Nurbs, along: int) -> int:
-    """How many even divisions along u (0) or v (1) turn by no more than allowed."""
+    """Number of equal divisions along u (0) or v (1) with turns within the limit."""
     t, held = np.meshgrid(np.linspace(0, 1, _PLACES), np.linspace(0, 1, _LINES), indexing="ij")
     points = surface(t, held) if along == 0 else surface(held, t)
     chords = np.diff(points, axis=0)

@@ -13,7 +13,7 @@ from moldloft.cad.part21 import StepText, _letters
 __all__ = ["names_of_faces"]
 
 _NEAR = 1e-5
-"""Corners that are no farther apart, as a share of the size, are one."""
+"""Distance relative to the size below which corners coincide."""
 
 
 def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:

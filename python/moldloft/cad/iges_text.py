@@ -15,9 +15,9 @@ class IgesText:
     """The text of an IGES file."""
 
     text: str
-    """What OCCT is to read: with an end where the file is cut short."""
+    """Text for OCCT, with an end added to a truncated file."""
     remarks: list[str] = field(default_factory=list)
-    """What is doubtful or lost."""
+    """Doubtful or lost content."""
     names: dict[int, str] = field(default_factory=dict)
     """Faces by number: none, for OCCT keeps their names itself."""
     resolution: float = 0.0
@@ -32,7 +32,7 @@ class IgesText:
         path
             The file, for errors.
         text
-            What it holds.
+            Content of the file.
 
         Raises
         ------
@@ -135,7 +135,7 @@ def _directory(lines: list[str]) -> dict[int, tuple[int, int, int]]:
 _EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[EeDd]\+?\d{2,}")
 """Numbers that may be too large."""
 _LARGEST = 1e50
-"""As of coordinates in models."""
+"""Largest coordinate, as for models."""
 
 
 def _check_numbers(
@@ -165,7 +165,7 @@ def _fields(lines: list[str]) -> list[str]:
 def _there(
     number: int, listed: dict[int, tuple[int, int, int]], fields: dict[int, list[str]]
 ) -> bool:
-    """Whether an entity and what its shape needs are in the file."""
+    """True if an entity and all entities that its shape needs are in the file."""
     if number == 0:
         return True
     if number not in fields:

@@ -35,9 +35,9 @@ ENDINGS = (".step", ".stp", ".stpz", ".iges", ".igs", ".brep", ".brp")
 def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, list[str]]:
     """A CAD file as a program, and what is doubtful or left out.
 
-    A face that is all of its surface becomes a ``NURBSurf``; others a hidden ``NURBSurf``, snakes
-    along their loops and a ``TrimSurf``. An edge that faces share in the file is a ``Join``. Curves
-    that bound no face become ``NURBCurve``.
+    A face on the whole of its surface becomes a ``NURBSurf``; others become a hidden ``NURBSurf``,
+    snakes along their loops and a ``TrimSurf``. An edge common to faces in the file becomes a
+    ``Join``. Curves that bound no face become ``NURBCurve``.
 
     Parameters
     ----------
@@ -65,11 +65,11 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
 
 
 _MOST_TRIES = 8
-"""How often what does not load is left out before a program is given up."""
+"""Maximum number of removals of failed statements before a program is given up."""
 
 
 def _loadable(found: Imported, name: str, units: str) -> str:
-    """A program that loads: what the language refuses of it is left out, with remarks."""
+    """A program that loads: statements that the language rejects are left out, with remarks."""
     from moldloft.loading import loads
 
     apart: set[str] = set()
@@ -151,7 +151,7 @@ def _text(found: Imported, name: str, units: str, apart: frozenset[str]) -> str:
 
 
 def _attributes(face: ImportedFace) -> str:
-    """What a face has besides its shape, as the end of its statement."""
+    """Attributes of a face besides its shape, as the end of its statement."""
     text = ", orientation = 1" if face.reversed else ""
     if face.colour is not None:
         text += f", colour = {nearest_colour(face.colour)}"
@@ -201,12 +201,12 @@ def nearest_colour(rgb: tuple[float, float, float]) -> int:
 
 
 def _is_own(rgb: tuple[float, float, float]) -> bool:
-    """Whether a colour is one of the model's, to the nearest of 256 levels."""
+    """True for a colour of the model's palette, to the nearest of 256 levels."""
     return np.array_equal(_PALETTE[nearest_colour(rgb)], np.rint(np.array(rgb) * 255))
 
 
 _POLE = 1e-9
-"""Control points of an edge within this share of the size are one point."""
+"""Size of an edge's control points, relative to the model, below which they are one point."""
 
 
 def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int]) -> list[str]:

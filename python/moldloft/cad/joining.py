@@ -1,4 +1,4 @@
-"""Edges that faces of a CAD file share, as joins of the surfaces that the faces become."""
+"""Common edges of faces of a CAD file as joins of the surfaces."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 __all__ = ["joins"]
 
 _PLACES = 65
-"""Places at which two sides are compared, as ``Join`` does it."""
+"""Number of points at which two sides are compared, as in ``Join``."""
 
 _ROUNDING = 1e-9
-"""The least tolerance of a join, as a share of the model's size."""
+"""Least tolerance of a join, relative to the model's size."""
 
 _PARTED = 1e-3
-"""Sides farther apart than this share of their length are not joined."""
+"""Distance of two sides, relative to their length, above which they are not joined."""
 
 
 @dataclass
@@ -36,18 +36,18 @@ class _Side:
     face: str
     """The face."""
     name: str
-    """What the program calls it."""
+    """Name in the program."""
     places: Floats
-    """Places along it at even parameters."""
+    """Points at equal steps of the parameter."""
 
 
 def joins(found: Imported, taken: set[str], left_out: frozenset[str]) -> list[str]:
-    """Statements that join the sides along each shared edge; what is not joined is a remark.
+    """Statements that join the sides along each common edge; sides left open give a remark.
 
     Parameters
     ----------
     found
-        What the file holds.
+        Content of the file.
     taken
         The names in use.
     left_out

@@ -41,7 +41,7 @@ _NOTHING = 1e-8
 """A side is left out that spans no more of its surface's parameters."""
 
 _PLACES = 33
-"""Places between knots at which a side is compared with an edge of the parameters."""
+"""Number of points between knots at which a side is compared with an edge of the parameters."""
 
 
 @contextmanager
@@ -60,7 +60,7 @@ def _quiet() -> Iterator[None]:
 
 
 def read_shape(data: bytes, metres: float) -> Any:
-    """The shape of a STEP file's bytes, in units of so many metres."""
+    """The shape of a STEP file's bytes; ``metres`` is the size of its unit."""
     from OCP.STEPCAFControl import STEPCAFControl_Reader
 
     reader = STEPCAFControl_Reader()
@@ -116,12 +116,13 @@ class ImportedFace:
     surface: Nurbs
     """Its surface."""
     loops: list[list[tuple[int, bool, Nurbs]]]
-    """Its loops, the outer one first: edges by number, whether the loop runs backwards along each,
-    and the curve in the parameters (u, v, 0) of the surface."""
+    """Its loops, the outer one first: edges by number, a flag for each reversed edge, and the curve
+    in the parameters (u, v, 0) of the surface.
+    """
     natural: bool
-    """Whether its loops are the edges of the surface's parameters."""
+    """True if its loops are the edges of the surface's parameters."""
     reversed: bool
-    """Whether its normal is opposite to that of the surface."""
+    """True if its normal is opposite to that of the surface."""
     tags: tuple[str, ...] = ()
     """The products that it is in, from the outermost one, and its body."""
     colour: tuple[float, float, float] | None = None
@@ -130,7 +131,7 @@ class ImportedFace:
 
 @dataclass
 class Imported:
-    """What a CAD file holds."""
+    """Content of a CAD file."""
 
     faces: list[ImportedFace] = field(default_factory=list)
     """Its faces."""
@@ -139,11 +140,11 @@ class Imported:
     metres: float = 1.0
     """The unit of length."""
     remarks: list[str] = field(default_factory=list)
-    """What was left out or is doubtful."""
+    """Omitted or doubtful content."""
 
 
 def cad_bytes(path: Path) -> bytes:
-    """What a file holds: without a byte-order mark, and unpacked if it is a packed STEP file.
+    """Content of a file: without a byte-order mark, and unpacked if it is a compressed STEP file.
 
     Parameters
     ----------
@@ -201,9 +202,11 @@ def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
 
 
 def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
-    """The faces and curves of a CAD file, in units of so many metres, in this process.
+    """The faces and curves of a CAD file, read in this process.
 
-    Of a file that is cut short the faces that are whole are read, with remarks.
+    ``metres`` is the size of its unit.
+
+    The complete faces of a truncated file are read, with remarks.
 
     Parameters
     ----------
@@ -258,7 +261,7 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
 
 
 def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
-    """What OCCT makes of a file's text, and whether it can be read."""
+    """Content that OCCT finds in a file's text, and True if it is readable."""
     found = Imported(metres=metres, remarks=list(source.remarks))
     document = _document(metres)
     iges = isinstance(source, IgesText)
@@ -283,7 +286,7 @@ def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
 
 
 def _transferred(data: bytes, iges: bool, document: Any) -> bool:
-    """Whether OCCT reads a file's bytes into a document."""
+    """True if OCCT reads a file's bytes into a document."""
     if iges:
         from OCP.IGESCAFControl import IGESCAFControl_Reader
 
@@ -354,7 +357,7 @@ def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[
 
 @dataclass
 class _Labels:
-    """What faces are called."""
+    """Names of faces."""
 
     named: _Names
     numbered: dict[int, str]
@@ -392,7 +395,7 @@ _UNNAMED = {"", "NONE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
 
 
 class _Places:
-    """Where the faces of a shape are: the products that they are in, and their colours."""
+    """Products and colours of the faces of a shape."""
 
     def __init__(self, sewn: Sewn, named: _Names, bodies: set[str], several: bool) -> None:
         from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
@@ -445,7 +448,7 @@ class _Converted:
             self.edges = map_of(shape, TopAbs_EDGE)
 
     def takes(self, part: Any) -> bool:
-        """Whether OCCT can convert a face."""
+        """True if OCCT can convert a face."""
         if self._whole is not None:
             return True
         try:
@@ -548,7 +551,7 @@ def _shape_faces(
 
 
 def _own_seam(face: ImportedFace) -> bool:
-    """Whether a face meets itself along an edge."""
+    """True if a face meets itself along an edge."""
     numbers = [n for cycle in face.loops for n, _, _ in cycle]
     return len({*numbers}) < len(numbers)
 
@@ -796,7 +799,7 @@ def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs |
 
 
 def border(trace: Nurbs) -> str:
-    """The edge of the parameters that a curve in them runs along, such as ``u0``; or nothing.
+    """The edge of the parameters followed by a curve in them, such as ``u0``; or an empty text.
 
     Parameters
     ----------
@@ -811,7 +814,7 @@ def border(trace: Nurbs) -> str:
 
 
 def is_whole(trace: Nurbs) -> bool:
-    """Whether a curve along an edge of the parameters runs along all of it.
+    """True if a curve along an edge of the parameters covers all of it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The text of STEP files: what OCCT passes over, and what is left of a file cut short."""
+"""The text of STEP files: content that OCCT skips, and the rest of a truncated file."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _PREFIXES |= {".KILO.": 1e3, ".NANO.": 1e-9}
 _EXPONENT = re.compile(r"[-+]?\d+\.?\d*[Ee]\+?\d{2,}")
 """Numbers that may be too large."""
 _LARGEST = 1e50
-"""As of coordinates in models."""
+"""Largest coordinate, as for models."""
 
 _ROUNDED = 1e-4
 """Factors of units are written with few digits: 0.01745 for a degree."""
@@ -63,9 +63,9 @@ class StepText:
     """The text of a STEP file and its entities."""
 
     text: str
-    """What OCCT is to read: with an end where the file is cut short, faces named by number."""
+    """Text for OCCT: with an end added to a truncated file, and faces named by number."""
     remarks: list[str] = field(default_factory=list)
-    """What is doubtful or lost."""
+    """Doubtful or lost content."""
     names: dict[int, str] = field(default_factory=dict)
     """The names of the faces that the file holds, by the numbers of their entities."""
 
@@ -78,7 +78,7 @@ class StepText:
         path
             The file, for errors.
         text
-            What it holds.
+            Content of the file.
 
         Raises
         ------
@@ -132,7 +132,7 @@ class StepText:
 
     @cached_property
     def references(self) -> dict[int, list[int]]:
-        """What each entity refers to."""
+        """References of each entity."""
         return {n: [int(m) for m in re.findall(r"#(\d+)", b)] for n, b in self.entities.items()}
 
     @cached_property
@@ -141,7 +141,7 @@ class StepText:
         return [n for n, body in self.entities.items() if _kind(body) in _FACES]
 
     def missing(self, number: int) -> list[int]:
-        """What an entity refers to, itself or through others, and the file does not hold."""
+        """Missing entities to which an entity refers, directly or indirectly."""
         seen, open_, lost = {number}, [number], set()
         while open_:
             for other in self.references[open_.pop()]:
@@ -218,7 +218,7 @@ class StepText:
         self.remarks += dict.fromkeys(said)
 
     def _unit(self, number: int, kind: str) -> str:
-        """What is wrong with a unit; nothing when it is as it should be."""
+        """Error of a unit, or an empty text."""
         body = self.entities[number]
         start = f"unit of {_WORDS[kind]} #{number}"
         if si := re.search(r"SI_UNIT\s*\(\s*([^,]*?)\s*,\s*\.(\w+)\.", body):
@@ -247,7 +247,7 @@ class StepText:
         return ""
 
     def _factor(self, number: int, deep: int = 0) -> float | None:
-        """The SI units of a unit by conversion; units that go round in a circle have none."""
+        """The SI units of a unit by conversion; a circular definition has none."""
         if deep > _DEEPEST:
             return None
         for measure in self.references[number]:
@@ -267,7 +267,7 @@ class StepText:
 
     @cached_property
     def whole_faces(self) -> list[int]:
-        """The faces of which nothing is missing."""
+        """Faces without missing entities."""
         return [n for n in self.faces if not self.missing(n)]
 
     @cached_property
@@ -350,7 +350,7 @@ class StepText:
         return StepText(kept[:end] + tail + kept[end:], remarks, names)
 
     def _mark(self) -> None:
-        """Names the faces by their numbers, so that those that OCCT drops are known."""
+        """Names the faces by their numbers, so that faces dropped by OCCT can be identified."""
 
         def marked(found: re.Match[str]) -> str:
             number = int(found[2])

@@ -1,4 +1,4 @@
-"""Faces that do not share their edges, sewn where these are one within a tolerance."""
+"""Sewing of faces whose edges coincide within a tolerance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["Sewn", "faces_of", "is_sheet", "map_of"]
 
 _LEAST = 1e-6
 _MOST = 1e-4
-"""The tolerance, as a share of the size."""
+"""Tolerance relative to the size."""
 
 
 def map_of(shape: Any, kind: Any) -> Any:
@@ -34,13 +34,13 @@ class Sewn:
     """A shape, and what became of it when its faces were sewn."""
 
     shape: Any
-    """As it was read."""
+    """The shape as read."""
     passes: list[Any] = field(default_factory=list)
-    """What sewed it, one after the other; none where nothing had to be sewn."""
+    """Sewing operations in order; empty if there was nothing to sew."""
     body: Any = None
-    """Its faces with the edges that they share."""
+    """Its faces with their common edges."""
     tolerance: float = 0.0
-    """How far apart edges may be that became one."""
+    """Maximum distance between edges that were united."""
 
     @classmethod
     def of(cls, shape: Any, resolution: float) -> Sewn:
@@ -102,7 +102,7 @@ class Sewn:
 
     @property
     def found(self) -> int:
-        """How many edges of two faces the file does not say to be one."""
+        """Number of coincident edges that the file lists separately."""
         return 0 if self.body is None else _shared(self.body) - _shared(self.shape)
 
     def say(self, remarks: list[str], *, iges: bool) -> None:
@@ -111,9 +111,9 @@ class Sewn:
         Parameters
         ----------
         remarks
-            What is said of the file.
+            Remarks on the file.
         iges
-            Whether it is an IGES file, which never says what hangs together.
+            True for an IGES file, which never states connections.
         """
         if not self.passes:
             return
@@ -134,12 +134,12 @@ class Sewn:
 
 
 def _shared(shape: Any) -> int:
-    """How many edges two or more faces share."""
+    """Number of edges common to two or more faces."""
     return sum(n > 1 for n in _uses(shape).values())
 
 
 def _uses(shape: Any) -> dict[int, int]:
-    """How many faces have each edge."""
+    """Number of faces at each edge."""
     from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 
     edges = map_of(shape, TopAbs_EDGE)
@@ -152,14 +152,14 @@ def _uses(shape: Any) -> dict[int, int]:
 
 
 def is_sheet(shape: Any) -> bool:
-    """Whether a shape is of faces that bound no solid."""
+    """True if the faces of a shape bound no solid."""
     from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 
     return not faces_of(shape, TopAbs_SOLID) and bool(faces_of(shape, TopAbs_FACE))
 
 
 def _outward(shape: Any) -> Any:
-    """The same with solids in the place of closed shells, so that their faces look outward."""
+    """The same shape with solids for closed shells, so that their faces are oriented outward."""
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.BRepLib import BRepLib
     from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL

@@ -177,7 +177,7 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """A remark as it is; the place in Python is nothing to who typed a command."""
+    """A remark without a position in Python code, which is irrelevant in a command."""
     from moldloft.cli.colour import painted
 
     stream = file or sys.stderr

@@ -64,7 +64,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     files.add_argument(
         "--keep-going",
         action="store_true",
-        help="write what can be written: the other formats, and the model without the objects that "
+        help="write as much as possible: the other formats, and the model without the objects that "
         "could not be made, which are named; the status is still 1",
     )
     add_force(files)
@@ -333,7 +333,7 @@ def _objects(model: Model) -> list[dict[str, Any]]:
 def facts(
     model: Model, mesh: Mesh, floating: Hydrostatics | None, written: list[Path]
 ) -> dict[str, Any]:
-    """What ``build --json`` prints."""
+    """Data printed by ``build --json``."""
     return {
         "ok": True,
         "objects": _objects(model),
@@ -371,7 +371,7 @@ def summary(
     *,
     verbose: bool = False,
 ) -> str:
-    """What ``build`` prints: patches, the whole, hydrostatics, files."""
+    """Text printed by ``build``: patches, the whole, hydrostatics, files."""
     lines = [f"{len(data['objects'])} objects, {mesh!r}"]
     if mesh.patches:
         header = ["patch", "kind", "panels", "vertices", "area", "volume", "closed"]
@@ -396,7 +396,7 @@ def summary(
 
 
 def _floats(floating: Hydrostatics) -> bool:
-    """Whether the water cuts the skin."""
+    """True if the water plane cuts the skin."""
     return floating.volume > 0 and floating.waterplane_area is not None
 
 
@@ -458,7 +458,7 @@ _MEASURES = {"aspect": "max", "skew": "max", "warp": "max", "jump": "max", "angl
 
 
 def worst_panels(mesh: Mesh) -> str:
-    """The worst panel of each patch in each measure, with its place."""
+    """The worst panel of each patch in each measure, with its position."""
     header = ["patch", *_MEASURES, "without area"]
     rows = []
     for patch in mesh.patches:

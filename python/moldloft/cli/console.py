@@ -1,4 +1,4 @@
-"""What the commands share: models from arguments, diagnostics, JSON, progress."""
+"""Common parts of the commands: models from arguments, diagnostics, JSON, progress."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
 
 
 def add_force(parser: argparse._ActionsContainer) -> None:
-    """The option that overwrites what is not known to be ours."""
+    """The option that overwrites files of unknown origin."""
     parser.add_argument(
         "--force",
         action="store_true",
@@ -117,7 +117,7 @@ def add_force(parser: argparse._ActionsContainer) -> None:
 
 
 def say(options: argparse.Namespace, text: str) -> None:
-    """Prints a message about success: none when quiet, on standard error beside a file there."""
+    """Prints a message about success; to standard error if a file is on standard output."""
     if not getattr(options, "quiet", False):
         out = sys.stderr if getattr(options, "output", None) == "-" else sys.stdout
         print(text, file=out)
@@ -325,7 +325,7 @@ def report(diagnostics: list[Diagnostic]) -> None:
 
 
 def block_problems(model: Model) -> list[Diagnostic]:
-    """What is wrong with the cells of the model's solids, if it has any: folded ones, and joins."""
+    """Faults of the cells of the model's solids, if it has any: folded cells, and joins."""
     from moldloft.errors import ModelError
 
     facts = (model.facts(name) for name in model.objects)
@@ -368,7 +368,7 @@ class Progress:
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
     def stage(self, words: str, detail: str = "") -> None:
-        """What is being done from now on; the detail is shown on terminals only."""
+        """Present stage of the work; the detail is shown on terminals only."""
         self._stage = f"{words}: {detail}" if detail and self._terminal else words
 
     def __enter__(self) -> Progress:

@@ -57,9 +57,9 @@ def line_editor(
     keywords
         Words to highlight.
     delimiters
-        What separates words, for ``readline``.
+        Word separators for ``readline``.
     after
-        What a completed word is followed by.
+        Character after a completed word.
     """
     with contextlib.suppress(OSError):
         history.parent.mkdir(parents=True, exist_ok=True)

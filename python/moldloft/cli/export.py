@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--html",
         action="store_true",
         required=True,
-        help="a page that opens without server and network; it computes by itself where this "
+        help="a page that opens without server and network; it computes on its own where this "
         "package has the engine for pages",
     )
     parser.add_argument(

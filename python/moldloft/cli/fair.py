@@ -71,7 +71,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "data, squared third differences of networks, squared second differences otherwise",
     )
     parser.add_argument(
-        "--bound", choices=["data", "curve", "points"], help="what the tolerance is a bound on"
+        "--bound", choices=["data", "curve", "points"], help="quantity bounded by the tolerance"
     )
     parser.add_argument(
         "--breaks",
@@ -136,7 +136,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=words.vector,
         help="points stay in the planes across this direction",
     )
-    parser.add_argument("--box", action="store_true", help="limit each coordinate by itself")
+    parser.add_argument("--box", action="store_true", help="limit each coordinate separately")
     for word, place, what in (
         ("through", "T", "the curve passes through X,Y[,Z] at T, or the surface at U,V"),
         ("tangent", "T", "the curve runs along X,Y[,Z] at T"),
@@ -268,7 +268,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def _refuse_curves_only(options: argparse.Namespace) -> None:
-    """What single curves have, where it would be dropped without a word."""
+    """Options of single curves; an error where they would be ignored."""
     for name, given in (
         ("--shape", options.shape),
         ("--release", options.release),
@@ -394,7 +394,7 @@ def _ends(options: argparse.Namespace) -> Any:
 
 
 class _Source(abc.ABC):
-    """What is faired: where it came from, and how it goes back."""
+    """Data to fair: its source, and how the result is written."""
 
     title = ""
 
@@ -431,7 +431,7 @@ def _numbers(path: str | None) -> list[float] | None:
 
 
 def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
-    """The curves that this one runs on from."""
+    """The curves that this one continues."""
     from moldloft.fairing import Spline
     from moldloft.fairing.files import read_points
 

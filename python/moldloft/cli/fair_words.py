@@ -1,4 +1,4 @@
-"""Words of ``moldloft fair``: what its arguments are written as."""
+"""Values of arguments of ``moldloft fair``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STOPS = {"move": "least_move", "drop": "least_drop", "gap": "stop_gap", "pieces"
 
 
 def stop(text: str) -> tuple[str, float | bool]:
-    """What ends local steps, and its share."""
+    """Criterion that ends local steps, and its fraction."""
     word, equals, share = text.partition("=")
     if word == "pieces" and not equals:
         return STOPS[word], True
@@ -42,12 +42,12 @@ def stop(text: str) -> tuple[str, float | bool]:
 
 
 def spacing(text: str) -> Any:
-    """How points get their parameters: a word, or a direction."""
+    """Parametrisation of points: a word, or a direction."""
     return tuple(vector(text)) if "," in text else text
 
 
 def goal(text: str) -> Any:
-    """Which of the curves within the tolerance: a word, and its share."""
+    """Choice among the curves within the tolerance: a word, and its fraction."""
     word, equals, share = text.partition("=")
     try:
         return (word, float(share)) if equals else word

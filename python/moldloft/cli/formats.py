@@ -1,4 +1,4 @@
-"""``moldloft formats``: what models are written as."""
+"""``moldloft formats``: formats that models are written in."""
 
 from __future__ import annotations
 

@@ -38,16 +38,16 @@ def add(parser: argparse.ArgumentParser) -> None:
     how.add_argument("--level", metavar="Z", type=float, help="height of the water, by default 0")
     how.add_argument("--draft", metavar="T", type=float, help="depth of the lowest point")
     how.add_argument(
-        "--displacement", metavar="MASS", type=float, help="find the attitude of this mass at rest"
+        "--displacement", metavar="MASS", type=float, help="find the equilibrium of this mass"
     )
     parser.add_argument(
         "--cg", metavar="X,Y,Z", type=_numbers(3), help="centre of gravity; frees trim and heel"
     )
     parser.add_argument(
-        "--trim", metavar="DEGREES", type=float, default=0.0, help="positive sinks what has large x"
+        "--trim", metavar="DEGREES", type=float, default=0.0, help="positive: deeper at large x"
     )
     parser.add_argument(
-        "--heel", metavar="DEGREES", type=float, default=0.0, help="positive sinks what has large y"
+        "--heel", metavar="DEGREES", type=float, default=0.0, help="positive: deeper at large y"
     )
     parser.add_argument(
         "--fixed",
@@ -69,7 +69,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--weights",
         action="store_true",
-        help="list the model's weights, and float it with them unless --displacement is given",
+        help="list the model's weights; without --displacement the model floats with them",
     )
     parser.add_argument(
         "--criteria",
@@ -181,7 +181,7 @@ def _range(text: str) -> list[float]:
 def run(options: argparse.Namespace) -> int:
     """Measures and reports."""
     if options.table and options.gz:
-        raise Error("ask for --table or for --gz, not for both")
+        raise Error("--table and --gz exclude each other")
     if options.kn and not options.gz:
         raise Error("--kn needs the heels of --gz")
     rows_of = options.table or options.gz or options.sections

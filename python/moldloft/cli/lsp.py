@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Serves until the editor goes."""
+    """Serves until the editor closes the connection."""
     if options.where:
         path = Path(sys.executable).parent / _NAME
         if not path.is_file():

@@ -64,7 +64,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-(?!h$|-)")
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse does it; an unknown option is refused with the nearest one."""
+        """As in argparse; the error of an unknown option suggests the nearest one."""
         found, left = self.parse_known_args(args, namespace)
         if left:
             own = getattr(found, "parser", self)
@@ -75,7 +75,7 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse does it; the words are kept for what is said about them."""
+        """As in argparse; the words are kept for messages about them."""
         self._words = list(sys.argv[1:] if args is None else args)
         return super().parse_known_args(args, namespace)
 

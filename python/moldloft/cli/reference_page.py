@@ -14,7 +14,7 @@ Row = dict[str, Any]
 
 #: Groups of kinds: a title, what they have in common, and their classes.
 KINDS = (
-    ("Points", "Places in space.", ("point",)),
+    ("Points", "Points in space.", ("point",)),
     ("Beads", "Points on a curve.", ("bead",)),
     ("Magnets", "Points on a surface.", ("magnet",)),
     ("Rings", "Points on a snake.", ("ring",)),
@@ -23,7 +23,11 @@ KINDS = (
     ("Surfaces", "S(u, v), both from 0 to 1.", ("surface",)),
     ("Solids", "X(u, v, w), for cells of volume grids.", ("solid",)),
     ("Trimmed surfaces and bodies", "Triangles.", ("mesh",)),
-    ("Planes and frames", "To mirror, cut, project and place with.", ("plane", "frame")),
+    (
+        "Planes and frames",
+        "References for mirror images, sections, projections and positions.",
+        ("plane", "frame"),
+    ),
     ("Relabels", "Laws of a parameter: t' = r(t).", ("relabel",)),
     ("Contours", "Families of sections.", ("contours",)),
     (
@@ -100,7 +104,7 @@ def _argument(field: Row) -> str:
 
 
 def signature(row: Row) -> str:
-    """How a kind or function is written."""
+    """Signature of a kind or function."""
     if row.get("signature"):
         return str(row["signature"])
     name = f"{row['name']} name" if row["is_kind"] else row["name"]
@@ -180,7 +184,7 @@ def related(row: Row, rows: list[Row]) -> list[str]:
 
 
 def _anchor(row: Row, rows: list[Row]) -> str:
-    """Where an entry is: of those that differ by case alone, kinds come first, libraries last."""
+    """Anchor of an entry: of names that differ by case alone, kinds first, libraries last."""
     name = str(row["name"]).lower()
     alike = [r for r in rows if r["name"].lower() == name]
     before = sorted(alike, key=lambda r: not r["is_kind"]).index(row)

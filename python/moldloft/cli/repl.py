@@ -108,7 +108,7 @@ class Session:
 
 
 def _is_expression(text: str, error: Error) -> bool:
-    """Whether the text was meant as an expression, so that its error is the one to show."""
+    """True if the text is meant as an expression, so that its error is the one to show."""
     ids = {d.id for d in getattr(error, "diagnostics", [])}
     syntax = {"unexpected-token", "missing-semicolon", "unclosed-bracket", "not-a-value"}
     words = text.replace("(", " ").split()
@@ -243,7 +243,7 @@ def _read(ask: Callable[[str], str] | None) -> str:
 
 
 def _open_brackets(text: str) -> int:
-    """How many brackets are open at the end of a text.
+    """Number of open brackets at the end of a text.
 
     >>> _open_brackets("for (i = 1:3) {"), _open_brackets('print "{"; # (')
     (1, 0)

@@ -49,7 +49,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Runs the program; its files are written when it has no errors."""
+    """Runs the program; its files are written if it has no errors."""
     model = open_model(options)
     failed = model.has_errors
     report(model.diagnostics)

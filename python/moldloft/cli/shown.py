@@ -30,7 +30,7 @@ def _picture(found: re.Match[str]) -> str:
 
 
 class OwnText(str):
-    """What this program writes as it is, its own colours and movements of the cursor included."""
+    """Text of this program that is written unchanged, including colours and cursor movements."""
 
     __slots__ = ()
 
@@ -44,18 +44,18 @@ class ShownStream:
     Parameters
     ----------
     stream
-        Where the text goes.
+        Destination of the text.
     """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        """As of the stream."""
+        """As in the stream."""
         return self._stream.write(text if isinstance(text, OwnText) else shown(text))
 
     def writelines(self, lines: Any) -> None:
-        """As of the stream."""
+        """As in the stream."""
         for line in lines:
             self.write(line)
 

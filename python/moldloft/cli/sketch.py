@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 class Host:
-    """What a session needs of the outside: replies shown, files written, changes recorded."""
+    """Services for a session: shows replies, writes files, records changes."""
 
     def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
         self.sketch = sketch

@@ -29,9 +29,9 @@ _RETRY = {"failed": _FAULTS, "refused": ("refused",), "all": (*_FAULTS, "refused
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
-    sweep = verbs.add_parser("sweep", help="evaluate the plan; a stopped one goes on")
+    sweep = verbs.add_parser("sweep", help="evaluate the plan; a stopped one is continued")
     best = verbs.add_parser("optimize", help="find the best inputs by the derivatives of the model")
-    resume = verbs.add_parser("resume", help="go on with what the store holds")
+    resume = verbs.add_parser("resume", help="continue the plan in the store")
     show = verbs.add_parser("show", help="print and draw the results")
     collect = verbs.add_parser("collect", help="join the stores of the parts of a plan")
     for verb in (sweep, best, resume, show, collect):

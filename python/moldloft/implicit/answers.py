@@ -1,4 +1,4 @@
-"""What sets are made of, and what they answer."""
+"""Values of sets: primitives, attributes, results of queries."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ __all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "
 
 
 def warn_of(remark: str, frames: int = 1) -> None:
-    """Warns the caller of a method, so many frames above it, of a number not known as asked."""
+    """Warns the caller of a method, ``frames`` up, of a number beyond its accuracy."""
     warnings.warn(remark, stacklevel=2 + frames)
 
 
 @dataclass(frozen=True)
 class Attributes:
-    """What a handle says of a set."""
+    """Attributes of a set by its handle."""
 
     name: str | None = None
     """Name of its faces."""
@@ -38,7 +38,7 @@ class Attributes:
     tolerance: float | None = None
     """Distance below which two points count as one."""
     tags: Mapping[str, str] = dataclass_field(default_factory=dict)
-    """What else is said, by tag."""
+    """Further attributes, by tag."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Leaf:
     field: Field
     """The primitive, negated where a complement reached it."""
     kind: str
-    """What it was made as."""
+    """Type of the primitive."""
     attributes: Attributes
     """Its own attributes, completed by those of the sets around it."""
 
@@ -69,9 +69,11 @@ class Mass:
     uncertain: float
     """Proved: the right volume is no further from ``volume``."""
     estimate: float
-    """How much two levels of facets differ, 0 if they agree: an estimate of the error, no bound."""
+    """Difference between two levels of facets, 0 if they agree: an estimate of the error, not a
+    bound.
+    """
     centroid: Floats | None
-    """Centre of mass ``(3,)``; None where there is no volume."""
+    """Centre of mass ``(3,)``; None for zero volume."""
     centroid_bracket: Floats
     """Its bounds, ``(3, 2)``."""
     inertia: Floats | None
@@ -85,9 +87,9 @@ class Nearest:
     """The nearest point of a surface."""
 
     point: Floats
-    """Where it is."""
+    """Position."""
     distance: float
-    """How far."""
+    """Distance."""
     at_least: float
     """No point of the surface is nearer than this; proved."""
 
@@ -108,10 +110,10 @@ class Distance:
 
 @dataclass(frozen=True)
 class Hit:
-    """Where a ray crosses the surface of a set."""
+    """An intersection of a ray with the surface of a set."""
 
     t: float
-    """How far along, in lengths of the direction."""
+    """Distance along the ray, in lengths of the direction."""
     point: Floats
     """Where."""
     leaf: int
@@ -127,7 +129,7 @@ class Sun:
     """Light from afar."""
 
     direction: Triple
-    """Where it shines to."""
+    """Direction of the light."""
     colour: Triple = (0.8, 0.8, 0.8)
     """Linear red, green, blue."""
 
@@ -137,6 +139,6 @@ class Lamp:
     """Light from a point."""
 
     place: Triple
-    """Where it stands."""
+    """Position of the light."""
     colour: Triple = (0.8, 0.8, 0.8)
     """Linear red, green, blue."""

@@ -78,7 +78,7 @@ def liming(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def zhang(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
     l2
         The second body.
     a
-        Setback on the second body: where the rail meets it.
+        Setback on the second body: distance to the rail.
     b
         Setback on the first body; by default the same.
 
@@ -228,18 +228,18 @@ def fillet(
     width
         Setback on the second body, in model units; on both by default.
     other
-        Setback on the first body, where it differs.
+        Setback on the first body, if different.
     lambda_
         Shape of the blend, between 0 and 1.
     low
         Low corner of a box over which the contact of two fields is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
     Blend or Set
-        What can be combined further.
+        A shape for further combination.
     """
     from moldloft.implicit.sets import Set
 
@@ -277,18 +277,18 @@ def rounded(
     width
         Setback on the second body, in model units; on both by default.
     other
-        Setback on the first body, where it differs.
+        Setback on the first body, if different.
     lambda_
         Shape of the blend, between 0 and 1.
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
     Blend
-        What can be combined further.
+        A shape for further combination.
     """
     return _blended("round", l1, l2, _setbacks(width, other), lambda_, _box(low, high))
 
@@ -325,12 +325,12 @@ def transition(
     low
         Low corner of a box over which the contact is proved, ``(3,)``.
     high
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
     Blend
-        What can be combined further.
+        A shape for further combination.
     """
     from moldloft.implicit.sets import Set
 

@@ -41,7 +41,7 @@ class DivisionBox:
     kind: str
     """``"solid"``, ``"air"``, both proved, or ``"surface"`` where the surface may be."""
     depth: int
-    """How often the whole box was halved along each axis."""
+    """Number of halvings of the whole box along each axis."""
 
 
 class Division:
@@ -54,9 +54,9 @@ class Division:
     low, high
         The box; found around a set that has an end.
     depth
-        How often it is halved along each axis at most.
+        Maximum number of halvings along each axis.
     primitives
-        A box in which so many primitives are left is not halved any more.
+        Number of remaining primitives at which a box is not halved any more.
 
     Raises
     ------
@@ -120,7 +120,7 @@ class Division:
         Returns
         -------
         DivisionBox
-            The box; that above where the point lies between two.
+            The box of a point; for a point between two, the upper one.
 
         Raises
         ------

@@ -16,7 +16,7 @@ __all__ = ["Edged"]
 
 
 class Edged:
-    """What has edges: a new shape, this stays as it is."""
+    """Operations on edges; they return a new shape and leave this one unchanged."""
 
     _core: Core
 
@@ -42,8 +42,8 @@ class Edged:
         Raises
         ------
         Error
-            When a face is not one of a plane, ball, cylinder, cone or torus: the distance from
-            others has no closed form. When an edge inside of the body would stand out of it.
+            If a face is not on a plane, ball, cylinder, cone or torus: other surfaces have no
+            distance in closed form. If the offset of an inner edge would protrude from the body.
 
         Examples
         --------

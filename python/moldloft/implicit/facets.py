@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Contour", "FacetPatch", "Facets", "Sheet", "Unresolved"]
 
 FORMATS = ("stl", "obj", "ply", "glb", "vtp", "3mf")
-"""Formats of facets; wires and points go into obj and vtp only."""
+"""Formats of facets; wires and points are written to obj and vtp only."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class FacetPatch:
     name: str
     """Name of the primitive, or its kind."""
     kind: str
-    """What the primitive was made as."""
+    """Type of the primitive."""
     colour: int | None
     """Palette colour."""
     start: int
@@ -47,14 +47,16 @@ class FacetPatch:
 
 @dataclass(frozen=True)
 class Unresolved:
-    """A place of which the corners of its cell say nothing."""
+    """A position at which the corners of its cell are inconclusive."""
 
     low: Floats
     """Low corner of a cell, or of a part of one."""
     high: Floats
-    """Its high corner."""
+    """High corner of the box."""
     volume: float
-    """How much solid it may hold where the facets have air, or air where they have solid."""
+    """Bound of the solid volume where the facets are empty, or of the empty volume where they are
+    solid.
+    """
     missed: bool
     """True when there is some for sure: a wall or a gap thinner than the cell."""
 
@@ -181,8 +183,8 @@ class Facets:
     def best_volume(self) -> float:
         """The same, corrected for the distance of the triangles from the surface.
 
-        That is the volume of the set but for what is ``blunt`` or ``unresolved``, of which there is
-        a warning.
+        It is the volume of the set except for ``blunt`` and ``unresolved`` parts, which raise a
+        warning.
         """
         missed = len(self.blunt) + len(self.unresolved)
         if missed:
@@ -218,12 +220,12 @@ class Facets:
 
     @property
     def bodies(self) -> int:
-        """How many solids there are, those that only touch counted apart."""
+        """Number of solids; solids in point or edge contact are separate."""
         return self._core.shells()[1]
 
     @property
     def touching(self) -> Floats:
-        """Where bodies only touch: positions ``(n, 3)`` at which each has a vertex of its own."""
+        """Contacts between bodies: positions ``(n, 3)`` at which each has its own vertex."""
         return self._core.shells()[2]
 
     @cached_property
@@ -236,9 +238,9 @@ class Facets:
 
     @cached_property
     def unresolved(self) -> list[Unresolved]:
-        """Places of which the cells say nothing, or that they miss; elsewhere nothing is missed.
+        """Positions at which cells are inconclusive or may miss a part; nothing else is missed.
 
-        Neighbours are one place: there are at most 100, the largest first.
+        Neighbours are one entry: at most 100 entries, the largest first.
         """
         return [
             Unresolved(np.array(low), np.array(high), volume, missed)
@@ -264,7 +266,7 @@ class Facets:
         return self._core.distances()[0]
 
     def worst_vertex(self) -> float:
-        """The largest distance of a vertex of the solids from a surface that it lies on.
+        """The largest distance of a vertex of the solids from its surface.
 
         Returns
         -------
@@ -274,7 +276,7 @@ class Facets:
         return self._core.distances()[1]
 
     def crossings(self) -> int:
-        """How many pairs of triangles cut each other.
+        """Number of intersecting pairs of triangles.
 
         Returns
         -------
@@ -317,7 +319,7 @@ class Facets:
         normals
             A normal for each section.
         point
-            A point that the planes go through.
+            A common point of the planes.
         width
             Width of each view, in millimetres.
 
@@ -332,7 +334,7 @@ class Facets:
         """Write the facets to a file, whole or not at all; the ending selects the format.
 
         ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
-        points go into ``obj`` and ``vtp``, the others refuse them.
+        points are written to ``obj`` and ``vtp``, and are an error in the others.
 
         Parameters
         ----------

@@ -126,7 +126,7 @@ class Field(Moving):
         Returns
         -------
         tuple of float
-            A number that no value is below, and one that none is above.
+            A lower and an upper bound of all values.
 
         Raises
         ------
@@ -153,7 +153,7 @@ class Field(Moving):
 
     @property
     def form(self) -> dict[str, Any]:
-        """What it was made as, with its dimensions.
+        """Type of the primitive with its dimensions.
 
         >>> from moldloft import implicit as im
         >>> im.sphere((1, 0, 0), 2).form
@@ -510,10 +510,11 @@ def function(
         Takes the low and high corner of a box and returns numbers below and above all values in it.
         Wide ones cost time, wrong ones correctness.
     lipschitz
-        Instead of a range: values differ by at most this times the distance of their points.
-        Without either, nothing is known over boxes, and every box of the division is looked at.
+        Lipschitz constant, instead of a range: values differ by at most this times the distance of
+        their points. Without either, boxes have no bounds, and every box of the division is
+        evaluated.
 
-    What the function raises, or a wrong shape that it returns, becomes a :class:`moldloft.Error`.
+    An exception of the function, or a result of the wrong shape, becomes a :class:`moldloft.Error`.
 
     Returns
     -------
@@ -716,7 +717,7 @@ def s_sqrt(x: Field) -> Field:
     Returns
     -------
     Field
-        Of the sign of the field.
+        Signed square root: with the sign of the field.
     """
     return _unary("s_sqrt", x)
 

@@ -38,7 +38,7 @@ def union(*sets: Set | Field) -> Set:
 
 
 def intersection(*sets: Set | Field) -> Set:
-    """What any number of sets have in common, in a balanced tree.
+    """The intersection of any number of sets, in a balanced tree.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def minkowski_sum(a: Set | Field, b: Set | Field) -> Set:
     Raises
     ------
     Error
-        When no closed form is known of the sum.
+        If the sum has no known closed form.
 
     Examples
     --------

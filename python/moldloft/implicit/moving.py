@@ -1,4 +1,4 @@
-"""Boxes, and the moves that fields and sets share."""
+"""Boxes, and common transformations of fields and sets."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def box_of(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> lis
 
 
 def corners_of(low: Triple | None, high: Triple | None) -> tuple[list[float], list[float]] | None:
-    """The corners of a box, or None where none is given."""
+    """The corners of a box; ``None`` without a box."""
     if low is None and high is None:
         return None
     if low is None or high is None:
@@ -82,7 +82,7 @@ def scaling(factor: float, centre: Triple) -> tuple[Floats, list[float]]:
 
 
 class Moving:
-    """What can be moved: a new shape, this stays as it is."""
+    """Transformations; they return a new shape and leave this one unchanged."""
 
     def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Self:
         """The shape moved by the affine map X -> matrix X + shift.

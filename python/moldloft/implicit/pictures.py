@@ -35,7 +35,7 @@ def _colour(of: Sequence[int]) -> list[int]:
 
 
 class Pictured:
-    """What can be seen."""
+    """Pictures of sets."""
 
     _core: Core
 
@@ -63,13 +63,13 @@ class Pictured:
         Parameters
         ----------
         path
-            Where to write it too.
+            File to write, besides the result.
         low, high
             The box that is shown.
         size
             Picture points across and down.
         eye, centre, up
-            From where to where one looks; by default from the front, right and above.
+            Eye and target of the view; default: from the front, right and above.
         angle
             Angle of view from top to bottom, in radians.
         lights
@@ -78,15 +78,15 @@ class Pictured:
         ambient
             Light from everywhere.
         shadows
-            Whether things throw shadows.
+            True to cast shadows.
         shine
             Strength of highlights, 0 to 1.
         background
             Red, green and blue, 0 to 255 each, at the top and at the bottom of the picture. Mirrors
             that look past everything show it by height.
         mirrors
-            How much of the light faces throw back as mirrors, 0 to 1: one number for all, or
-            numbers by the names of primitives.
+            Reflectivity of faces, 0 to 1: one number for all, or numbers by the names of
+            primitives.
         samples
             Rays along each side of a picture point.
 
@@ -184,7 +184,7 @@ def _reach(
     angle: float,
     size: tuple[int, int],
 ) -> float:
-    """How far away one sees all of a box, with a little room about it."""
+    """Distance from which all of a box is visible, with a small margin."""
     right = np.cross(np.array(up), away)
     if not np.linalg.norm(right) > 0:
         right = np.array([1.0, 0.0, 0.0])

@@ -22,7 +22,7 @@ def everything() -> Set:
     Returns
     -------
     Set
-        What ``&`` leaves another set by.
+        Neutral element of ``&``.
     """
     return Set(_core.Set.everything())
 
@@ -33,7 +33,7 @@ def nothing() -> Set:
     Returns
     -------
     Set
-        What ``|`` leaves another set by.
+        Neutral element of ``|``.
     """
     return Set(_core.Set.nothing())
 
@@ -62,9 +62,9 @@ def segment(start: Triple, end: Triple) -> Set:
     Parameters
     ----------
     start
-        Where it begins, ``(3,)``.
+        Start, ``(3,)``.
     end
-        Where it ends, ``(3,)``.
+        End, ``(3,)``.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def point(at: Triple) -> Set:
     Parameters
     ----------
     at
-        The place, ``(3,)``.
+        Position, ``(3,)``.
 
     Returns
     -------

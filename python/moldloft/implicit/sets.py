@@ -1,4 +1,4 @@
-"""Sets: what fields leave solid, combined."""
+"""Sets: combinations of the solid sides of fields."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["Set", "load", "loads"]
 
 USUAL_LIMIT = 2e7
-"""Cells that the surface may pass through, unless asked otherwise."""
+"""Default limit of cells that the surface may cross."""
 
 Corners = "tuple[list[float], list[float]] | None"
 
@@ -56,7 +56,7 @@ def _whole(value: int | None, what: str, least: int) -> int | None:
 class Set(Moving, Edged, Pictured):
     """A set of points: the solid sides of fields under ``|``, ``&``, ``-``, ``^`` and complement.
 
-    Sets never change and share their parts, so holding on to an operand is all that undo needs.
+    Sets are immutable and share their parts, so undo only needs a reference to an operand.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Set(Moving, Edged, Pictured):
         tolerance: float | None = None,
         tags: Mapping[str, str] | None = None,
     ) -> Set:
-        """The same set with these attributes; what its parts say of themselves stays.
+        """The same set with these attributes; attributes of its parts take precedence.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ class Set(Moving, Edged, Pictured):
         material
             Name of a material.
         tolerance
-            How near to the surface a point counts as on it.
+            Distance below which a point is on the surface.
         tags
             Texts by name.
 
@@ -214,7 +214,7 @@ class Set(Moving, Edged, Pictured):
         return Set(self._core.regularized())
 
     def pruned(self, low: Triple, high: Triple) -> Set:
-        """The set as it is inside a box: what is all solid or all air there is left out.
+        """The set inside a box, without parts that are all solid or all empty there.
 
         Parameters
         ----------
@@ -402,12 +402,12 @@ class Set(Moving, Edged, Pictured):
 
     @property
     def is_everything(self) -> bool:
-        """True for the whole of space, known as such."""
+        """True if the set is known to be the whole of space."""
         return self._core.is_everything
 
     @property
     def is_nothing(self) -> bool:
-        """True for the empty set, known as such."""
+        """True if the set is known to be empty."""
         return self._core.is_nothing
 
     def same(self, other: Set) -> bool:
@@ -443,8 +443,8 @@ class Set(Moving, Edged, Pictured):
     ) -> Any:
         """-1 in the solid, 0 on the surface, 1 in air, for points ``(…, 3)``.
 
-        A primitive counts as zero where it is at most ``tolerance`` from its surface. The fields
-        ``known`` do everywhere: on their surfaces the points are known to lie.
+        A primitive counts as zero at most ``tolerance`` from its surface. The fields ``known``
+        count as zero everywhere: the points are known to be on their surfaces.
 
         Parameters
         ----------
@@ -522,7 +522,7 @@ class Set(Moving, Edged, Pictured):
         Returns
         -------
         tuple of float
-            A number that no value is below, and one that none is above.
+            A lower and an upper bound of all values.
 
         Raises
         ------
@@ -578,18 +578,18 @@ class Set(Moving, Edged, Pictured):
     ) -> Mass:
         """Volume, centroid and inertia within a box, each as a proved bracket and a best value.
 
-        Best values lie inside their brackets, and are those of the language. Parts of any thinness
-        count.
+        Best values are inside their brackets, and equal those of the language. Parts of any
+        thickness are included.
 
         Parameters
         ----------
         low, high
             The box; found around a set that has an end. Its faces cut the set.
         depth
-            How often the box is halved for the brackets; they close by a factor of about 4 with
-            each. By default some thousand cells are divided where the brackets are widest.
+            Number of halvings of the box for the brackets, which narrow by a factor of about 4 with
+            each. By default some thousand cells with the widest brackets are divided.
         accuracy
-            Instead: how far the volume may be from its best value, proved.
+            Alternative to ``depth``: proved bound of the error of the volume.
         cells
             The most cells by which the accuracy is sought, by default 400 000.
 
@@ -652,7 +652,7 @@ class Set(Moving, Edged, Pictured):
         high
             The high corner of a box, ``(3,)``.
         accuracy
-            How much nearer another point may be.
+            Maximum excess over the distance of the nearest point.
 
         Returns
         -------
@@ -685,7 +685,7 @@ class Set(Moving, Edged, Pictured):
         *,
         accuracy: float | None = None,
     ) -> Distance | None:
-        """How far another set is from this one in a box; None when one of them has no point there.
+        """The distance of another set from this one in a box; None if one of them is empty there.
 
         ``accuracy`` is how much nearer they may be, by default 1e-5 of the box.
 
@@ -725,16 +725,16 @@ class Set(Moving, Edged, Pictured):
         return Distance(distance, at_least, np.array(first), np.array(second))
 
     def hits(self, start: Triple, direction: Triple, length: float = 1e3) -> list[Hit]:
-        """Where a ray crosses the surface, in order; ``length`` is how far it goes.
+        """Intersections of a ray with the surface, in order, up to ``length``.
 
         Parameters
         ----------
         start
-            Where it begins, ``(3,)``.
+            Start of the ray, ``(3,)``.
         direction
             A direction of any length, ``(3,)``.
         length
-            How far the ray goes, in model units.
+            Length of the ray, in model units.
 
         Returns
         -------
@@ -776,11 +776,12 @@ class Set(Moving, Edged, Pictured):
         Parameters
         ----------
         low, high
-            The box; found around a set that has an end. Where it cuts the set its faces close it.
+            The box; default: bounds of the set, if bounded. Its faces close a set that it cuts.
         depth
             Cells of the 2^depth-th part of the longest side; by default 6.
         accuracy
-            Instead: how far the middles of triangles are from the surface at most, by refining.
+            Alternative to ``depth``: maximum distance of the centres of triangles from the surface,
+            by refinement.
         before
             Facets of a similar set in the same box at the same depth: boxes in which the set did
             not change are taken over. The result is the same, bit for bit.

@@ -57,7 +57,7 @@ def smooth_union(a: Field | Set, b: Field | Set, width: float, blend: str = "qua
 def smooth_intersection(
     a: Field | Set, b: Field | Set, width: float, blend: str = "quadratic"
 ) -> Field:
-    """What two bodies have in common, with its edge rounded; see :func:`smooth_union`.
+    """The intersection of two bodies with the edge between them rounded; see :func:`smooth_union`.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def smooth_intersection(
     Raises
     ------
     Error
-        As :func:`smooth_union`.
+        See :func:`smooth_union`.
     """
     first, second = _function(a).unary("-"), _function(b).unary("-")
     return Field(first.smooth(second, float(width), str(blend)).unary("-"))
@@ -94,7 +94,7 @@ def smooth_difference(
     a
         The body.
     b
-        What is cut from it.
+        Body to subtract.
     width
         The width of the blend.
     blend
@@ -108,7 +108,7 @@ def smooth_difference(
     Raises
     ------
     Error
-        As :func:`smooth_union`.
+        See :func:`smooth_union`.
     """
     first = _function(a).unary("-")
     return Field(first.smooth(_function(b), float(width), str(blend)).unary("-"))

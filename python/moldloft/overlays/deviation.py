@@ -41,8 +41,9 @@ class Deviation:
     parameters: Floats
     """Their parameters (u, v), ``(n, 2)``."""
     beside: NDArray[np.bool_]
-    """Whether the foot is on an edge or knuckle and the point off the normal there: it has no place
-    of its own on the surface, and its distance is that from the edge, ``(n,)``."""
+    """True if the foot is on an edge or knuckle and the point is off the normal there: its distance
+    is that from the edge, ``(n,)``.
+    """
 
     @property
     def largest(self) -> float:
@@ -110,9 +111,9 @@ class Deviation:
 
 
 def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str = ()) -> Deviation:
-    """How far points are from the surfaces of a model.
+    """Distances of points from the surfaces of a model.
 
-    Where the model has planes of symmetry, the images of its surfaces count.
+    For a model with planes of symmetry, the images of its surfaces are included.
 
     Parameters
     ----------
@@ -131,7 +132,7 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
     Raises
     ------
     Error
-        Without points or surfaces, and for a model that shows bodies, which are known by
+        Without points or surfaces, and for a model that shows bodies, which exist only as
         triangles: name the surfaces.
     """
     at = np.asarray(points, dtype=np.float64)

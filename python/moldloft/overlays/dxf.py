@@ -136,7 +136,7 @@ def _check_count(document: Any, space: Any) -> None:
 
 
 def _entities(space: Any, left: Counter[str], depth: int = 0) -> Iterator[Any]:
-    """The entities, those of inserted blocks in their places, polygon meshes as faces."""
+    """The entities, with inserted blocks in position and polygon meshes as faces."""
     for entity in space:
         kind = entity.dxftype()
         if kind == "INSERT":
@@ -193,7 +193,7 @@ def _pieces(entity: Any) -> list[Floats]:
 
 
 def _chain(polyline: Any) -> list[Floats]:
-    """The sides of a polyline; its arcs run counter-clockwise by themselves and are turned."""
+    """The sides of a polyline; its arcs are counter-clockwise and are reversed where needed."""
     light = polyline.dxftype() == "LWPOLYLINE"
     vertices = polyline.vertices_in_wcs() if light else polyline.points_in_wcs()
     at = np.array(tuple(next(iter(vertices))), dtype=np.float64)
@@ -228,7 +228,7 @@ def _ellipse(ellipse: Any) -> list[Floats]:
 
 
 def _spline(entity: Any) -> Nurbs | None:
-    """A spline with its own data; one known by fit points is interpolated by ezdxf."""
+    """A spline with its own data; ezdxf interpolates fit points."""
     spline = entity.construction_tool()
     degree = int(spline.degree)
     knots = np.array(spline.knots(), dtype=np.float64)

@@ -25,7 +25,7 @@ __all__ = ["Fit", "fit"]
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What a fit came to."""
+    """Result of a fit."""
 
     values: dict[str, float]
     """The parameters; the model has them."""
@@ -36,7 +36,7 @@ class Fit:
     steps: int
     """Steps taken."""
     converged: bool
-    """Whether the last step was small: no nearby values come nearer."""
+    """True if the last step was small: no nearby values are better."""
 
     def __repr__(self) -> str:
         how = "" if self.converged else ", not converged"
@@ -69,9 +69,9 @@ def fit(
     parameters
         Names of parameters, or literals such as ``"P21.y"``. Ranges are kept.
     objects
-        As for :func:`moldloft.overlays.deviation`.
+        See :func:`moldloft.overlays.deviation`.
     most
-        Of more points so many are used for the steps, spread evenly over their order.
+        Maximum number of points used in the steps, evenly distributed over their order.
     steps
         Steps at most.
 
@@ -139,7 +139,7 @@ def fit(
 def _tried(
     model: Model, names: list[str], x: Floats, points: Floats, objects: Sequence[str] | str
 ) -> Deviation | None:
-    """The deviation at these values; None where the model has an error there."""
+    """The deviation at these values; None if the model has an error there."""
     try:
         model.set(dict(zip(names, x.tolist(), strict=True)))
         return deviation(model, points, objects=objects)

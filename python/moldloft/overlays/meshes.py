@@ -25,7 +25,7 @@ _CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 """Corners of surface elements by meshio's names: nodes on edges are left out."""
 
 _MARKS = {"msh": (b"$EndNodes", b"$EndElements")}
-"""What a whole file has: meshio waits for some of it without end."""
+"""Marks of a complete file, without some of which meshio does not return."""
 
 
 def surface(name: str, ending: str, data: bytes) -> Overlay:

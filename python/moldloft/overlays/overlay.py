@@ -1,4 +1,4 @@
-"""An overlay: what a file of another program holds, in the model's unit."""
+"""An overlay: content of a file of another program, in the model's unit."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class Overlay:
     faces: NDArray[np.uint32] = field(default_factory=_no_faces)
     """Four corners of each face, a triangle repeats its last: ``(m, 4)``."""
     groups: tuple[tuple[str, int, int], ...] = ()
-    """Runs of faces by name: their first, and one past their last."""
+    """Ranges of faces by name: first, and one past the last."""
     curves: Mapping[str, Nurbs] = field(default_factory=dict)
     """Curves by name, exact."""
     remarks: tuple[str, ...] = ()
-    """What of the file was left out or is doubtful."""
+    """Omitted or doubtful content of the file."""
 
     def scaled(self, factor: float) -> Overlay:
         """The same in another unit: every length times a factor.
@@ -70,12 +70,12 @@ class Overlay:
         return replace(self, points=self.points * factor, curves=curves)
 
     def samples(self, per_curve: int = 101) -> Floats:
-        """The points, and places on the curves at even parameters: ``(n, 3)``.
+        """The points, and points of the curves at equal steps of the parameter: ``(n, 3)``.
 
         Parameters
         ----------
         per_curve
-            Places of each curve, at least 2.
+            Points of each curve, at least 2.
 
         Returns
         -------
@@ -88,7 +88,7 @@ class Overlay:
         return np.concatenate([self.points, *(c(t) for c in self.curves.values())])
 
     def deviation(self, model: Model, *, objects: Sequence[str] | str = ()) -> Deviation:
-        """How far each sample of this is from the surfaces of a model.
+        """Distance of each sample from the surfaces of a model.
 
         See :func:`moldloft.overlays.deviation`.
 
@@ -121,7 +121,7 @@ class Overlay:
         return "\n".join(c.to_sdl(name) for name, c in self.curves.items()) + "\n"
 
     def to_pyvista(self) -> Any:
-        """The faces, or the points where there are none, as ``pyvista.PolyData``.
+        """The faces, or the points if there are no faces, as ``pyvista.PolyData``.
 
         Returns
         -------

@@ -45,7 +45,7 @@ class _Lines:
         return FileError(f"line {self.number}: expected {expected}, found {shown}")
 
     def floats(self, line: str, count: int, expected: str) -> list[float]:
-        """The first numbers of a line; what stands behind them is a remark."""
+        """The first numbers of a line; the text after them is a remark."""
         words = line.replace(",", " ").split()
         try:
             numbers = [float(word.lower().replace("d", "e")) for word in words[:count]]

@@ -66,12 +66,12 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
     """A file of another program as reference geometry.
 
     Curves of DXF and SVG files are exact NURBS in the order of the file; :meth:`Overlay.to_sdl`
-    makes them objects of a model. SVG's y runs down and is turned to run up.
+    makes them objects of a model. SVG's y axis, which points down, is reversed.
 
     Parameters
     ----------
     path
-        The file; what is read is in :data:`ENDINGS`.
+        The file; :data:`ENDINGS` lists the formats.
     units
         The unit of length of the model, m, cm, mm, ft or in: lengths are converted into it. By
         default numbers stay as they are in the file.

@@ -32,7 +32,7 @@ _UNDRAWN = {
     "defs", "clipPath", "mask", "symbol", "pattern", "marker", "metadata", "style", "title", "desc",
     "linearGradient", "radialGradient", "filter", "script", "namedview",
 }  # fmt: skip
-"""Elements that show nothing by themselves."""
+"""Elements without a picture of their own."""
 
 
 #: As of coordinates in models.

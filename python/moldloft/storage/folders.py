@@ -1,4 +1,4 @@
-"""Folders that are made on the way to a file."""
+"""Creation of parent folders of a file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def make_folders(folder: Path) -> list[Path]:
     Raises
     ------
     FileError
-        When one cannot be made; then none is.
+        If one cannot be created; then no folder is created.
     """
     made: list[Path] = []
     missing: list[Path] = []

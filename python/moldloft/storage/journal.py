@@ -1,10 +1,10 @@
 """The journal of a sketch prompt: a killed process loses nothing, every change is on disk at once.
 
-A journal is a text file of commands, one a line, after a first line that says what it is. Each line
-begins with a checksum over the journal's own number, the line's number and the command: zeros, a
-part of a line and lines of another journal, which a power cut may leave, are no lines of it. A line
-``! file DIGEST`` says that the commands before it are in the file that the journal stands beside,
-if that has this content. A lock beside the journal says who keeps it; without one it was left.
+A journal is a text file of commands, one per line, after a header line. Each line begins with a
+checksum over the journal's own number, the line's number and the command: zeros, partial lines and
+lines of another journal, which a power cut may leave, are therefore rejected. A line ``! file
+DIGEST`` states that the commands before it are in the file beside the journal, if that has this
+content. A lock beside the journal identifies its owner; without a lock it is abandoned.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ _IN_FILE = "! file "
 
 
 def state_folder() -> Path:
-    """Where journals of prompts without a file are: ``$XDG_STATE_HOME/moldloft/sketch``."""
+    """Folder of journals of prompts without a file: ``$XDG_STATE_HOME/moldloft/sketch``."""
     given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
     return Path(given or Path.home() / ".local" / "state") / "moldloft" / "sketch"
 
 
 def ended(journal: Path) -> bool:
-    """Whether its session was ended without a save, by its name."""
+    """True if its session ended without a save, by its name."""
     return journal.name.startswith(_ENDED)
 
 
@@ -71,7 +71,7 @@ class Left:
     path: Path
     commands: list[str]
     stale: bool = False
-    """True when the file that it stands beside was changed by another program since."""
+    """True if another program has changed the file beside it since."""
     damaged: int = 0
     """Complete lines that are not readable."""
     when: str = field(default="")
@@ -91,7 +91,7 @@ def read(path: Path, present: str | None = None) -> Left | None:
     path
         The journal.
     present
-        The digest of the file that it stands beside: what that holds already is left out.
+        The digest of the file beside it: commands that it contains already are left out.
 
     Raises
     ------
@@ -162,16 +162,16 @@ def _age(path: Path) -> float:
 
 
 class Journal:
-    """A journal under way.
+    """An open journal.
 
     Parameters
     ----------
     path
-        The file; made anew, in place of one that is there.
+        The file; replaced if it exists.
     begin
         Commands that are in it from the start.
     base
-        The digest of the file that it stands beside.
+        The digest of the file beside it.
     held
         Its lock, when that is held already; it is taken otherwise.
 
@@ -249,7 +249,7 @@ class Journal:
 
     @property
     def beside_file(self) -> bool:
-        """Whether it stands beside the file that is edited, not in the state folder."""
+        """True if it is beside the edited file, not in the state folder."""
         return self._base is not None
 
     def saving(self, digest: str) -> None:
@@ -257,13 +257,13 @@ class Journal:
         self.append([_IN_FILE + digest])
 
     def saved(self, digest: str) -> None:
-        """The file beside it holds everything: the journal begins anew."""
+        """The file beside it is complete: the journal restarts."""
         self._begin([_IN_FILE + digest])
 
     def close(self, *, keep: bool) -> None:
         """Ends it: kept, or removed.
 
-        That of a file stays beside it, where its commands begin with what is in the file; others
+        The journal of a file stays beside it if its commands begin with those of the file; others
         stay in the state folder, the last twenty of them.
         """
         if self._file >= 0:

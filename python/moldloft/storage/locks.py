@@ -76,7 +76,7 @@ class Lock:
         The lock's own file. It is not the file that is protected: replacing that would leave the
         lock on a file without a name.
     what
-        What it protects, for messages.
+        Protected object, for messages.
     wait
         Seconds to wait for it.
 
@@ -140,7 +140,7 @@ class Lock:
             return False
 
     def release(self) -> None:
-        """Let go; doing so twice is allowed."""
+        """Release; may be called twice."""
         file, self._file = self._file, -1
         if file < 0:
             return

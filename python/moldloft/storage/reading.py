@@ -75,7 +75,7 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
     Raises
     ------
     FileError
-        As for :func:`read_bytes`, and when it is not UTF-8.
+        See :func:`read_bytes`, and if it is not UTF-8.
     """
     try:
         text = read_bytes(path, largest).decode("utf-8-sig")

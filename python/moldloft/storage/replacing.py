@@ -17,7 +17,7 @@ from moldloft.storage.reading import digest_of
 __all__ = ["ABANDONED", "ChangedError", "Draft", "Target", "beside", "put"]
 
 ABANDONED = re.compile(r"\..+\.[0-9a-f]{16}\.(?:part|old)", re.S)
-"""Names of drafts and of second names of old files: what a killed process may leave."""
+"""Names of drafts and of second names of old files, which a killed process may leave."""
 
 #: The longest name of most systems is 255 bytes; what is put round it takes 23.
 _LONGEST_NAME = 220
@@ -34,7 +34,7 @@ def beside(target: Path, token: str, ending: str) -> Path:
 
 
 class Target:
-    """Where a file goes: links are followed, so that a link stays one.
+    """Destination of a file: links are followed, so that a link stays a link.
 
     Parameters
     ----------
@@ -81,13 +81,13 @@ class Draft:
     Parameters
     ----------
     target
-        What it will replace.
+        File to replace.
     data
         The content.
     token
         A part of its name; a new one when it is not given.
     private
-        Whether a new file is for its owner alone.
+        True if a new file is private to its owner.
     """
 
     def __init__(
@@ -150,7 +150,7 @@ def put(path: Path, data: bytes, *, expected: str | None = None, private: bool =
     expected
         The digest of what is there: the write is refused when the file holds something else.
     private
-        Whether a new file is for its owner alone.
+        True if a new file is private to its owner.
 
     Raises
     ------

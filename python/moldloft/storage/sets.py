@@ -1,9 +1,9 @@
 """Sets of files that are replaced together, and what a killed process left.
 
-A set is written as drafts first. Then the old files get second names, and a record in the folder
-says what is under way; the drafts take the files' names; and when all are there, the record is
-removed: that is the moment at which the set is written. A process that is killed before it leaves
-the record, and whoever writes there next puts the old files back.
+A set is first written as drafts. The old files then get second names, and a record in the folder
+lists the operation; the drafts take the files' names; finally the record is removed, which is the
+moment at which the set is written. A process that is killed before it leaves the record, and the
+next writer there restores the old files.
 """
 
 from __future__ import annotations
@@ -64,9 +64,9 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
     Parameters
     ----------
     folder
-        Where to.
+        Destination.
     outputs
-        What to write.
+        Content.
     make
         Make the folder when it is not there, as commands do with the folder of ``-o``.
 
@@ -100,7 +100,7 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
 
 
 class _Set:
-    """Several files of one folder on their way."""
+    """Several files of one folder in progress."""
 
     def __init__(self, folder: Path, outputs: Sequence[Output]) -> None:
         self._folder = folder
@@ -183,7 +183,7 @@ def _second_name(target: Target, path: Path) -> None:
 
 
 def _undo(folder: Path, token: str, entries: Sequence[_Entry]) -> None:
-    """Puts the old files back, as far as the system lets; the record goes when all are there."""
+    """Restores the old files as far as the system allows, then removes the record."""
     complete = True
     for entry in entries:
         target = Path(os.path.realpath(folder / entry.name))
@@ -237,8 +237,8 @@ _sweeping = threading.Lock()
 def recover(folder: Path) -> None:
     """Put back and remove what killed processes left in a folder.
 
-    A set that was half-written is undone at once. Drafts are looked for once by each process.
-    What living processes have is left alone.
+    A half-written set is undone at once. Each process looks for drafts once. Files of living
+    processes are left alone.
     """
     try:
         status = folder.stat()
@@ -261,7 +261,7 @@ def recover(folder: Path) -> None:
 
 
 def _abandoned(folder: Path) -> Iterator[Path]:
-    """What may have been left; the lock among it goes with whoever takes it."""
+    """Possible leftovers; the lock among them is removed by its new owner."""
     with os.scandir(folder) as entries:
         names = [entry.name for entry in entries]
     return (folder / name for name in names if ABANDONED.fullmatch(name) or name == LOCK)
@@ -285,7 +285,7 @@ def read_set(folder: Path, names: Sequence[str]) -> dict[str, bytes | None]:
     Parameters
     ----------
     folder
-        Where they are.
+        Folder of the files.
     names
         Their names.
 
@@ -322,7 +322,7 @@ def _content(path: Path) -> bytes | None:
 
 
 def _state(folder: Path, names: Sequence[str]) -> list[object] | None:
-    """What changes when one of the files does; ``None`` while a set is being written."""
+    """A value that changes with any of the files; ``None`` while a set is being written."""
     if (folder / RECORD).exists():
         return None
     found: list[object] = []

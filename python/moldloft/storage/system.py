@@ -47,7 +47,7 @@ def open_new(path: Path, mode: int) -> int:
 
 
 def write_all(file: int, data: bytes) -> None:
-    """Write all of it; a short write goes on where it ended."""
+    """Write all of it; a short write is continued at its end."""
     rest = memoryview(data)
     while rest:
         rest = rest[os.write(file, rest[: 1 << 24]) :]
@@ -85,7 +85,7 @@ def close(file: int) -> None:
 
 
 def replace(old: Path, new: Path) -> None:
-    """Give a file another name, in place of what has that name."""
+    """Rename a file, replacing an existing one."""
     end = time.monotonic() + _WINDOWS_PATIENCE
     wait = 0.01
     while True:
@@ -174,7 +174,7 @@ def lock(file: int) -> bool:
 
 
 def unlock(file: int) -> None:
-    """Let go of the lock, also of copies of the descriptor in forked children."""
+    """Release the lock, also of copies of the descriptor in forked children."""
     with contextlib.suppress(ImportError, OSError):
         import fcntl
 

@@ -23,12 +23,12 @@ _CLOCK_NS = 20_000_000
 
 
 class Watch:
-    """Files that some work reads; no change is missed, also none while the work is under way.
+    """Files read by some work; no change is missed, not even during the work.
 
     Parameters
     ----------
     paths
-        The files that are known before the first work.
+        Known files before the first work.
     """
 
     def __init__(self, paths: Iterable[str]) -> None:
@@ -39,7 +39,7 @@ class Watch:
         self._late = False
 
     def begin(self) -> None:
-        """The work begins: what it reads is what is there from now on."""
+        """Start of the work: files are compared with their state from now on."""
         self._began = time.time_ns()
         self._late = False
         self._known = {path: self._content(path) for path in self._known}
@@ -54,7 +54,7 @@ class Watch:
                 self._late |= self._written(path) >= self._began - _CLOCK_NS
 
     def changed(self) -> bool:
-        """Whether one of the files is not what it was when the work began."""
+        """True if one of the files has changed since the work began."""
         found = False
         for path, before in self._known.items():
             now = self._content(path)

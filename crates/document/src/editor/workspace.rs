@@ -75,7 +75,7 @@ impl Workspace {
         loads.map(String::as_str)
     }
 
-    /// Takes a file's text anew; `resolve` gives the name of a file that it loads or inserts.
+    /// Replaces a file's text; `resolve` gives the name of a file that it loads or inserts.
     pub fn set(&mut self, file: &str, text: &str, resolve: impl Fn(&str) -> Option<String>) {
         let (program, _) = sdl::parse(text, FileId(0));
         self.set_program(file, &program, resolve);

@@ -132,7 +132,7 @@ impl Document {
                 "mirrored-twice",
                 format!("the model is mirrored in {plane} and shows both sides of it"),
             )
-            .expected("one side, as the symmetry says")
+            .expected("one half of the symmetric model")
             .found(format!("`{below}` reaches {low}, `{above}` reaches {high}"))
             .help("hide one side, or leave the symmetry out");
             for (name, first) in [(above, true), (below, false)] {

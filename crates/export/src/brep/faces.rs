@@ -55,7 +55,7 @@ pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>
 /// Distances below this share of the size count as rounding between a surface and its moved copy.
 const COPIED: f64 = 1e-11;
 
-/// What turns and shifts a surface onto another.
+/// Rigid motion from one surface to another.
 struct RigidMotion {
     /// A place of each, and axes there.
     origins: [Vec3; 2],

@@ -23,7 +23,7 @@ use moldloft_document::{Document, has_no_area};
 use moldloft_io::WriteError;
 use moldloft_mesh::Mesh;
 
-/// Accuracy of fits, as a share of the model's diagonal, when none is asked for.
+/// Default accuracy of fits, relative to the model's diagonal.
 const ACCURACY: f64 = 1e-6;
 
 /// Distance from a plane of symmetry, as a share of the size, that counts as in the plane.

@@ -79,7 +79,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
     if alone > MOST_ALONE && 3 * alone > counts.len() {
         return Err(Diagnostic::error(
             "curved-body",
-            format!("`{name}` has curved faces that are known by triangles only"),
+            format!("`{name}` has curved faces that exist only as triangles"),
         )
         .found(format!("{alone} triangles in planes of their own"))
         .help("write it as stl, 3mf or obj, or hide it; plane-faced sets, sketches and surfaces are written")

@@ -6,7 +6,7 @@ use moldloft_num::Vec3;
 /// How many times the median a jump must be to stand out.
 const OUTSTANDING: f64 = 8.0;
 
-/// The fewest jumps in which a pattern is known.
+/// Minimum number of jumps that form a pattern.
 const FEWEST: usize = 3;
 
 /// Something that noise does not explain.

@@ -56,7 +56,7 @@ pub enum Stopped {
     Steps,
     /// The longest move left is short.
     Move,
-    /// The measure hardly falls.
+    /// The measure decreases by less than `least_drop`.
     Drop,
     /// The certified gap is small.
     Gap,

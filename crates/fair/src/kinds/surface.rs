@@ -463,7 +463,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([self.tolerance]);
                     if !numbers.all(|x| x.is_constant()) {
                         return Err(FairError::NoDerivative(
-                            "derivatives of sweeps are not known: take the optimum",
+                            "no derivatives of sweeps are available: take the optimum",
                         ));
                     }
                     let (points, certificate) = network.sweeps(measure, count)?;

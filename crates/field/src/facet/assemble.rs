@@ -68,7 +68,7 @@ impl VertexNames {
     }
 }
 
-/// What is done otherwise than the blocks have it.
+/// Overrides of results of single blocks.
 #[derive(Default)]
 pub(super) struct Changes {
     /// Vertices about which polygons are fans, …

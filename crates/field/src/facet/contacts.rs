@@ -46,7 +46,7 @@ const WIDE: f64 = 0.1;
 const SHARED: f64 = 1e-9;
 /// Triangles that are through others by this part of a cell are on them, to rounding.
 const TOUCH: f64 = 1e-9;
-/// They withdraw in so many rounds, by this part of the box.
+/// Number of rounds of withdrawal, and the fraction of the box per round.
 const ROUNDS: usize = 6;
 const BACK: f64 = 1e-13;
 /// The sine of the angle between surfaces below which they touch, and do not cross.

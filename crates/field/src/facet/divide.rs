@@ -21,8 +21,8 @@ pub(super) struct Divided {
 /// Bytes that a block with the surface takes until its triangles are a mesh: 60 000 were measured for spheres.
 const BYTES: u64 = 60_000;
 
-/// A block is rough when the surface is in more than this part of its cells; so many blocks are a set with waves smaller than
-/// the cells, of which triangles show nothing.
+/// Fraction of cells with surface above which a block is rough. Beyond `MOST_ROUGH` such blocks the
+/// waves of a set are smaller than the cells and triangles cannot represent them.
 const ROUGH: f64 = 0.75;
 const CELLS: usize = SIDE * SIDE * SIDE;
 const MOST_ROUGH: usize = 128;

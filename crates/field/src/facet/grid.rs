@@ -32,7 +32,7 @@ pub(super) const PLACES: usize = 4;
 /// The most cells along an axis: what the keys of edges can hold.
 const MOST: f64 = (1 << 19) as f64;
 
-/// Corners of cells are at least so many roundings of their coordinates apart.
+/// Minimum distance of corners of cells, in roundings of their coordinates.
 const APART: f64 = 64.0;
 
 impl Grid {

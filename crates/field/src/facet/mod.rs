@@ -318,7 +318,7 @@ impl CompleteFacets {
 const REFUSED: f64 = 1e-3;
 
 impl CompleteFacets {
-    /// The facets, unless they miss so much that they are another body.
+    /// The facets, or an error if the missing part changes the body.
     fn checked(self, size: f64) -> Result<Facets, FieldError> {
         let missed = || self.facets.unresolved.iter().filter(|u| u.missed);
         let volume: f64 = missed().map(|u| u.volume).sum();

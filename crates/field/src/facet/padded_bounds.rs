@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// where the longest has sixteen.
 const LEAST: f64 = 0.25;
 const MORE: f64 = 0.125;
-/// After so many boxes that may hold something a face is left where it is.
+/// Number of boxes with possible content after which a face is left where it is.
 const MOST_BOXES: usize = 4096;
 
 /// The box with its sides widened wherever the points of `set` on all `surfaces` keep away from what is gained.

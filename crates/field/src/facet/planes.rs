@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// What counts as on a plane, as a share of the box.
 const ON: f64 = 1e-11;
-/// Planes that are nearer to each other than this share of the box all over a polygon cannot be told apart surely.
+/// Distance relative to the box below which two planes cannot be distinguished over a polygon.
 const NEAR: f64 = 1e-8;
 /// Corners within this share of the box are one.
 const ONE_POINT: f64 = 1e-10;
@@ -98,7 +98,7 @@ struct PlaneSplitter {
     corners: FxHashMap<[u32; 3], Vec3>,
     on: f64,
     near: f64,
-    /// True when something could not be told apart.
+    /// True if some planes could not be distinguished.
     doubtful: bool,
 }
 
@@ -226,7 +226,8 @@ type PlaneFaces = BTreeMap<(u32, bool), Vec<[usize; 2]>>;
 /// Where edges begin and end on the line of a face with another plane: the place, +1 or -1, and the corner.
 type LineEnds = BTreeMap<(u32, bool, u32), Vec<(f64, i32, Vec3)>>;
 
-/// The ends of all pieces of face on the lines in which planes meet; `None` when something cannot be told apart.
+/// The ends of all pieces of face on the lines of intersection of planes; `None` if some cannot be
+/// distinguished.
 fn line_ends(
     splitter: &mut PlaneSplitter,
     root: &Arc<PlaneFormula>,

@@ -1,5 +1,5 @@
-//! Regions in which edges are cut off, made anew: the edges of the body are followed through them, and the faces between
-//! are filled with triangles.
+//! Reconstruction of regions with cut edges: the edges of the body are followed through them, and
+//! the faces between are filled with triangles.
 //!
 //! Cells show an edge by crossings beside it. Where two edges leave a corner at a small angle, or faces meet at one, some
 //! cells show one of two edges only, however small they are. The triangles about such cells are taken out, as far as those beside them are
@@ -19,7 +19,7 @@ use moldloft_mesh::planar_triangles;
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Cells as near as this are made anew together.
+/// Distance in cells below which cells are rebuilt together.
 const NEAR: usize = 2;
 /// How many cells about them are taken out, and how far points of an edge are apart there, as a part of a cell.
 const TRIES: [(usize, f64); 5] = [(1, 0.4), (2, 0.4), (1, 0.1), (3, 0.2), (5, 0.1)];
@@ -57,7 +57,7 @@ struct Rebuilder<'a> {
     round: Vec<Vec<u32>>,
 }
 
-/// Makes the regions about some cells anew; returns the cells in which that was done.
+/// Rebuilds the regions about some cells; returns the cells in which that was done.
 ///
 /// # Errors
 /// [`Spent`].
@@ -129,7 +129,7 @@ impl Rebuilder<'_> {
         self.made.positions[v as usize]
     }
 
-    /// Makes the region about a group of cells anew.
+    /// Rebuilds the region about a group of cells.
     fn group(&mut self, group: &[[usize; 3]], reach: usize, step: f64) -> Option<()> {
         let mut region = self.about(group, reach);
         let mut tracer = Tracer::new(

@@ -426,8 +426,8 @@ impl Refiner<'_> {
     }
 }
 
-/// Divides the edges that want it. Where that makes triangles cut others, all is left as it was. Returns places of bends that are
-/// cut off all the same.
+/// Divides the edges that need it, unless triangles would then intersect. Returns positions of
+/// bends that remain cut off.
 ///
 /// # Errors
 /// [`Spent`].

@@ -22,7 +22,8 @@ use std::sync::Arc;
 
 /// How often vertices are moved.
 const ROUNDS: usize = 16;
-/// In how many ways a vertex gives way: polygons about it become fans, then it moves nearer to its crossings.
+/// Number of methods to relocate a vertex: polygons about it become fans, then it moves nearer to
+/// its crossings.
 const WAYS: u8 = 5;
 
 /// Pairs of triangles that cut each other, of which one has a doubtful vertex.

@@ -14,7 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 const FLAT: f64 = 1e-9;
 /// Two vertices are in one place when they are this part of the triangle's longest side apart.
 const ONE: f64 = 1e-8;
-/// Turned triangles make others flat, rarely: so many rounds.
+/// Maximum number of rounds; an edge flip rarely makes other triangles flat.
 const ROUNDS: usize = 6;
 
 type Corners = [u32; 3];

@@ -89,7 +89,7 @@ enum Joining {
     Drawn,
 }
 
-/// A change that can be made again when the triangles are assembled anew.
+/// A change that can be repeated when the triangles are assembled again.
 pub(super) struct Unfolding {
     how: Joining,
     edge: [VertexKey; 2],
@@ -128,8 +128,8 @@ pub(super) fn unfold(
     Some(touched)
 }
 
-/// Does again what was done before the triangles were assembled anew, where none of its vertices moved, and keeps that alone of it.
-/// Returns the vertices of what is not done.
+/// Repeats the changes made before the triangles were assembled again if none of their vertices
+/// moved, and keeps only those. Returns the vertices of the others.
 pub(super) fn unfold_again(
     made: &mut Assembled,
     names: &VertexNames,

@@ -285,8 +285,8 @@ fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     a + ab * (vb / sum) + ac * (vc / sum)
 }
 
-/// Of the open places those of which triangles say nothing: an edge or a corner that pokes into a cell without
-/// reaching its corners is on the triangles beside it all the same.
+/// Unresolved positions that the triangles do not represent: an edge or a corner that enters a cell
+/// without reaching its corners may be on the triangles beside it.
 pub(super) fn not_shown(
     mut open: Vec<Unresolved>,
     positions: &[Vec3],

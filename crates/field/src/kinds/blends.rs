@@ -11,9 +11,9 @@ use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 /// The surface through the four curves in which two bodies meet two others:
 /// lambda L1 L2 - (1 - lambda) L3 L4. With one rail, L4 = L3, it touches both bodies where the rail does.
 ///
-/// After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 -
-/// (1 - lambda) |L3|^(n + 1). The rail must cut each body outside the other; with a box `low`, `high` that
-/// is proved, or the place where it fails is reported.
+/// After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 - (1 - lambda)
+/// |L3|^(n + 1). The rail must cut each body outside the other; over a box `low`, `high` this is
+/// proved, or the point at which it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -40,7 +40,7 @@ pub struct Liming<T: Real> {
     /// Low corner of a box over which the contact is checked.
     #[field(default)]
     low: Option<Point<T>>,
-    /// Its high corner.
+    /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
 }
@@ -65,8 +65,8 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
 /// The transition from one body, which it touches at its rail, to another, which it touches at its own:
 /// (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 ///
-/// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; with a box `low`, `high` that is proved,
-/// or the place where it fails is reported.
+/// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; over a box `low`, `high` this is
+/// proved, or the point at which it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -92,7 +92,7 @@ pub struct Zhang<T: Real> {
     /// Low corner of a box over which the contact is checked.
     #[field(default)]
     low: Option<Point<T>>,
-    /// Its high corner.
+    /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
 }
@@ -124,7 +124,7 @@ pub struct Setback<T: Real> {
     /// Setback on the second body, measured by the first.
     #[field(min = 0)]
     a: T,
-    /// Setback on the first body, measured by the second; the same by default.
+    /// Setback on the first body, measured by the second; default: the same.
     #[field(default, min = 0)]
     b: Option<T>,
 }
@@ -140,8 +140,8 @@ macro_rules! corner_blend {
     ($kind:ident, $name:literal, $make:path, $doc:literal, $example:literal) => {
         #[doc = $doc]
         ///
-        /// With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
-        /// place where it fails is reported.
+        /// For distance fields the widths are lengths. Over a box `low`, `high` the contact is
+        /// proved, or the point at which it fails is reported.
         #[derive(Kind)]
         #[kind(class = Set, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
@@ -152,7 +152,7 @@ macro_rules! corner_blend {
             /// Setback of the blend on both bodies.
             #[field(min = 0)]
             width: T,
-            /// Setback on the first body, where it differs.
+            /// Setback on the first body, if different.
             #[field(default, min = 0)]
             other: Option<T>,
             /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
@@ -162,7 +162,7 @@ macro_rules! corner_blend {
             /// Low corner of a box over which the contact is checked.
             #[field(default)]
             low: Option<Point<T>>,
-            /// Its high corner.
+            /// High corner of the box.
             #[field(default)]
             high: Option<Point<T>>,
         }
@@ -247,7 +247,7 @@ pub struct Transition<T: Real> {
     /// Low corner of a box over which the contact is checked.
     #[field(default)]
     low: Option<Point<T>>,
-    /// Its high corner.
+    /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
 }

@@ -16,10 +16,11 @@ pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
 
 /// The surface of a set as triangles: a mesh like any other.
 ///
-/// Its panels are a patch for each primitive that shows, called after the set or field that it came from
-/// (`part.pipe`), with its colour, and its material as a tag. Solids are closed, oriented and manifold; where the box cuts them, its
-/// faces close them (`part.cap -x`). Sheets are open, wires are polylines and points are points. The
-/// members `volume` and `centroid` are corrected for the distance of the triangles from the surface.
+/// Each visible primitive gives a patch of panels, named after its set or field (`part.pipe`), with
+/// its colour, and its material as a tag. Solids are closed, oriented and manifold; faces of the
+/// box close a solid that it cuts (`part.cap -x`). Sheets are open, wires are polylines and points
+/// are points. The members `volume` and `centroid` are corrected for the distance of the triangles
+/// from the surface.
 #[derive(Kind)]
 #[kind(
     class = Mesh,
@@ -28,17 +29,17 @@ pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
 pub struct SetBody<T: Real> {
     /// The set.
     set: SetArgument<T>,
-    /// Low corner of the box; found around a set that has an end.
+    /// Low corner of the box; default: bounds of the set, if bounded.
     #[field(default)]
     low: Option<Point<T>>,
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// Number of halvings of the longest side of the box: cells of its 2^depth-th part. 6 when no accuracy
-    /// is asked.
+    /// Number of halvings of the longest side of the box; the cells have 2^-depth of its length.
+    /// Default: 6, without an accuracy.
     #[field(default, min = 1, max = 16)]
     depth: Option<u32>,
-    /// Largest distance of triangle centres from the surface: estimated by refining.
+    /// Maximum distance of triangle centres from the surface, estimated by refinement.
     #[field(default)]
     accuracy: Option<T>,
     /// Largest distance from the surface when triangles are merged; none are merged by default.
@@ -96,9 +97,9 @@ impl<T: Real> Build<T> for SetBody<T> {
 /// The facets of a set: of solids only, or of all dimensions.
 #[derive(Clone)]
 pub enum Pieces {
-    /// Of a set without sheets.
+    /// Facets of a set without sheets.
     Solid(Arc<Facets>),
-    /// Of one with.
+    /// Facets of a set with sheets.
     Mixed(Arc<Mixed>),
 }
 
@@ -148,7 +149,7 @@ impl Pieces {
         })
     }
 
-    /// As a body whose numbers carry the derivatives of the set's.
+    /// A body whose coordinates carry the derivatives of the set's.
     ///
     /// # Errors
     /// A lifter of another set.

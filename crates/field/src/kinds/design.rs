@@ -29,7 +29,7 @@ impl<T: Real> FieldOrSet<T> {
     }
 }
 
-/// Edges as "face, face; face, face", or none for all.
+/// Edges as "face, face; face, face"; `None` for all edges.
 fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 2]>>, CallError> {
     let Some(text) = text else { return Ok(None) };
     let pair = |part: &str| match part.split(',').map(str::trim).collect::<Vec<_>>()[..] {
@@ -41,7 +41,8 @@ fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 
     text.split(';').filter(|p| !p.trim().is_empty()).map(pair).collect::<Result<_, _>>().map(Some)
 }
 
-/// A field or set with its coordinates replaced: what was at (x, y, z) is where the three fields have these values.
+/// A field or set under a change of coordinates: its value at p is that of the shape at (x(p),
+/// y(p), z(p)).
 ///
 /// Twists, bends, tapers and repetitions are such replacements.
 #[derive(Kind)]
@@ -52,13 +53,13 @@ fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 
     example = "field x = plane({1, 0, 0}, {0, 0, 0}); field y = plane({0, 1, 0}, {0, 0, 0}); field z = plane({0, 0, 1}, {0, 0, 0}); field egg = remapped(sphere({0, 0, 0}, 1), x, y, z*(1 + z/10));"
 )]
 pub struct Remapped<T: Real> {
-    /// What is moved.
+    /// Field or set.
     shape: FieldOrSet<T>,
-    /// What takes the place of x.
+    /// Field that replaces x.
     x: NamedField<T>,
-    /// What takes the place of y.
+    /// Field that replaces y.
     y: NamedField<T>,
-    /// What takes the place of z.
+    /// Field that replaces z.
     z: NamedField<T>,
 }
 
@@ -77,9 +78,9 @@ impl<T: Real> Build<T> for Remapped<T> {
     example = "set drill = twisted(cuboid({-1, -0.3, 0}, {1, 0.3, 4}), 0.8);"
 )]
 pub struct Twisted<T: Real> {
-    /// What is twisted.
+    /// Field or set.
     shape: FieldOrSet<T>,
-    /// The angle by which each unit of z is turned.
+    /// Angle of rotation per unit of z.
     #[field(angle)]
     rate: T,
 }
@@ -122,9 +123,9 @@ impl<T: Real> Build<T> for Remainder<T> {
 pub struct Repeated<T: Real> {
     /// The set.
     set: SetArgument<T>,
-    /// From each copy to the next.
+    /// Vector from each copy to the next.
     by: Point<T>,
-    /// How many there are.
+    /// Number of copies.
     #[field(min = 1, max = 10000)]
     count: u32,
 }
@@ -154,7 +155,7 @@ impl<T: Real> Build<T> for Repeated<T> {
 pub struct SetOffset<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
     set: SetArgument<T>,
-    /// How far its faces move outward.
+    /// Outward displacement of the faces.
     distance: T,
 }
 
@@ -175,7 +176,7 @@ impl<T: Real> Build<T> for SetOffset<T> {
 pub struct SetShell<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
     set: SetArgument<T>,
-    /// How thick the wall is.
+    /// Wall thickness.
     #[field(min = 0)]
     thickness: T,
 }
@@ -212,8 +213,9 @@ impl<T: Real> Build<T> for ConvexHull<T> {
 
 /// The Minkowski sum of two sets: all sums of a point of one and a point of the other.
 ///
-/// With a ball it is the set grown by its radius, with round edges. Each set is a union of convex parts, as for
-/// `convex_hull`; a cylinder or prism may be added to another of its axis, or to a ball.
+/// With a ball it is the set grown by its radius, with round edges. Each set is a union of convex
+/// parts, as for `convex_hull`; a cylinder or prism may be added to another with the same axis, or
+/// to a ball.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -250,13 +252,13 @@ pub struct FilletSets<T: Real> {
     /// Setback of the blend on both.
     #[field(min = 0)]
     width: T,
-    /// Setback on the first set, where it differs.
+    /// Setback on the first set, if different.
     #[field(default, min = 0)]
     other: Option<T>,
     /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between perpendicular planes.
     #[field(default = crate::CIRCULAR)]
     lambda: T,
-    /// The edges, by the names of a face of each set: "top, side; top, front". All of them by default.
+    /// The edges, by the names of a face of each set: "top, side; top, front". Default: all.
     #[field(default)]
     edges: Option<Arc<str>>,
 }
@@ -286,7 +288,7 @@ pub struct RoundEdges<T: Real> {
     /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between perpendicular planes.
     #[field(default = crate::CIRCULAR)]
     lambda: T,
-    /// The edges, by the names of both faces: "top, side; top, front". All of them by default.
+    /// The edges, by the names of both faces: "top, side; top, front". Default: all.
     #[field(default)]
     edges: Option<Arc<str>>,
 }
@@ -312,7 +314,7 @@ pub struct ChamferEdges<T: Real> {
     /// Setback of the chamfer on both faces.
     #[field(min = 0)]
     width: T,
-    /// The edges, by the names of both faces: "top, side; top, front". All of them by default.
+    /// The edges, by the names of both faces: "top, side; top, front". Default: all.
     #[field(default)]
     edges: Option<Arc<str>>,
 }
@@ -324,7 +326,8 @@ impl<T: Real> Build<T> for ChamferEdges<T> {
     }
 }
 
-/// The union of any number of sets, in a balanced tree: what many sets have in common with a place is found fastest so.
+/// The union of any number of sets, in a balanced tree, which is the fastest to evaluate for many
+/// sets.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -343,7 +346,7 @@ impl<T: Real> Build<T> for UnionOf<T> {
     }
 }
 
-/// What any number of sets have in common, in a balanced tree.
+/// The intersection of any number of sets, in a balanced tree.
 #[derive(Kind)]
 #[kind(
     class = Set,

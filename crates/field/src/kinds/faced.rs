@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// The set of a closed body of plane faces: exact half-spaces, one for each plane.
 ///
-/// Triangles in one plane make a face. For bodies with thousands of faces, such as a ball of
-/// triangles, take `set(inside(body))`. Faces in one plane share its half-space, also when a change of
-/// a parameter would move them apart.
+/// Coplanar triangles form a face. For bodies with thousands of faces, such as a triangulated ball,
+/// use `set(inside(body))`. Coplanar faces share a half-space, even if a change of a parameter
+/// would separate them.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -35,14 +35,15 @@ impl<T: Real> Build<T> for Polyhedron<T> {
 /// A closed body of plane and round faces as a set: half-spaces, cylinders and cones, all exact. The
 /// `body` of a sketch is one.
 ///
-/// A round face goes straight from an arc to a copy of it, shifted and scaled. Its five vectors are,
-/// for an arc of an ellipse, centre, half-diameter to the start, the one conjugate to it, shift of the
-/// centre, and {angle, scale, number of the face}; for a parabola, start, point where the tangents of
-/// its ends meet, end, shift, and {0, scale, number of the face}. The scale is 1 for cylinders and 0
-/// for a cone whose apex is the shifted centre. Velocity x shift points outward.
+/// A round face is ruled between an arc and a translated and scaled copy of it. Its five vectors
+/// are, for an arc of an ellipse: centre; half-diameter to the start; conjugate half-diameter;
+/// translation of the centre; {angle, scale, number of the face}. For a parabola: start;
+/// intersection of the end tangents; end; translation; {0, scale, number of the face}. The scale is
+/// 1 for cylinders and 0 for a cone whose apex is the translated centre. Velocity x translation
+/// points outward.
 ///
-/// Of more than 200 faces, or where they cross too often for a list of half-spaces or round faces touch
-/// each other, it is the set by distances from the triangles.
+/// With more than 200 faces, with too many intersections for a list of half-spaces, or with round
+/// faces in contact, the set is defined by distances from the triangles.
 #[derive(Kind)]
 #[kind(
     class = Set,

@@ -1,4 +1,4 @@
-//! What there is to know of facets that are not quite their set.
+//! Warnings and notes on facets that deviate from their set.
 
 use crate::facet::Facets;
 use moldloft_num::Vec3;
@@ -9,7 +9,7 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
     counted_of(places.len(), places, facets)
 }
 
-/// As [`counted`], of `n` cells of which only some places are given.
+/// As [`counted`], for `n` cells of which only some positions are given.
 fn counted_of(n: usize, places: &[Vec3], facets: &Facets) -> String {
     let p = places[0];
     let Facets { cells, step, .. } = facets;
@@ -19,7 +19,8 @@ fn counted_of(n: usize, places: &[Vec3], facets: &Facets) -> String {
     format!("in {n} {of}cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
 }
 
-/// The places where facets are not the set's surface, or may not be; none of the four is usual.
+/// Positions at which facets deviate from the set's surface, or may deviate; all four kinds are
+/// rare.
 pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
     let centres = |boxes: &[moldloft_num::Box3]| boxes.iter().map(|b| b.centre()).collect();
     let open = facets.open_places().iter().map(|u| u.place.centre()).collect();

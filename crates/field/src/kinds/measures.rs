@@ -1,4 +1,4 @@
-//! What is asked of fields and sets, as rows of the registry.
+//! Measures and queries of fields and sets, as rows of the registry.
 
 use super::body::options;
 use super::read::{SetArgument, fault, primitive_of, set_of};
@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// The coarsest and finest divisions of the box by which integrals are made.
 const DEPTHS: [u32; 2] = [5, 9];
 
-/// The part of themselves to which areas and lengths agree unless asked otherwise.
+/// Default relative accuracy of areas and lengths.
 const ALIKE: f64 = 1e-6;
 
 /// Facets for integrals, which stop when the model does.
@@ -55,7 +55,8 @@ macro_rules! measure {
     ) => {
         #[doc = $doc]
         ///
-        /// The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+        /// Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+        /// the set.
         #[derive(Kind)]
         #[kind(class = $class, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
@@ -87,8 +88,8 @@ measure!(
     Volume,
     Number,
     "volume",
-    "The volume of a set within a box: a best value of high order, whose bracket is `volume_bracket`.",
-    "How well two values, of a box divided once more, agree; by default 1e-8 of the box's volume.",
+    "The volume of a set within a box, by a high-order rule; `volume_bracket` gives guaranteed bounds.",
+    "Maximum difference of two values at successive divisions of the box; default: 1e-8 of the box's volume.",
     "assert abs(volume(set(sphere({0, 0, 0}, 1))) - 4.18879) < 1e-4;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -101,7 +102,7 @@ measure!(
     Vector,
     "mass_centre",
     "The centre of mass of a set within a box.",
-    "How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's volume.",
+    "Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of the box's volume.",
     "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(mass_centre(half).z - 0.375) < 1e-4;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -117,7 +118,7 @@ measure!(
     Vectors,
     "inertia",
     "The rows of the matrix of inertia of a set of density 1 about its centroid.",
-    "How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's volume.",
+    "Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of the box's volume.",
     "curve rows = inertia(cuboid({0, 0, 0}, {1, 2, 3})); assert abs(rows[1].x - 6.5) < 1e-6;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -139,7 +140,7 @@ measure!(
     Number,
     "area",
     "The area of the surface of a set within a box, sheets counted once.",
-    "How well two values, of a box divided once more, agree; by default 1e-6 of the area.",
+    "Maximum difference of two values at successive divisions of the box; default: 1e-6 of the area.",
     "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.56637) < 1e-5;",
     |this, set, region, context| {
         let memo = context.kept.of();
@@ -154,7 +155,7 @@ measure!(
     Number,
     "wire_length",
     "The length of the wires of a set within a box: curves in which two sheets meet.",
-    "How well two values, of a box divided once more, agree; by default 1e-6 of the length.",
+    "Maximum difference of two values at successive divisions of the box; default: 1e-6 of the length.",
     "set ring = set(abs(sphere({0, 0, 0}, 1))) & set(abs(plane({0, 0, 1}, {0, 0, 0.6}))); assert abs(wire_length(ring) - 5.0265482) < 1e-5;",
     |this, set, region, context| {
         refined(this.accuracy, Self::ACCURACY, context, |options| length(set, &region, options))
@@ -298,7 +299,8 @@ impl<T: Real> Build<T> for Member<T> {
     }
 }
 
-/// The name of the primitive that decides at a point: where unions are least and intersections greatest.
+/// Name of the deciding primitive at a point: the least of a union, the greatest of an
+/// intersection.
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -424,7 +426,7 @@ impl<T: Real> Build<T> for Degree<T> {
 
 /// The point of a set's surface that is nearest to a point.
 ///
-/// The box is found when it is not given.
+/// Default box: the bounds of the set.
 #[derive(Kind)]
 #[kind(
     class = Vector,
@@ -443,7 +445,7 @@ pub struct NearestPoint<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// Error bound of the distance; by default 1e-6 of the box.
+    /// Error bound of the distance; default: 1e-6 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }
@@ -481,7 +483,7 @@ pub struct FirstHit<T: Real> {
     start: Point<T>,
     /// Its direction, of any length.
     direction: Point<T>,
-    /// Its length; by default through the box of the set.
+    /// Length of the ray; default: through the box of the set.
     #[field(default, min = 0)]
     length: Option<T>,
 }
@@ -521,7 +523,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
 
 /// The distance between two sets; 0 where they overlap or touch.
 ///
-/// The box is found when it is not given.
+/// Default box: the bounds of the set.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -540,7 +542,7 @@ pub struct Distance<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// Error bound of the distance; by default 1e-5 of the box.
+    /// Error bound of the distance; default: 1e-5 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }

@@ -1,4 +1,4 @@
-//! Primitives, sets, blends and what is asked of them, as rows of the registry.
+//! Primitives, sets, blends and their measures, as rows of the registry.
 
 mod blends;
 pub mod body;

@@ -180,7 +180,7 @@ impl<T: Real> Build<T> for Cyclide<T> {
     }
 }
 
-/// An implicit function under a name: what `field f = ...;` declares.
+/// A named implicit function: the declaration `field f = ...;`.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -190,7 +190,7 @@ impl<T: Real> Build<T> for Cyclide<T> {
 pub struct FieldObject<T: Real> {
     /// The function.
     field: NamedField<T>,
-    /// The objects that it was computed from.
+    /// Objects from which it is computed.
     #[field(default)]
     of: Option<Vec<Value<T>>>,
 }

@@ -31,7 +31,7 @@ fn user<T: Real>(profile: ProfileField<T>) -> Primitive<T> {
 
 /// The signed distance from a closed plane curve, measured in its plane: a prism without ends, negative inside.
 ///
-/// The curve must not cross itself; where it does, what an odd number of turns surrounds is inside.
+/// The curve must not cross itself; if it does, regions of odd winding are inside.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -64,7 +64,7 @@ impl<T: Real> Build<T> for ProfileOf<T> {
 pub struct Extruded<T: Real> {
     /// The closed plane curve.
     curve: CurveRef<T>,
-    /// From its plane to the end.
+    /// Vector from its plane to the end.
     by: Point<T>,
 }
 

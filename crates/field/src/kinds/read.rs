@@ -1,4 +1,4 @@
-//! Arguments that are implicit: fields, sets, and what stands for them; results and faults.
+//! Implicit arguments (fields, sets and values convertible to them), results and errors.
 
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Field, Real, Vec3};
@@ -50,8 +50,7 @@ pub fn set_value<T: Real>(set: Set<T>) -> Value<T> {
     Value::Set(SetRef::new(set))
 }
 
-/// The primitive that a value is or stands for: a field, a plane (the half-space behind it), a number
-/// (a constant).
+/// The primitive of a value: a field, a plane (the half-space behind it), a number (a constant).
 pub fn primitive_of<T: Real>(value: &Value<T>) -> Option<Primitive<T>> {
     match value {
         Value::Field(f) => f.get::<Primitive<T>>().cloned(),
@@ -61,8 +60,8 @@ pub fn primitive_of<T: Real>(value: &Value<T>) -> Option<Primitive<T>> {
     }
 }
 
-/// The set that a value is or stands for: a set, or the solid side of a field or plane. Faces of a field
-/// are called as the field is.
+/// The set of a value: a set, or the solid side of a field or plane. Faces of a field have the name
+/// of the field.
 pub fn set_of<T: Real>(value: &Value<T>) -> Option<Set<T>> {
     match value {
         Value::Set(s) => s.get::<Set<T>>().cloned(),
@@ -120,7 +119,7 @@ impl<T: Real> FromValue<T> for SetArgument<T> {
     }
 }
 
-/// The error as a fault that says how to fix it.
+/// The error with its remedy.
 pub fn fault(error: &FieldError) -> CallError {
     let id = match error {
         FieldError::NotFinite { .. } => "not-finite",

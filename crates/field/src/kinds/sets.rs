@@ -7,14 +7,14 @@ use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Point
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// What a set is made of: its solid side, a wire or a point.
+/// Source of a set: its solid side, a wire or a point.
 enum SetSource<T: Real> {
     Field(NamedField<T>),
     Line([Vec3<T>; 2]),
     Point(Vec3<T>),
 }
 
-/// How far a line may be from straight, as a share of its length.
+/// Maximum deviation of a straight line, relative to its length.
 const STRAIGHT: f64 = 1e-9;
 
 impl<T: Real> FromValue<T> for SetSource<T> {
@@ -130,7 +130,7 @@ impl<T: Real> Build<T> for Tetrahedron<T> {
     example = "set tank = thin(cuboid({0, 0, 0}, {2, 1, 1}));"
 )]
 pub struct Thin<T: Real> {
-    /// The set, whose primitives meet.
+    /// The set with the intersections of its primitives.
     set: SetArgument<T>,
 }
 
@@ -154,7 +154,7 @@ impl<T: Real> Build<T> for Everything<T> {
     }
 }
 
-/// The empty set: where a union of many begins.
+/// The empty set: the start of a union in a loop.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -173,7 +173,7 @@ impl<T: Real> Build<T> for Nothing<T> {
     }
 }
 
-/// The same set with attributes; what its parts say of themselves stays.
+/// The same set with attributes; attributes of its parts take precedence.
 ///
 /// They reach every triangle, and the panels of each are a patch under the name.
 #[derive(Kind)]
@@ -198,7 +198,7 @@ pub struct Attributed<T: Real> {
     /// Distance below which two of its points count as one.
     #[field(default, min = 0)]
     tolerance: Option<T>,
-    /// What else is to be said, as `tag = text` parted by `;`.
+    /// Further attributes, as `tag = text` separated by `;`.
     #[field(default)]
     tags: Option<Arc<str>>,
 }
@@ -247,13 +247,13 @@ impl<T: Real> Build<T> for Regularized<T> {
     }
 }
 
-/// A set under a name: what `set s = ...;` declares.
+/// A named set: the declaration `set s = ...;`.
 #[derive(Kind)]
 #[kind(class = Set, name = "Set", example = "Set ball(set(sphere({0, 0, 0}, 1)));")]
 pub struct SetObject<T: Real> {
     /// The set.
     set: SetArgument<T>,
-    /// The objects that it was computed from.
+    /// Objects from which it is computed.
     #[field(default)]
     of: Option<Vec<Value<T>>>,
 }

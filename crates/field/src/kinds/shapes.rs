@@ -62,10 +62,10 @@ impl<T: Real> Build<T> for PlateOf<T> {
 
 /// The half-space behind a surface: the distance from it, positive on the side of its natural normal.
 ///
-/// It is (p - q) . n for the point q of the surface nearest to p and the normal n there: beyond the edges the
-/// half-space goes on along their tangent planes. Where those of two edges come together, and far behind a
-/// surface that bends by more than half a turn, the nearest point jumps, and the side with it: cut it before.
-/// Its ranges hold there, too.
+/// Value: (p - q) . n for the point q of the surface nearest to p and the normal n there; beyond
+/// the edges the half-space is continued along their tangent planes. The nearest point, and with it
+/// the side, jumps where the planes of two edges meet and far behind a surface that bends by more
+/// than half a turn: cut the surface before. The ranges are valid there too.
 #[derive(Kind)]
 #[kind(
     class = Field,

@@ -46,7 +46,7 @@ macro_rules! smooth {
             /// The width of the blend.
             #[field(min = 0)]
             width: T,
-            /// Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+            /// Shape of the blend: "quadratic" (default), "cubic" or "circular".
             #[field(default)]
             blend: Option<Arc<str>>,
         }
@@ -66,26 +66,26 @@ macro_rules! smooth {
 smooth!(
     SmoothUnion,
     "smooth_union",
-    "The union of two bodies with the edge between them filled.",
+    "The union of two bodies with the edge between them filled smoothly.",
     "field blob = smooth_union(sphere({0, 0, 0}, 1, distance = 1), sphere({1.5, 0, 0}, 1, distance = 1), 0.5);",
     [false, false, false]
 );
 smooth!(
     SmoothIntersection,
     "smooth_intersection",
-    "What two bodies have in common, with its edge rounded.",
+    "The intersection of two bodies with the edge between them rounded.",
     "field lens = smooth_intersection(sphere({0, 0, 0}, 1, distance = 1), sphere({1, 0, 0}, 1, distance = 1), 0.2);",
     [true, true, true]
 );
 smooth!(
     SmoothDifference,
     "smooth_difference",
-    "One body without another, with the edge between them rounded.",
+    "The difference of two bodies with the edge between them rounded.",
     "field bowl = smooth_difference(sphere({0, 0, 0}, 1, distance = 1), sphere({0, 0, 1}, 0.8, distance = 1), 0.2);",
     [true, false, true]
 );
 
-/// Copies of a set about an axis, each turned from the one before by the same angle.
+/// Copies of a set about an axis, each rotated from the one before by the same angle.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -98,10 +98,10 @@ pub struct CircularArray<T: Real> {
     set: SetArgument<T>,
     /// The axis, right-handed.
     axis: Axis<T>,
-    /// How many copies there are.
+    /// Number of copies.
     #[field(min = 1, max = 10000)]
     count: u32,
-    /// The angle from each copy to the next; a full turn by their number by default.
+    /// Angle from each copy to the next; default: a full turn divided by their number.
     #[field(default, angle)]
     angle: Option<T>,
 }

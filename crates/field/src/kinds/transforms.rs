@@ -1,4 +1,4 @@
-//! Moved, turned, mirrored and scaled fields and sets.
+//! Translated, rotated, mirrored and scaled fields and sets.
 
 use super::read::{fault, field, primitive_of, set, set_of};
 use crate::Affine;
@@ -57,7 +57,7 @@ impl<T: Real> Build<T> for Translated<T> {
     }
 }
 
-/// A field or set turned about a line.
+/// A field or set rotated about a line.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -124,7 +124,7 @@ pub struct Scaled<T: Real> {
     shape: Movable<T>,
     /// The factor, not 0.
     factor: T,
-    /// The point that stays; the origin by default.
+    /// Fixed point; default: the origin.
     #[field(default)]
     centre: Option<Point<T>>,
 }

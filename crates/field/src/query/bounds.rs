@@ -136,8 +136,8 @@ fn farthest(
     Ok(None)
 }
 
-/// By which part of its size a box that was found is widened, so that nothing lies in its faces. The three
-/// differ, and are no simple fractions, so that the grid falls on no symmetry.
+/// Relative margin of an automatic box, so that the set is strictly inside its faces. The three
+/// differ and are no simple fractions, so that the grid coincides with no symmetry plane.
 const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
 
 /// No side of a box around sheets and wires is less than this of the longest: four cells where those
@@ -175,7 +175,8 @@ pub fn around(set: &Set<f64>) -> Result<Option<Box3>, FieldError> {
     }))
 }
 
-/// Where coordinates are compared to see whether they only turn, and how well they agree, of their size.
+/// Sample points at which a change of coordinates is tested for being a rotation, and the relative
+/// tolerance.
 const TURNED_AT: [[f64; 3]; 6] = [
     [0.31, -0.42, 0.17],
     [-1.73, 0.55, 2.61],

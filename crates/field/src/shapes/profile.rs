@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub enum NotAProfile {
     /// Its ends are so far apart.
     Open(f64),
-    /// It leaves its plane by so much.
+    /// Distance by which it leaves its plane.
     Bent(f64),
     /// It has no extent in two directions.
     Flat,

@@ -22,7 +22,7 @@ pub enum StopReason {
     Jacobian(f64),
     /// The next layer has a cell of this skewness.
     Skewness(f64),
-    /// The next layer has a cell that is so many times the one below.
+    /// The next layer has a cell with this ratio to the one below.
     Growth(f64),
     /// Cells are as high as they are long.
     Isotropic,

@@ -29,8 +29,8 @@ pub struct Stop {
     pub jacobian: f64,
     /// Ends below the first layer with an equiangle skewness greater than this.
     pub skewness: f64,
-    /// Ends below the first layer in which a line's cell is more than so many times the one below, or less
-    /// than its reciprocal.
+    /// Ends below the first layer in which the ratio of a cell to the one below exceeds this or is
+    /// less than its reciprocal.
     pub growth: f64,
     /// Ends with the first layer whose mean cell is at least as high as it is long.
     pub isotropic: bool,

@@ -59,7 +59,7 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), ReadError> {
     ))
 }
 
-/// What speaks against a reading; those that came further count more.
+/// Reason why an interpretation failed; the one that parsed furthest is reported.
 struct Complaint {
     rank: usize,
     error: ReadError,

@@ -26,7 +26,7 @@ const LONGEST: usize = 1_000;
 /// What is known of an expression that is executed again and again.
 #[derive(Debug)]
 pub(crate) enum Slot<T: Real> {
-    /// Executed once, or a recipe did not fit so many times.
+    /// Executed once, or the number of times that a recipe did not fit.
     Seen(u8),
     Kept(Box<Recipe<T>>),
     /// Under way.
@@ -99,8 +99,7 @@ impl LeafKind {
 #[derive(Clone, Copy)]
 pub(super) enum Entry<T> {
     Literal(T),
-    /// An expression that is executed so many levels below the whole, and what comes of it read when it is
-    /// an object.
+    /// An expression `depth` levels below the whole, whose result is read if it is an object.
     Leaf {
         expr: ExprId,
         depth: u32,

@@ -13,7 +13,7 @@ use moldloft_registry::Scalar;
 const FEW: usize = 20_000;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// Does what is about so many points, bytes or the like, and can be stopped meanwhile.
+    /// Runs a computation on about `items` points, bytes or the like that can be stopped meanwhile.
     pub(super) fn apart<R: Send + 'static>(
         &self,
         items: usize,

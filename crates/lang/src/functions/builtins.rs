@@ -86,11 +86,7 @@ pub(crate) enum Action {
 /// What writers of meshes of blocks take.
 const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
     ("name", "text", "Name of the file, beside the program."),
-    (
-        "b",
-        "block or surface …",
-        "What is written: blocks, or surfaces in one plane; lists count as their members.",
-    ),
+    ("b", "block or surface …", "Blocks, or surfaces in one plane; a list stands for its members."),
     (
         "faces?",
         "text",
@@ -125,7 +121,11 @@ pub const BUILTINS: [Builtin; 32] = [
         help: &[
             ("name", "text", "Name of the file, beside the program."),
             ("mode?", "text", "\"r\", \"w\" or \"a\"; \"r\" by default."),
-            ("unit?", "integer", "Number of the unit; it may stand first, as in open(7, name)."),
+            (
+                "unit?",
+                "integer",
+                "Number of the unit; may be the first argument, as in open(7, name).",
+            ),
         ],
         example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
     },
@@ -158,11 +158,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("f", "file", "The file, or its unit."),
-            (
-                "variables",
-                "variable …",
-                "What is filled, in order: variables, elements and sections.",
-            ),
+            ("variables", "variable …", "Variables, elements and sections to fill, in order."),
         ],
         example: "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;",
     },
@@ -197,9 +193,9 @@ pub const BUILTINS: [Builtin; 32] = [
         name: "count",
         action: Action::Count,
         signature: "count(c)",
-        doc: "The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.",
+        doc: "The number of items of a multiple argument or a list; for a mask, the number of true elements.",
         returns: "number",
-        help: &[("c", "argument, list or mask", "What is counted.")],
+        help: &[("c", "argument, list or mask", "Multiple argument, list or mask.")],
         example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
     },
     Builtin {
@@ -217,7 +213,7 @@ pub const BUILTINS: [Builtin; 32] = [
         signature: "ieee(on)",
         doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
         returns: "nothing",
-        help: &[("on?", "number", "0 makes them errors again; 1 by default.")],
+        help: &[("on?", "number", "0: errors again; default 1.")],
         example: "ieee(); float a = 1/0; assert a > 1e308; ieee(0);",
     },
     Builtin {
@@ -272,7 +268,7 @@ pub const BUILTINS: [Builtin; 32] = [
             (
                 "s",
                 "curve, surface or block …",
-                "What is written; an farray of whole numbers behind one is its blanking.",
+                "Arrays to write; an farray of integers after one is its blanking.",
             ),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;",
@@ -285,11 +281,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            (
-                "s",
-                "curve, surface or block …",
-                "What is written; lists of them count as their members.",
-            ),
+            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
@@ -304,9 +296,9 @@ pub const BUILTINS: [Builtin; 32] = [
             (
                 "view?",
                 "text",
-                "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; by default the one that shows most.",
+                "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; default: the view with the largest image.",
             ),
-            ("s", "curve, surface or block …", "What is drawn."),
+            ("s", "curve, surface or block …", "Curves, surfaces and blocks to draw."),
         ],
         example: "curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot(\"parabola.svg\", c);",
     },
@@ -319,11 +311,7 @@ pub const BUILTINS: [Builtin; 32] = [
         help: &[
             ("name", "text", "Name of the file, beside the program."),
             ("words?", "text", "\"flip\" reverses the normals."),
-            (
-                "s",
-                "curve, surface or block …",
-                "What is written; lists of them count as their members.",
-            ),
+            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
         ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
@@ -335,11 +323,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            (
-                "s",
-                "curve, surface or block …",
-                "What is written; lists of them count as their members.",
-            ),
+            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
             (
                 "faces?",
                 "text",
@@ -383,7 +367,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("c", "curve or surface …", "What is written."),
+            ("c", "curve or surface …", "Curves or surfaces to write."),
         ],
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
     },
@@ -395,7 +379,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "surface or block",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("block?", "integer", "Number of the block in the file; 1 by default."),
+            ("block?", "integer", "Number of the block in the file; default 1."),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
     },
@@ -407,7 +391,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "farray or block",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("block?", "integer", "Number of the block in the file; 1 by default."),
+            ("block?", "integer", "Number of the block in the file; default 1."),
         ],
         example: "surface s[2,2] = {1, 2, 3}; farray hole[2,2] = 1; hole[1,1] = 0; write_p3d(\"s.x\", s, hole); assert iblank_p3d(\"s.x\")[1,1] == 0;",
     },
@@ -428,7 +412,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "surface or block",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("zone?", "integer or text", "Number or name of the zone; 1 by default."),
+            ("zone?", "integer or text", "Number or name of the zone; default 1."),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); surface t = read_cgns(\"s.cgns\", \"s\"); assert t.d1 == 3;",
     },

@@ -54,7 +54,7 @@ fn in_order(m: &Module, builtin: &Builtin, args: NodeList<Arg>) -> Result<Vec<Ex
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The row of a function called with so many arguments; that of `makecc` for its misprint of 1992.
+    /// The row of a function for a number of arguments; that of `makecc` for its misprint of 1992.
     pub fn row(
         &mut self,
         m: &Module,

@@ -385,18 +385,18 @@ elementary! {
         "atan", "Arc tangent, in radians.", "assert abs(atan(1) - PI/4) < 1e-15;", T::atan;
         "exp", "Exponential.", "assert abs(exp(1) - 2.718281828459045) < 1e-15;", T::exp;
         "log", "Natural logarithm.", "assert log(1) == 0;", T::ln;
-        "log10", "Logarithm to the base 10; of a power of ten its whole exponent.", "assert log10(1000) == 3;", log10;
+        "log10", "Logarithm to base 10; exact for powers of ten.", "assert log10(1000) == 3;", log10;
         "sinh", "Hyperbolic sine.", "assert sinh(0) == 0;", T::sinh;
         "cosh", "Hyperbolic cosine.", "assert cosh(0) == 1;", T::cosh;
         "tanh", "Hyperbolic tangent.", "assert tanh(0) == 0;", T::tanh;
-        "abs", "Absolute value; of a field its sheet, which has no solid side.", "assert abs(-2) == 2;", T::abs;
+        "abs", "Absolute value; for a field its zero set as a sheet, without a solid side.", "assert abs(-2) == 2;", T::abs;
         "s_sqrt", "sgn(x) sqrt|x|.", "assert s_sqrt(-4) == -2;", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
-        "floor", "The greatest whole number that is not greater.", "assert floor(-1.5) == -2;", |x: T| step(x, f64::floor);
-        "ceil", "The least whole number that is not less.", "assert ceil(-1.5) == -1;", |x: T| step(x, f64::ceil);
-        "round", "The nearest whole number; halves away from zero.", "assert round(2.5) == 3;", |x: T| step(x, f64::round);
+        "floor", "The greatest integer not above x.", "assert floor(-1.5) == -2;", |x: T| step(x, f64::floor);
+        "ceil", "The least integer not below x.", "assert ceil(-1.5) == -1;", |x: T| step(x, f64::ceil);
+        "round", "The nearest integer; halves are rounded away from zero.", "assert round(2.5) == 3;", |x: T| step(x, f64::round);
         "sign", "-1, 0 or 1.", "assert sign(-7) == -1;", |x: T| step(x, |x| if x == 0.0 { 0.0 } else { x.signum() });
-        "radians", "An angle given in degrees, in radians.", "assert abs(radians(180) - PI) < 1e-15;", |x: T| x * (std::f64::consts::PI / 180.0);
-        "degrees", "An angle given in radians, in degrees.", "assert abs(degrees(PI) - 180) < 1e-13;", |x: T| x * (180.0 / std::f64::consts::PI);
+        "radians", "Converts degrees to radians.", "assert abs(radians(180) - PI) < 1e-15;", |x: T| x * (std::f64::consts::PI / 180.0);
+        "degrees", "Converts radians to degrees.", "assert abs(degrees(PI) - 180) < 1e-13;", |x: T| x * (180.0 / std::f64::consts::PI);
     }
     binary {
         "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "assert abs(atan2(1, -1) - 3*PI/4) < 1e-15;", "y", "x", T::atan2;
@@ -407,7 +407,7 @@ elementary! {
                 _ => modulo(a, b),
             }
         };
-        "div", "Whole quotient of a / b, rounded down.", "assert div(-1, 3) == -1;", "a", "b", |a: T, b: T| {
+        "div", "Integer quotient of a / b, rounded down.", "assert div(-1, 3) == -1;", "a", "b", |a: T, b: T| {
             T::from(whole_quotient(a.re(), b.re()))
         };
     }
@@ -505,7 +505,7 @@ pub fn rows() -> Vec<Row> {
     rows.push(
         row!(
             "min",
-            "The least number of an array; of several arguments the least, element by element.",
+            "The least number of an array; with several arguments, the least element by element.",
             several(),
             "assert min(3, 1) == 1;",
             least
@@ -514,7 +514,7 @@ pub fn rows() -> Vec<Row> {
     );
     rows.push(row!(
         "max",
-        "The greatest number of an array; of several arguments the greatest, element by element.",
+        "The greatest number of an array; with several arguments, the greatest element by element.",
         several(),
         "assert max(3, 1) == 3;",
         greatest
@@ -522,7 +522,7 @@ pub fn rows() -> Vec<Row> {
     rows.push(
         row!(
             "sum",
-            "The sum of the numbers of an array; of several arguments the sum, element by element.",
+            "The sum of the numbers of an array; with several arguments, the sum element by element.",
             several(),
             "assert sum({1, 2, 4}) == 7;",
             total

@@ -1,4 +1,4 @@
-//! What a model says of itself as a whole: its mirror planes, its unit, the header of its model file.
+//! Properties of a model as a whole: mirror planes, unit, header of its model file.
 
 use crate::model_file::text::Text;
 use crate::model_file::units;
@@ -7,8 +7,7 @@ use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 
-/// The model's properties: the planes it is mirrored in, its unit, and the header of the
-/// model file that it came from.
+/// The model's properties: its mirror planes, its unit, and the header of its model file.
 ///
 /// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
 /// and hydrostatics count both.
@@ -74,7 +73,7 @@ pub fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
     }
 }
 
-/// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
+/// The mirror planes, as "y" or "xy"; empty without symmetry.
 pub fn symmetry(graph: &Graph<f64>) -> String {
     text(graph, "symmetry")
 }

@@ -5,7 +5,7 @@ use moldloft_registry::{CallError, Class, FromValue, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// A text, in a kind that is generic over the number all the same.
+/// A text, in a kind that is generic over the number.
 #[derive(Clone, Debug)]
 pub struct Text<T>(Arc<str>, PhantomData<T>);
 

@@ -104,8 +104,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The value of arithmetic on numbers alone, at most so many levels deep: literals, variables and
-    /// parameters, whose reading changes nothing and cannot fail.
+    /// The value of arithmetic on numbers alone, to a maximum depth: literals, variables and
+    /// parameters, which have no side effects and cannot fail.
     fn scalar(&self, m: &Module, id: ExprId, levels: u32) -> Option<T> {
         match m.program[id].kind {
             ExprKind::Number(literal) => Some(T::from(m.program[literal].value)),

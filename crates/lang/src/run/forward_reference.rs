@@ -22,7 +22,7 @@ impl Later {
                 .at(diagnostic.span())
                 .found(names.join(" -> "))
                 .note_at(self.name.span, "declared here")
-                .help("an object may only be built on objects that are not built on it");
+                .help("remove the circular dependency");
         }
         let text = m.program.name(self.name.symbol);
         diagnostic

@@ -289,7 +289,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.usage.cost() + count as u64 <= self.limits.steps
     }
 
-    /// Counts a call of a function that takes longer than a statement: about as long as so many.
+    /// Charges a call of a function that takes longer than a statement.
     pub fn charge_call(&mut self) {
         self.usage.steps += 40;
     }

@@ -27,7 +27,7 @@ use std::collections::{HashMap, HashSet};
 pub(crate) struct Executed(Vec<Vec<u64>>);
 
 impl Executed {
-    /// Room for the statements of so many modules; modules that come later make their own.
+    /// Space for the statements of the modules; later modules add their own.
     pub fn note(&mut self, module: usize, stmt: StmtId) {
         let (word, bit) = (stmt.0 as usize / 64, 1 << (stmt.0 % 64));
         if let Some(known) = self.0.get_mut(module).and_then(|words| words.get_mut(word)) {

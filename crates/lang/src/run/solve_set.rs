@@ -1,4 +1,4 @@
-//! Solve sets in a run: their kind, and what a statement that declares one notes for the solver.
+//! Solve sets in a run: the kind, and the record for the solver of a statement that declares one.
 
 use crate::run::interpreter::Interpreter;
 use crate::run::program;
@@ -14,14 +14,14 @@ use moldloft_registry::{Array, Build, CallError, Class, Context, Kind, Row, Scal
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, NodeList};
 use std::sync::Arc;
 
-/// Parameters and numbers of objects that are found so that as many other numbers become zero, by damped
-/// Newton steps from the values that they are given.
+/// Solves for parameters and numbers of objects that make an equal number of expressions zero, by
+/// damped Newton iteration from their given values.
 ///
-/// An unknown is a parameter of the program, or a number that is written where an object is declared: the
-/// `P21.y` of a point, the `b.t` of a bead. What is built on it is built on the solution; ranges of parameters and
-/// arguments bound the search. The text keeps the number from which the search begins. The conditions are numbers computed from them, each zero when it
-/// holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
-/// condition left, `s.iterations` the number of steps.
+/// An unknown is a parameter of the program, or a literal number in the declaration of an object:
+/// `P21.y` of a point, `b.t` of a bead. Objects that depend on it use the solution; ranges of
+/// parameters and arguments bound the search. The program text keeps the initial value. The
+/// conditions are expressions, zero when satisfied: `hull.volume - 100`. `s.x` is the solution for
+/// the unknown x, `s.residual` the largest remaining condition, `s.iterations` the number of steps.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -30,13 +30,13 @@ use std::sync::Arc;
                AbsPoint B(0, 0, 0); Line l(A, B); SolveSet s({x, y}, {l.length - 5, A.x - 0.75*A.y});"
 )]
 pub struct SolveSet<T: Real> {
-    /// What to find: parameters, and numbers of objects.
+    /// Unknowns: parameters, and numbers of objects.
     #[field(min_items = 1)]
     unknowns: Vec<T>,
-    /// As many numbers that become zero.
+    /// Conditions, as many as unknowns: expressions that become zero.
     #[field(min_items = 1)]
     conditions: Vec<T>,
-    /// The most steps.
+    /// Maximum number of steps.
     #[field(default = 50, min = 1, max = 1000)]
     steps: u32,
 }

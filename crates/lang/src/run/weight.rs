@@ -1,5 +1,5 @@
-//! Weights: masses with their centres, as kinds. Their mass is a number of the program, `engine.mass`, and follows
-//! from the shape where it is a mass per length, area or volume of one.
+//! Weights: masses with their centres, as kinds. A mass is a number of the program, `engine.mass`;
+//! it follows from a shape if given per length, area or volume.
 
 use crate::model_file::text::Text;
 use crate::value::member::ROUGH;
@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 /// A mass and its centre: a part of a ship's weight.
 ///
-/// Each weight counts as stated, also in a model that is mirrored (`Model info(symmetry = "y")`): `images = "y"` adds the
-/// other side, which doubles the mass and moves the centre into the plane.
+/// Masses are used as given, also in a mirrored model (`Model info(symmetry = "y")`): `images =
+/// "y"` adds the mirror image, which doubles the mass and moves the centre into the plane.
 ///
 /// The mass is given, or follows from a mass per length of a curve, per area of a surface, per volume of a solid or
 /// body. `w.mass` is the mass with its margin, `w.centre`, `w.x`, `w.y`, `w.z` are the centre: numbers of the program.
@@ -28,23 +28,25 @@ use std::sync::Arc;
                WeightSum light({plating, engine});"
 )]
 pub struct Weight<T: Real> {
-    /// Where it is: a point or {x, y, z}; or a curve, surface, solid or body whose centre it has.
+    /// Position: a point or {x, y, z}; or a curve, surface, solid or body whose centroid is the
+    /// centre.
     at: Value<T>,
     /// The mass.
     mass: Option<T>,
-    /// Instead of the mass: mass per length of the curve, per area of the surface, per volume of the solid.
+    /// Mass per length of the curve, per area of the surface or per volume of the solid; replaces
+    /// `mass`.
     per: Option<T>,
-    /// The group it is listed in.
+    /// Group in the list of weights.
     #[field(default = "")]
     group: Text<T>,
     /// A margin that is added to the mass, in percent.
     #[field(default = 0)]
     margin: T,
-    /// How the mass is known: "estimated", "calculated" or "weighed".
+    /// Source of the mass: "estimated", "calculated" or "weighed".
     #[field(default = "estimated")]
     status: Text<T>,
-    /// The planes in which it has mirror images that count as well: "y" for what is on both sides of y = 0, "" for what
-    /// is there once. A mass per area of one side of a symmetric model needs it.
+    /// Mirror planes: "y" adds the mirror image in y = 0, "" adds no image. Required for a mass per
+    /// area of one half of a symmetric model.
     images: Option<Text<T>>,
 }
 

@@ -111,7 +111,7 @@ pub struct Solve<T> {
     pub unknowns: Vec<SolveUnknown<T>>,
     /// What becomes zero.
     pub conditions: Vec<T>,
-    /// The most steps.
+    /// Maximum number of steps.
     pub steps: usize,
 }
 

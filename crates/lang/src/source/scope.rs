@@ -181,7 +181,7 @@ impl<T: Scalar> Scope<T> {
         self.make_room(names);
     }
 
-    /// Makes room for so many names.
+    /// Reserves space for `names` names.
     pub fn make_room(&mut self, names: usize) {
         self.globals.resize_with(names, || None);
     }

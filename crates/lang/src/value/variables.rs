@@ -251,7 +251,7 @@ pub fn extent(n: f64) -> Result<usize, Diagnostic> {
         .found(n.to_string()))
 }
 
-/// Whether an array of so many elements may be declared; gives the steps that it counts as.
+/// Checks that an array of `count` elements may be declared; gives its cost in steps.
 ///
 /// # Errors
 /// More elements than a single array may have, or memory for no more of them.

@@ -7,11 +7,11 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
 
 /// A circular arc, uniform in angle.
 ///
-/// Six types (types 1 and 3 to 6 are our numbers for those of the catalogue): 1 through p1, p2 and
-/// p3; 2 from p1 about the centre p2, the shorter way to the direction of p3; 3 from p1, tangent to
-/// the line toward p2, to p3; 4 from p1 to p3, tangent there to the line that comes from p2; 5 the
-/// semicircle from p1 to p2 on the side of p3; 6 the full circle from p1 about the centre p2,
-/// setting out toward the side of p3.
+/// Six types: 1 through p1, p2 and p3; 2 from p1 about the centre p2, along the shorter arc to the
+/// direction of p3; 3 from p1, tangent to the line toward p2, to p3; 4 from p1 to p3, tangent there
+/// to the line from p2; 5 the semicircle from p1 to p2 on the side of p3; 6 the full circle from p1
+/// about the centre p2, starting toward the side of p3. The numbers of types 1 and 3 to 6 are
+/// specific to this program.
 ///
 /// Points in line make types 1 to 4 a straight line, which the arc approaches smoothly.
 #[derive(Kind)]

@@ -13,8 +13,8 @@ use moldloft_spline::{End, Ends, InterpolatingSpline};
 /// An interpolating spline: the twice differentiable piecewise cubic through the points, with
 /// knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
 ///
-/// With the default ends two points give a line, three a parabola, four or more the spline whose
-/// first two and last two pieces are one polynomial each. Neighbouring points must differ.
+/// With the default ends two points give a line, three a parabola, four or more a spline without
+/// knots at the second and the last but one point (not-a-knot). Neighbouring points must differ.
 #[derive(Kind)]
 #[kind(
     class = Curve,

@@ -29,7 +29,7 @@ pub struct Conic<T: Real> {
     /// Start of the curve.
     #[field(angle, default = 0)]
     a1: T,
-    /// End; a full turn when not given.
+    /// End angle; default: a full turn.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.

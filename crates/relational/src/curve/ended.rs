@@ -1,14 +1,14 @@
-//! Curves of their own between point objects: what joins them to their neighbours.
+//! Curves with vertices of their own at their ends, and their traces along other curves.
 
 use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::Point;
 
-/// A curve with what it runs along: most are roots of their own between point objects.
+/// A curve with its trace: most are roots of their own between point objects.
 pub struct Ended<T: Real, C> {
     /// The curve.
     pub curve: C,
-    /// What it runs along.
+    /// Curves and points that it follows.
     pub trace: Trace<T>,
 }
 

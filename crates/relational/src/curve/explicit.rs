@@ -7,10 +7,10 @@ use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use moldloft_spline::{InterpolatingSpline, InterpolationError};
 
-/// An explicit spline: one coordinate runs evenly with t, and the other two are cubic splines of
-/// it through the points.
+/// An explicit spline: one coordinate is linear in t; the other two are cubic splines of that
+/// coordinate through the points.
 ///
-/// That coordinate must ascend or descend from point to point.
+/// That coordinate increases or decreases strictly from point to point.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -19,7 +19,7 @@ use moldloft_spline::{InterpolatingSpline, InterpolationError};
                XCurve c(\"x\", {A, B, C, D}); XCurve d(1, {D, C, B, A}, ends = \"natural\");"
 )]
 pub struct XCurve<T: Real> {
-    /// The coordinate that runs evenly: "x", "y" or "z", or 1, 2 or 3.
+    /// Coordinate linear in t: "x", "y" or "z", or 1, 2 or 3.
     axis: AxisName,
     /// The points it passes through, two or more.
     #[field(min_items = 2)]
@@ -63,9 +63,9 @@ impl<T: Real> Build<T> for XCurve<T> {
             let fault =
                 faults::of_interpolation(error, "point", [Self::POINTS, Self::AXIS, Self::ENDS]);
             match error {
-                InterpolationError::NotClosed { .. } => {
-                    fault.help("an explicit spline never closes: its axis runs on")
-                }
+                InterpolationError::NotClosed { .. } => fault.help(
+                    "an explicit spline cannot be closed: its coordinate along the axis is monotonic",
+                ),
                 _ => fault,
             }
         })?;

@@ -1,4 +1,5 @@
-//! B-splines fitted to curves by least squares. A fit that comes no nearer than asked is refused.
+//! B-splines fitted to curves by least squares, with an error if the requested accuracy is not
+//! reached.
 
 use super::Ended;
 use moldloft_num::{Curve, Order, Real};
@@ -10,9 +11,8 @@ use moldloft_spline::{SplineError, SplineWithKnotDerivatives};
 /// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
 /// curve, and the least sum of squared distances at equal parameters.
 ///
-/// The number of control points decides how near it comes: its member `residual` is the greatest
-/// distance between the two at equal parameters. With `accuracy` it is refused when it
-/// comes no nearer than that.
+/// The number of control points determines the accuracy. The member `residual` is the greatest
+/// distance between curve and fit at equal parameters; a residual above `accuracy` is an error.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -72,7 +72,7 @@ impl<T: Real> Build<T> for NUBFitCurve<T> {
     }
 }
 
-/// So many places of the curve per control point are compared.
+/// Points of the curve compared per control point.
 const SAMPLES: usize = 8;
 
 fn fit<T: Real>(
@@ -103,7 +103,7 @@ fn fit<T: Real>(
     Ok(Value::Curve(fitted))
 }
 
-/// The fault of a fit whose knots or numbers do not serve.
+/// Error of a fit with unusable knots or counts.
 pub fn no_fit(error: SplineError) -> CallError {
     let fault = CallError::new("no-fit", error.to_string());
     match error {
@@ -114,7 +114,7 @@ pub fn no_fit(error: SplineError) -> CallError {
     }
 }
 
-/// Refuses a fit of a `noun` that comes no nearer than asked.
+/// Error if the fit of a `noun` misses the accuracy.
 pub fn near_enough<T: Real>(
     residual: f64,
     accuracy: Option<T>,
@@ -133,7 +133,7 @@ pub fn near_enough<T: Real>(
     }
 }
 
-/// How near a fit came.
+/// Report of a fit by its residual.
 pub fn report(residual: f64) -> SearchReport {
     SearchReport {
         status: SearchStatus::Ok,

@@ -5,8 +5,8 @@ use moldloft_num::{Axis, CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use std::f64::consts::PI;
 
-/// A helix: the point turned about the line by t angle, right-handed, and moved along it by
-/// t pitch angle / (2 pi), with pitch the advance per turn.
+/// A helix: the point rotated about the line by t angle, right-handed, and translated along it by t
+/// pitch angle / (2 pi), with pitch the advance per turn.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -44,7 +44,7 @@ impl<T: Real> Build<T> for Helix<T> {
 
 struct Turning<T> {
     start: Vec3<T>,
-    /// From the axis to the start.
+    /// Vector from the axis to the start.
     away: Vec3<T>,
     /// The direction of turning, as long as `away`.
     side: Vec3<T>,

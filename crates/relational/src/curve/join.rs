@@ -5,13 +5,13 @@ use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
 use std::sync::Arc;
 
-/// A declared join: two edges of patches that lie in one place are one for meshes, though they are made
-/// of different things. It is the first edge.
+/// A declared join: two coincident edges of patches count as one edge in meshes, though they come
+/// from different objects. The result is the first edge.
 ///
-/// Edges are spelled as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`; curves
-/// and snakes that run along whole edges serve as well. They may run in opposite directions. What is made
-/// of the same curves and points joins without. It is an error when the edges are farther apart than the
-/// tolerance anywhere; the vertices are those of the patch declared first.
+/// Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
+/// Curves and snakes along whole edges are accepted too; the directions may be opposite. Patches on
+/// the same curves and points join without a declaration. Edges farther apart than the tolerance at
+/// any point are an error; the vertices are those of the patch declared first.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -26,12 +26,12 @@ pub struct Join<T: Real> {
     first: CurveRef<T>,
     /// The other edge.
     second: CurveRef<T>,
-    /// How far apart the two may be; the model's tolerance when not given.
+    /// Maximum distance between the two edges; default: the model's tolerance.
     #[field(min = 0)]
     tolerance: Option<T>,
 }
 
-/// The two edges are compared at so many places.
+/// Number of points at which the two edges are compared.
 const TRIALS: usize = 64;
 
 impl<T: Real> Build<T> for Join<T> {
@@ -40,7 +40,7 @@ impl<T: Real> Build<T> for Join<T> {
         let tolerance = tolerance.map_or(context.tolerance, |t| t.re());
         whole(&first, Self::FIRST)?;
         whole(&second, Self::SECOND)?;
-        // The widest gap, run alike and run against each other, and where on the first.
+        // The widest gap in equal and in opposite direction, and its parameter on the first edge.
         let gap = |turned: bool| {
             let mut widest = (0.0f64, 0.0, Vec3::zero());
             for i in 0..=TRIALS {
@@ -77,7 +77,7 @@ impl<T: Real> Build<T> for Join<T> {
     }
 }
 
-/// Refuses what is not one whole edge, or one whole curve.
+/// Error unless the argument is one whole edge or one whole curve.
 fn whole<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<(), CallError> {
     let pieces = edge.pieces();
     let runs = |p: &Piece<T>| {

@@ -1,4 +1,4 @@
-//! Mirror images of curves, which know their originals.
+//! Mirror images of curves; they refer to their originals.
 
 use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{CurveRef, Kind, MirrorArgument};

@@ -7,9 +7,8 @@ use moldloft_spline::{KnotError, SplineError, SplineWithKnotDerivatives};
 
 /// A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
 ///
-/// The knots are all listed, end knots included: as many as points, plus the degree, plus one. They
-/// may run over any range, which is brought to [0, 1]. Without knots they are clamped and uniform,
-/// without weights the weights are 1.
+/// The list contains all knots, end knots included: number of points + degree + 1. Their range is
+/// mapped to [0, 1]. By default the knots are clamped and uniform and all weights are 1.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -51,7 +50,7 @@ pub fn spline<T: Real>(
     weights: Option<Vec<T>>,
     [of, number, list, each]: [FieldId; 4],
 ) -> Result<SplineWithKnotDerivatives<T>, CallError> {
-    // A degree that is only the default yields to few points; with knots it is meant.
+    // The default degree is lowered for few points; beside explicit knots it is binding.
     let degree = if knots.is_none() { degree.min(points.len() - 1) } else { degree };
     let count = points.len();
     SplineWithKnotDerivatives::new(degree, knots, points, weights).map_err(|error| {

@@ -9,9 +9,9 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 /// the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
 /// positive side, if d is positive.
 ///
-/// At an end without speed, such as a double control point, T is the limit from inside. It is refused
-/// where the curve stands still inside, and where the distance exceeds the radius of curvature on that
-/// side, since the offset has a cusp there.
+/// At an end of zero speed, such as a double control point, T is the limit from inside. Zero speed
+/// inside, or a distance beyond the radius of curvature on that side (a cusp of the offset), is an
+/// error.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -24,15 +24,15 @@ pub struct OffsetCurve<T: Real> {
     curve: CurveRef<T>,
     /// The distance.
     distance: T,
-    /// The plane in which, or parallel to which, it is offset.
+    /// Plane of the offset, or a plane parallel to it.
     plane: Plane<T>,
 }
 
-/// Each span of the curve is tried at so many places for cusps.
+/// Points per span that are tested for cusps.
 const CUSP_TRIALS: usize = 32;
 
-/// The sine of the angle between the tangent and the normal of the plane below which there is no sideways direction, and the
-/// share of the greatest speed below which there is no tangent.
+/// Sine of the angle between the tangent and the plane's normal below which there is no offset
+/// direction, and speed relative to the greatest speed below which there is no tangent.
 const NO_TANGENT: f64 = 1e-9;
 
 impl<T: Real> Build<T> for OffsetCurve<T> {
@@ -82,7 +82,7 @@ impl<T: Real> ParallelCurve<T> {
         if let Some(t) = standstill(&self.curve, &ends, NO_TANGENT * fastest) {
             return Err(self.no_tangent(t));
         }
-        // How fast the offset moves on, in units of the curve's own speed: at most 0 at a cusp.
+        // Speed of the offset relative to the curve's own: at most 0 at a cusp.
         let mut worst = (f64::INFINITY, 0.0);
         for t in places {
             let progress = self.progress(t).ok_or_else(|| self.no_tangent(t))?;
@@ -116,8 +116,8 @@ impl<T: Real> ParallelCurve<T> {
         direction(|t, order| curve.jet(t, order), || curve.joints(), t)
     }
 
-    /// The component of the offset's velocity along the curve's, in units of the latter; where the curve stands still, a
-    /// number of the same sign as just inside.
+    /// The component of the offset's velocity along the curve's, relative to the latter; at zero
+    /// speed, a number with the sign of the limit from inside.
     fn progress(&self, t: f64) -> Option<f64> {
         let along = Self::direction(&*self.curve, Uni1::parameter(T::from(t)));
         let (d, rate) = (along.map(|a| a.f.re()), along.map(|a| a.t.re()));

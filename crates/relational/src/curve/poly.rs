@@ -5,11 +5,11 @@ use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 
-/// Curves end to end: piece k of N is run from t = (k - 1) / N to k / N, or between the breaks
-/// given.
+/// Curves end to end: piece k of N covers t = (k - 1) / N to k / N, or the interval between given
+/// breaks.
 ///
-/// Each piece begins where the one before ends, within the model's tolerance; a piece is never
-/// turned round. Meshes join along the pieces.
+/// Each piece begins where the one before ends, within the model's tolerance; the direction of a
+/// piece is never changed. Meshes join along the pieces.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -22,7 +22,7 @@ pub struct PolyCurve<T: Real> {
     /// The curves, in order.
     #[field(min_items = 1)]
     curves: Vec<CurveRef<T>>,
-    /// The parameters at which pieces meet, ascending between 0 and 1; equal shares when not given.
+    /// Parameters of the joints, ascending between 0 and 1; default: equal intervals.
     breaks: Option<Vec<T>>,
 }
 
@@ -49,7 +49,7 @@ pub struct PolySnake<T: Real> {
     /// The snakes, in order.
     #[field(min_items = 1)]
     snakes: Vec<Snake<T>>,
-    /// The parameters at which pieces meet, ascending between 0 and 1; equal shares when not given.
+    /// Parameters of the joints, ascending between 0 and 1; default: equal intervals.
     breaks: Option<Vec<T>>,
 }
 
@@ -103,8 +103,8 @@ fn chain<T: Real>(
     }))
 }
 
-/// The parameters at which `count` pieces begin and end, 0 and 1 included: the breaks of field
-/// `field`, or equal shares.
+/// The end parameters of `count` pieces, 0 and 1 included: the breaks of field `field`, or equal
+/// intervals.
 ///
 /// # Errors
 /// `wrong-length` and `not-ascending`.
@@ -141,7 +141,7 @@ pub fn shares<T: Real>(
     Ok(ends)
 }
 
-/// How far apart, in u or v, the ends of pieces on a surface may be.
+/// Maximum distance in u or v between adjacent ends of pieces on a surface.
 const MEETING: f64 = 1e-6;
 
 fn check_joint<T: Real>(
@@ -191,7 +191,7 @@ fn check_joint<T: Real>(
     Err(fault(text, found).help("a snake cannot cross the seam or a pole of a closed surface"))
 }
 
-/// What the chain runs along: the pieces of its curves, where all of them have names.
+/// The trace of the chain: the pieces of its curves, if all of them have names.
 fn trace<T: Real>(curves: &[CurveRef<T>], ends: &[T]) -> Trace<T> {
     let mut all: smallvec::SmallVec<[Piece<T>; 1]> = smallvec::SmallVec::new();
     for (k, curve) in curves.iter().enumerate() {
@@ -231,7 +231,7 @@ fn sped<T: Real>(jet: CurveJet<T>, rate: T) -> CurveJet<T> {
 }
 
 impl<T: Real> CompositeCurve<T> {
-    /// Places of the curves, and where one goes over to the next.
+    /// Parameters collected from the curves, with those of the joints.
     fn with_joints(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> Vec<f64> {
         let mut all = Vec::new();
         for (k, curve) in self.curves.iter().enumerate() {

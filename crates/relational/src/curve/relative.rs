@@ -1,4 +1,4 @@
-//! Copies of curves: moved to new ends, scaled, turned.
+//! Copies of curves: with new ends, scaled, rotated.
 
 use super::Ended;
 use crate::affine::{Mapped, PivotTransform};
@@ -17,7 +17,7 @@ use std::sync::Arc;
                AbsPoint D(0, 0, 1); AbsPoint E(3.5, 2, 1.5); RelCurve d(c, D, E);"
 )]
 pub struct RelCurve<T: Real> {
-    /// The curve it is relative to.
+    /// Reference curve.
     curve: CurveRef<T>,
     /// Start.
     p1: Point<T>,
@@ -93,8 +93,8 @@ impl<T: Real> Curve<T> for Moved<T> {
     moldloft_num::curve_facts!(breaks of [self.curve], open, not_rational);
 }
 
-/// A curve copied from one place to another, scaled along the axes: C(t) = to + (sx, sy, sz)
-/// (c(t) - from), coordinate by coordinate.
+/// A curve copied from one reference point to another and scaled along the axes: C(t) = to + (sx,
+/// sy, sz) (c(t) - from), component by component.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -129,7 +129,7 @@ impl<T: Real> Build<T> for CopyCurve<T> {
     }
 }
 
-/// A curve turned about a line by an angle, right-handed.
+/// A curve rotated about a line by an angle, right-handed.
 #[derive(Kind)]
 #[kind(
     class = Curve,

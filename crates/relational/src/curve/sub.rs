@@ -8,8 +8,8 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Valu
 use moldloft_spline::BSplineCurve;
 use std::sync::Arc;
 
-/// The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the
-/// curve and t1, t2 the parameters of the beads. It may run backwards.
+/// The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the curve
+/// and t1, t2 the parameters of the beads. For t1 > t2 it runs backwards.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -52,8 +52,8 @@ impl<T: Real> Build<T> for SubSnake<T> {
     }
 }
 
-/// A curve run by a B-spline law: C(t) = P(b(t)), where P is the curve of the beads and b the
-/// clamped uniform B-spline with their parameters as coefficients.
+/// A curve reparametrised by a B-spline: C(t) = P(b(t)), where P is the curve of the beads and b
+/// the clamped uniform B-spline with their parameters as coefficients.
 ///
 /// It begins at the first bead and ends at the last; the others draw its divisions toward them.
 /// With N beads the degree is at most N - 1: a higher one is lowered to that.
@@ -80,7 +80,7 @@ impl<T: Real> Build<T> for BSubCurve<T> {
     }
 }
 
-/// A snake run by a B-spline law, which is a snake again: as a B-sub-curve.
+/// A snake reparametrised by a B-spline; the counterpart of a B-sub-curve on a surface.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -106,8 +106,8 @@ impl<T: Real> Build<T> for BSubSnake<T> {
     }
 }
 
-/// The curve that a bead's curve is a part of, itself when it is none, and the bead's parameter
-/// there.
+/// The parent curve of a bead's curve (the curve itself if it is not a part) and the bead's
+/// parameter there.
 fn whole<T: Real>(bead: &Bead<T>) -> (CurveRef<T>, T) {
     match &bead.curve.part_of {
         Some(part) => {
@@ -123,7 +123,7 @@ fn between<T: Real>(from: T, to: T, t: T) -> T {
     from * (-t + 1.0) + to * t
 }
 
-/// The curve of a shape that runs along `curve`, on the same surface if that is a snake.
+/// The curve of a shape along `curve`; on the same surface if that is a snake.
 fn like<T: Real>(curve: &CurveRef<T>, shape: impl Curve<T> + 'static) -> CurveRef<T> {
     match &curve.surface {
         Some(surface) => CurveRef::snake(shape, (**surface).clone(), curve.depth),
@@ -136,7 +136,7 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>,
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
     let trace = match (along.trace(), along.key) {
         (Trace::Point(point), _) => Trace::Point(point),
-        // A nameless curve is not a root that others could share.
+        // A nameless curve is not a root and cannot be shared.
         (Trace::Own(_), None) => Trace::Own([from.key, to.key]),
         (trace, key) => {
             let root = key.map_or(Root::Curve(moldloft_num::trace::Key(u32::MAX)), Root::Curve);
@@ -182,9 +182,9 @@ fn too_few(found: usize, field: FieldId) -> CallError {
         .in_field(field)
 }
 
-/// The parameter of the curve at that of its run.
+/// Parameter of the parent curve as a function of its own.
 enum SubParameter<T> {
-    /// From the first to the second.
+    /// Linear from the first to the second.
     Straight([T; 2]),
     /// The x of a spline.
     Spline(BSplineCurve<T>),
@@ -200,7 +200,7 @@ impl<T: Real> SubParameter<T> {
     }
 }
 
-/// A curve run by a law.
+/// A curve reparametrised by a spline.
 struct GovernedCurve<T: Real> {
     curve: CurveRef<T>,
     law: SubParameter<T>,
@@ -213,11 +213,11 @@ impl<T: Real> GovernedCurve<T> {
     }
 }
 
-/// Each span of a law is searched in so many steps for the breaks of the curve.
+/// Steps per span of the spline in the search for the curve's breaks.
 const STEPS: usize = 8;
 
 impl<T: Real> GovernedCurve<T> {
-    /// Where it passes these places of the curve, and the breaks of the law.
+    /// Parameters at which it passes these parameters of the curve, and the breaks of the spline.
     fn passed(&self, own: &[f64]) -> Vec<f64> {
         let closed = self.curve.closed();
         let mut breaks = match &self.law {

@@ -1,4 +1,4 @@
-//! The locus of a point whose bead runs along its curve.
+//! The locus of a point as its bead moves along its curve.
 
 use crate::arguments::Bead;
 use crate::chebyshev::{ChebyshevPiece, DEEPEST, MOST_PIECES, NODES, PiecewiseChebyshev, nodes};
@@ -8,10 +8,10 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Movi
 /// The locus of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
 /// `bead` at the parameter t1 + t (t2 - t1).
 ///
-/// Everything between bead and point is evaluated anew at each place. The curve is a chain of
-/// polynomials through such places, halved until they agree with it to about 1e-12 of its size;
-/// derivatives by what the model depends on are those of the places. Where the bead itself is does not
-/// matter.
+/// Everything between bead and point is evaluated at each sample. The curve is a chain of
+/// polynomials through such samples, halved until they agree to about 1e-12 of its size;
+/// derivatives with respect to the model's variables are those of the samples. The bead's own
+/// parameter has no influence.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -58,10 +58,10 @@ impl<T: Real> Build<T> for ProcCurve<T> {
     }
 }
 
-/// How far the last coefficients must have fallen, as a share of the size of what is swept.
+/// Bound of the last coefficients, relative to the size of the swept object.
 pub const ACCURACY: f64 = 1e-12;
 
-/// The fault of a `noun` that has no value with the bead at `t`.
+/// Error of a `noun` without a value for the bead at `t`.
 pub fn no_locus(noun: &str, t: f64, fault: &CallError, field: FieldId) -> CallError {
     let whole = CallError::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
         .expected(format!("a {noun} wherever the bead is"))

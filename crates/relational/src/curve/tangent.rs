@@ -7,7 +7,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 /// The curve of the points on the tangents of another at a distance from where they touch:
 /// C(t) = c(t) + d c'(t) / |c'(t)|, which is that of TanPoint for all beads.
 ///
-/// Where the curve has a corner the tangent jumps, and with it this curve: such curves are refused.
+/// A corner of the curve, where the tangent jumps, is an error.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -16,16 +16,17 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
                TanCurve ahead(c, 0.5); TanCurve behind(c, -0.25);"
 )]
 pub struct TanCurve<T: Real> {
-    /// The curve whose tangents count.
+    /// Curve of the tangents.
     curve: CurveRef<T>,
     /// The distance, in the direction of increasing parameter if positive.
     distance: T,
 }
 
-/// Each stretch of the curve is tried at so many places for a missing tangent.
+/// Points per smooth piece of the curve that are tested for a missing tangent.
 const TRIALS: usize = 32;
 
-/// Below this share of the greatest speed the tangent counts as zero; above its root tangents at a corner differ.
+/// Speed relative to the greatest below which the tangent counts as zero; tangents at a corner
+/// differ by more than its square root.
 const TOLERANCE: f64 = 1e-9;
 
 impl<T: Real> Build<T> for TanCurve<T> {

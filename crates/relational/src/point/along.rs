@@ -39,8 +39,8 @@ fn at_length<T: Real>(
     on(curve, place)
 }
 
-/// The bead at a given length along a curve from another bead, or from its start; negative lengths
-/// run backwards.
+/// The bead at a signed arc length along a curve from another bead or from the curve's start;
+/// negative lengths run backwards.
 #[derive(Kind)]
 #[kind(
     class = Bead,
@@ -61,8 +61,8 @@ impl<T: Real> Build<T> for ArcLenBead<T> {
     }
 }
 
-/// The ring at a given length along a snake from another ring, or from its start: as an
-/// arc-length bead.
+/// The ring at a signed arc length along a snake from another ring or from the snake's start;
+/// negative lengths run backwards.
 #[derive(Kind)]
 #[kind(
     class = Ring,

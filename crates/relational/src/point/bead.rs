@@ -6,8 +6,8 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
 
 /// A point on a curve at a given parameter: X = C(t).
 ///
-/// Outside [0, 1] it is on the natural continuation of the curve's formula. On a snake it is a
-/// ring: it knows its place on the surface too.
+/// Outside [0, 1] it continues the curve's formula. On a snake the bead is a ring and has a
+/// position on the surface too.
 #[derive(Kind)]
 #[kind(
     class = Bead,
@@ -15,7 +15,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25);"
 )]
 pub struct AbsBead<T: Real> {
-    /// The curve it is on.
+    /// Host curve.
     curve: CurveRef<T>,
     /// Its parameter.
     t: T,
@@ -39,7 +39,7 @@ impl<T: Real> Build<T> for AbsBead<T> {
                RelBead c(b, 0.5);"
 )]
 pub struct RelBead<T: Real> {
-    /// The bead it is relative to.
+    /// Reference bead.
     bead: Bead<T>,
     /// Difference of parameter.
     dt: T,

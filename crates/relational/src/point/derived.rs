@@ -1,4 +1,4 @@
-//! Points off surfaces, on tangents, turned, copied, blended, and centroids.
+//! Points off surfaces and on tangents; rotated, copied and blended points; centroids.
 
 use crate::affine::PivotTransform;
 use crate::arguments::{Bead, Magnet};
@@ -80,7 +80,7 @@ impl<T: Real> Build<T> for TanPoint<T> {
     }
 }
 
-/// A point turned about a line by an angle, right-handed (Rodrigues).
+/// A point rotated about a line by an angle, right-handed (Rodrigues).
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -104,8 +104,8 @@ impl<T: Real> Build<T> for RotatPoint<T> {
     }
 }
 
-/// A point copied from one place to another, scaled along the axes:
-/// X = to + (sx, sy, sz) (P - from), coordinate by coordinate.
+/// A point copied from one reference point to another and scaled along the axes: X = to + (sx, sy,
+/// sz) (P - from), component by component.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -140,8 +140,8 @@ impl<T: Real> Build<T> for CopyPoint<T> {
 
 /// The weighted sum of points: X = sum w_i P_i.
 ///
-/// Weights that do not add up to 1 raise a warning: only with a sum of 1 the blend moves with its points. The weights 1, -1, 1 give
-/// the fourth corner of a parallelogram. Equal weights when none are given.
+/// By default the weights are equal. Weights whose sum is not 1 raise a warning: the blend would
+/// not translate with its points. The weights 1, -1, 1 give the fourth corner of a parallelogram.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -192,8 +192,9 @@ impl<T: Real> Build<T> for BlendPoint<T> {
 /// The centroid of points, of curves by their length, of surfaces by their area, or of solids and closed
 /// bodies of triangles by their volume.
 ///
-/// A list is of one class: a point has neither length nor area to weigh against a curve. Left-handed
-/// solids count like right-handed ones; where a solid is folded, what is covered twice counts twice.
+/// All entries have one class, since a point has neither length nor area to weigh against a curve.
+/// Left-handed solids count as positive volume; where a solid is folded, volume covered twice
+/// counts twice.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -284,10 +285,11 @@ fn of_curve<T: Real>(curve: &CurveRef<T>) -> (T, Vec3<T>) {
     (arclen(curve, zero, one, 1e-12 * rough), Vec3::new(axis(0), axis(1), axis(2)))
 }
 
-/// A solid is integrated in so many parts each way.
+/// Parts of a solid per parameter, for integration.
 const BLOCKS: usize = 3;
 
-/// Volume of a solid, and the integral of X over it, by Gauss's rule with eight points each way.
+/// Volume of a solid and the integral of X over it, by Gauss's rule with eight points per
+/// parameter.
 fn of_solid<T: Real>(solid: &SolidRef<T>) -> (T, Vec3<T>) {
     let part = |k: usize| [k, k + 1].map(|k| k as f64 / BLOCKS as f64);
     let places: Vec<(f64, f64)> = (0..BLOCKS)
@@ -310,11 +312,11 @@ fn of_solid<T: Real>(solid: &SolidRef<T>) -> (T, Vec3<T>) {
     if volume.re() < 0.0 { (-volume, -moment) } else { (volume, moment) }
 }
 
-/// Each span of a surface is integrated in so many parts each way.
+/// Parts of each span of a surface per parameter, for integration.
 const PARTS: usize = 4;
 
-/// Area of a surface, and the integral of S over it, by Gauss's rule with eight points each way on
-/// parts of the spans.
+/// Area of a surface and the integral of S over it, by Gauss's rule with eight points per parameter
+/// on parts of the spans.
 fn of_surface<T: Real>(surface: &SurfaceRef<T>) -> (T, Vec3<T>) {
     let cells = |breaks: Vec<f64>| {
         let mut ends = vec![0.0];

@@ -3,8 +3,8 @@
 use moldloft_num::{Frame, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 
-/// The position at an offset, given in the axes of a frame, from a point; from the frame's origin
-/// when there is no point.
+/// The position at an offset from a point, or from the frame's origin without one, in the axes of a
+/// frame.
 fn placed<T: Real>(
     point: Option<Point<T>>,
     frame: Option<Frame<T>>,
@@ -18,10 +18,10 @@ fn placed<T: Real>(
 
 /// A point at an offset from another, in the axes of a frame.
 ///
-/// Type 0: the offset is (a, b, c) along the axes. Type 1: cylindrical, a the distance from the z
-/// axis, b the angle from x toward y, c the height. Type 2: spherical, a the distance, b the
-/// longitude, c the latitude. Without a point it is the frame's origin; a point in place of a frame
-/// gives the axes of the world there.
+/// Type 0: Cartesian offset (a, b, c). Type 1: cylindrical, with a the distance from the z axis, b
+/// the angle from x toward y, c the height. Type 2: spherical, with a the distance, b the
+/// longitude, c the latitude. The point defaults to the frame's origin. A point given as `frame`
+/// stands for world axes at that point.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -30,9 +30,9 @@ fn placed<T: Real>(
                FramePoint q(p, keel, 2, 0.5, 1, type = 1); FramePoint r(q, A, 2, 0.5, 1, 2);"
 )]
 pub struct FramePoint<T: Real> {
-    /// The point it is relative to.
+    /// Reference point; default: the frame's origin.
     point: Option<Point<T>>,
-    /// The frame whose axes are meant; those of the world when not given.
+    /// Frame of the axes; default: world axes.
     frame: Option<Frame<T>>,
     /// First coordinate.
     #[field(default = 0)]
@@ -74,9 +74,9 @@ fn spherical<T: Real>(r: T, longitude: T, latitude: T) -> Vec3<T> {
     example = "AbsPoint A(1, 0, 0); RPYFrame keel(A, 0.35, 0, 0.1); PolarPoint p(A, keel, 2, 0.5, 0.2);"
 )]
 pub struct PolarPoint<T: Real> {
-    /// The point it is relative to; the frame's origin when not given.
+    /// Reference point; default: the frame's origin.
     point: Option<Point<T>>,
-    /// The frame whose axes are meant; those of the world when not given.
+    /// Frame of the axes; default: world axes.
     frame: Option<Frame<T>>,
     /// Distance.
     r: T,

@@ -35,7 +35,7 @@ impl<T: Real> Build<T> for AbsPoint<T> {
     example = "AbsPoint A(1, 2, 0.5); RelPoint B(A, 0, 0, 1.5);"
 )]
 pub struct RelPoint<T: Real> {
-    /// The point it is relative to.
+    /// Reference point.
     point: Point<T>,
     /// Offset along x.
     #[field(default = 0)]

@@ -6,7 +6,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Valu
 
 /// A point on a surface at given parameters: X = S(u, v).
 ///
-/// Outside [0, 1] it is on the natural continuation of the surface's formula.
+/// Outside [0, 1] it continues the surface's formula.
 #[derive(Kind)]
 #[kind(
     class = Magnet,
@@ -15,7 +15,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Valu
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5);"
 )]
 pub struct AbsMagnet<T: Real> {
-    /// The surface it is on.
+    /// Host surface.
     surface: SurfaceRef<T>,
     /// Its first parameter.
     u: T,
@@ -40,7 +40,7 @@ impl<T: Real> Build<T> for AbsMagnet<T> {
                RelMagnet q(p, 0.5, 0.125);"
 )]
 pub struct RelMagnet<T: Real> {
-    /// The magnet it is relative to.
+    /// Reference magnet.
     magnet: Magnet<T>,
     /// Difference of the first parameter.
     #[field(default = 0)]

@@ -6,7 +6,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 
 /// A point on a snake at a given parameter: X = S(w(t)).
 ///
-/// It is a bead of the snake and a magnet of the surface at once.
+/// It is both a bead of the snake and a magnet of the surface.
 #[derive(Kind)]
 #[kind(
     class = Ring,
@@ -38,7 +38,7 @@ impl<T: Real> Build<T> for AbsRing<T> {
                AbsRing r(s, 0.5); RelRing q(r, 0.25);"
 )]
 pub struct RelRing<T: Real> {
-    /// The ring it is relative to.
+    /// Reference ring.
     ring: Ring<T>,
     /// Difference of parameter.
     dt: T,

@@ -9,14 +9,14 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Reparametriza
 use moldloft_spline as spline;
 use std::sync::Arc;
 
-/// A slope below this is none: the law's inverse would have no derivative there.
+/// Slope of a law below which its inverse has no derivative.
 const NO_SLOPE: f64 = 1e-9;
 
 /// A redistribution by length: R is the inverse of s(t) / L, with s the length along a curve and L
 /// all of it, so that equal steps of t are equal lengths.
 ///
-/// It is meant as the relabel of a curve of the same shape: of a copy, a neighbour, or a curve on the
-/// same points. The curve must move everywhere.
+/// Intended as the relabel of a curve of the same shape: a copy, a neighbour, or a curve on the
+/// same points. The curve must have non-zero speed everywhere.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -25,14 +25,14 @@ const NO_SLOPE: f64 = 1e-9;
                ArcLenRelabel r(c); BCurve even({A, B, C}, relabel = r);"
 )]
 pub struct ArcLenRelabel<T: Real> {
-    /// The curve whose length counts.
+    /// Curve whose arc length is used.
     curve: CurveRef<T>,
 }
 
-/// Lengths are known to this share of the whole.
+/// Accuracy of lengths relative to the total length.
 const LENGTH_ACCURACY: f64 = 1e-13;
 
-/// The curve's length is tabulated at so many places of each smooth piece.
+/// Entries of the arc-length table per smooth piece.
 const PLACES: usize = 16;
 
 impl<T: Real> Build<T> for ArcLenRelabel<T> {
@@ -90,7 +90,7 @@ impl<T: Real> ByLength<T> {
         self.lengths[self.lengths.len() - 1]
     }
 
-    /// The parameter at the share `t` of the length, with derivatives.
+    /// The parameter at the fraction `t` of the length, with derivatives.
     fn parameter(&self, t: T) -> T {
         let total = self.total();
         if t.re() == 0.0 || t.re() == 1.0 {
@@ -151,7 +151,7 @@ impl<T: Real> ByLength<T> {
     }
 }
 
-/// Outside [0, 1] the straight continuation of what is inside.
+/// Linear continuation outside [0, 1].
 fn continued<T: Real>(
     t: T,
     order: Order,
@@ -182,8 +182,8 @@ impl<T: Real> Reparametrization<T> for ByLength<T> {
     }
 }
 
-/// The law by which another curve's parameter was redistributed, so that neighbours match. Of a
-/// curve without one it changes nothing; of an image it is its original's.
+/// The reparametrisation of another curve, so that neighbours match: the identity for a curve
+/// without one, that of the original for an image.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -192,7 +192,7 @@ impl<T: Real> Reparametrization<T> for ByLength<T> {
                BCurve c({A, B, C}, relabel = cosine); CopyRelabel r(c); Line l(A, C, relabel = r);"
 )]
 pub struct CopyRelabel<T: Real> {
-    /// The curve whose relabel is copied.
+    /// Curve whose relabel is copied.
     curve: CurveRef<T>,
 }
 
@@ -270,7 +270,7 @@ impl<T: Real> Reparametrization<T> for Inverse<T> {
     }
 }
 
-/// Relabels one after another: of {a, b} it is R(t) = b(a(t)).
+/// Composition of relabels: {a, b} gives R(t) = b(a(t)).
 ///
 /// On a curve that is relabelled by b already, a relabel by a is the same.
 #[derive(Kind)]

@@ -8,7 +8,7 @@ use moldloft_spline as spline;
 use moldloft_spline::{Dense, RelabelError};
 use std::sync::Arc;
 
-/// Where a law is dense, by its name in the language.
+/// End or ends at which a law is dense, by its name in the language.
 pub struct DenseAt(Dense);
 
 impl<T: Real> FromValue<T> for DenseAt {
@@ -71,10 +71,10 @@ fn law<T: Real>(
 /// A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
 /// clamped uniform knots (as a B-sub-curve has its beads' parameters).
 ///
-/// The values run from 0 to 1 and ascend; with `partial = 1` they run from any value to a greater one,
-/// and the law leaves the rest of the curve out, or goes on beyond its ends. With N values the degree is at most N - 1: a higher one
-/// is lowered to that. Degree 1 is straight between its breaks, so parts of other curves stay parts
-/// of them.
+/// The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
+/// the law covers a part of the curve or its continuation beyond the ends. The degree is at most N
+/// - 1 for N values; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
+/// other curves stay parts of them.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -123,7 +123,7 @@ pub struct CosRelabel<T: Real> {
     /// Dense end: "both", "start" or "end".
     #[field(default = "both")]
     dense: DenseAt,
-    /// Share w of the cosine, 0 to 1.
+    /// Weight w of the cosine, 0 to 1.
     #[field(default = 1, min = 0, max = 1)]
     weight: T,
 }
@@ -183,7 +183,7 @@ impl<T: Real> Build<T> for TanhRelabel<T> {
 /// A redistribution by a table: the monotone piecewise cubic through (parameter, value) pairs
 /// (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
 ///
-/// The pairs run from (0, 0) to (1, 1); both columns ascend.
+/// The pairs range from (0, 0) to (1, 1); both columns increase.
 #[derive(Kind)]
 #[kind(
     class = Relabel,

@@ -92,7 +92,7 @@ pub(super) fn crossing<T: Real>(
     }
 }
 
-/// Where the curve goes through a surface: t, the report, and (u, v).
+/// Intersection of a curve with a surface: t, the report, and (u, v).
 pub(super) fn piercing<T: Real>(
     along: &Along<T>,
     onto: &super::Onto<T>,
@@ -178,7 +178,7 @@ macro_rules! bead_and_ring {
         #[derive(Kind)]
         #[kind(class = Bead, columns = $columns, example = $example)]
         pub struct $bead<T: Real> {
-            /// The curve, or a bead of it near the place that is meant.
+            /// The curve, or a bead on it near the intended point.
             curve: Along<T>,
             $($(#[doc = $help])* $(#[field($($option)*)])? $field: $type,)*
         }
@@ -198,7 +198,7 @@ macro_rules! bead_and_ring {
         #[derive(Kind)]
         #[kind(class = Ring, columns = $ring_columns, example = $ring_example)]
         pub struct $ring<T: Real> {
-            /// The snake, or a ring of it near the place that is meant.
+            /// The snake, or a ring on it near the intended point.
             snake: AlongSnake<T>,
             $($(#[doc = $help])* $(#[field($($option)*)])? $field: $type,)*
         }
@@ -216,15 +216,15 @@ macro_rules! bead_and_ring {
 
 bead_and_ring!(
     IntBead, IntRing,
-    "The point where a curve meets a plane, a surface, another curve or a sphere: C(t) on the target. \
-     From a bead it is found by damped Newton iteration; without one, of all such points the one nearest \
-     to t = 0.5 is taken and the others are reported.",
+    "The intersection of a curve with a plane, a surface, another curve or a sphere: C(t) on the \
+     target. From a bead it is found by damped Newton iteration; without one it is the \
+     intersection nearest to t = 0.5, and the others are reported.",
     "curve target point", "snake target point",
     [
         /// A plane, surface (or magnet), curve (or bead), or the centre of a sphere.
         target: Target<T>,
-        /// For a plane: the parallel plane through this point is meant. For a centre: the sphere
-        /// through this point.
+        /// With a plane: selects the parallel plane through this point. With a centre: a point of
+        /// the sphere.
         point: Option<Point<T>>,
     ],
     "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
@@ -241,8 +241,8 @@ bead_and_ring!(
 
 bead_and_ring!(
     XYZBead, XYZRing,
-    "The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton \
-     iteration; without one, of all such points the one nearest to t = 0.5 is taken.",
+    "The point of a curve with a given coordinate x, y or z. From a bead it is found by damped \
+     Newton iteration; without one it is the point nearest to t = 0.5.",
     "curve axis value", "snake axis value",
     [
         /// The coordinate: "x", "y" or "z".
@@ -264,8 +264,8 @@ bead_and_ring!(
 bead_and_ring!(
     ProjBead, ProjRing,
     "The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is \
-     least. From a bead it is the foot that descent leads to; without one the nearest of all. Where the foot \
-     would lie beyond an end, the end is taken and reported.",
+     least. From a bead it is the foot found by descent; without one, the nearest of all. If the \
+     foot is beyond an end, the end is the result and is reported.",
     "point curve", "point snake",
     [
         /// The point to project.

@@ -31,14 +31,14 @@ const MOST_STEPS: usize = 60;
 /// How far outside of the surface a path may run, in u and v.
 const OUTSIDE: f64 = 1e-9;
 
-/// The shortest path on a surface between two magnets, or more exactly a geodesic: a curve that turns
-/// neither left nor right on the surface. It is run evenly, so t is the share of its length.
+/// The shortest path on a surface between two magnets, more exactly a geodesic: a curve of zero
+/// geodesic curvature. Its parameter t is the fraction of its length.
 ///
-/// Of several geodesics it is the one that Newton's method leads to from the straight line of the
-/// parameter plane: on surfaces that are not bent much between the magnets, the shortest. On a closed
-/// surface those over its seam are tried, too, and the shortest is taken (of equal ones that which stays
-/// within the seam); `turns_u` and `turns_v` ask for another. Its place on the surface goes over from 1
-/// to 0 at the seam.
+/// Of several geodesics it is the one found by Newton's method from the straight line of the
+/// parameter plane: on surfaces with little curvature between the magnets, the shortest. On a
+/// closed surface those across its seam are tried too, and the shortest is the result (of equal
+/// ones, the one inside the seam); `turns_u` and `turns_v` select another. Its parameter on the
+/// surface changes from 1 to 0 at the seam.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -55,8 +55,8 @@ pub struct GeoSnake<T: Real> {
     m1: Magnet<T>,
     /// End, on the same surface.
     m2: Magnet<T>,
-    /// Number of forward crossings of the seam u = 0; negative: backward. Not given: 0, or 1 or
-    /// -1 where that is shorter.
+    /// Number of forward crossings of the seam u = 0; negative: backward. Default: the shortest
+    /// path with 0, 1 or -1.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,
     /// The same for the seam v = 0.
@@ -185,7 +185,7 @@ fn length<T: Real>(sheet: &SeamlessSurface<T>, places: &[[f64; 2]]) -> f64 {
 fn no_convergence() -> CallError {
     CallError::new("no-convergence", "no geodesic was found between the magnets")
         .expected("magnets with a smooth stretch of the surface between them")
-        .found("an iteration from the straight line in u and v that came to no end")
+        .found("an iteration from the straight line in u and v that did not converge")
         .help("put magnets between them, and join the geodesics by PolySnake")
 }
 

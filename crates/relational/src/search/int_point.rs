@@ -15,9 +15,9 @@ use moldloft_registry::{
 
 /// The point that three planes, surfaces or zero sets of fields have in common.
 ///
-/// With magnets instead of surfaces it is the one that Newton's method from there leads to. Without
-/// them all are looked for: the one nearest to `near` is taken, or that nearest to the middle of the
-/// surfaces' parameters, and the others are reported.
+/// With magnets instead of surfaces it is the point found by Newton's method from there. Without
+/// them all points are sought: the one nearest to `near`, by default nearest to the middle of the
+/// surfaces' parameters, is the result, and the others are reported.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -29,13 +29,13 @@ use moldloft_registry::{
                Line o(G, H); RuledSurf T(n, o); IntPoint r(S, T, y);"
 )]
 pub struct IntPoint<T: Real> {
-    /// A plane, a surface (or a magnet of it near the point that is meant), or a field.
+    /// A plane, a surface (or a magnet on it near the intended point), or a field.
     shape1: Target<T>,
     /// Another.
     shape2: Target<T>,
     /// A third.
     shape3: Target<T>,
-    /// Of several common points the one nearest to this is meant.
+    /// Selects the nearest of several common points.
     near: Option<Point<T>>,
 }
 
@@ -141,7 +141,7 @@ fn planes<T: Real>(
             break;
         }
     }
-    Err(CallError::new("no-intersection", "the search for the common point came to no end")
+    Err(CallError::new("no-intersection", "the search for the common point did not converge")
         .expected("shapes that have a point in common near the start")
         .found(format!("a last step of {last:.3e}"))
         .help("give a point nearer to it"))

@@ -15,20 +15,20 @@ use moldloft_registry::{
     SurfaceRef, Value,
 };
 
-/// The curve along which a surface meets a plane or another surface, as a snake of the first; its
-/// parameter is the share of its length.
+/// The intersection of a surface with a plane or another surface, as a snake on the first; its
+/// parameter is the fraction of its length.
 ///
-/// From a magnet the branch through the place nearest to it is taken; from a bare surface the one
-/// that comes nearest to its middle (that of the surface declared first), and others are reported. The snake runs along n1 x n2, the
-/// product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
-/// lie on the intersection and give it their identity there, so that patches join. A closed branch
-/// begins at the place nearest to the magnet or, without one, to S(0.3, 0.4) of the surface that is
-/// declared first: so cuts of two surfaces, each of the other, are one curve. Each point of it lies on
-/// both, to rounding. Across the seam of a closed surface it runs on: its place
-/// on the surface goes over from u = 1 to u = 0 there.
+/// A magnet selects the branch nearest to it; a bare surface, the branch nearest to its middle (of
+/// the surface declared first). Other branches are reported. The snake has the direction n1 x n2,
+/// the product of both normals, from edge to edge; or runs from the magnet `start` to the magnet
+/// `end`, which must be on the intersection and keep their identity, so that patches join. A closed
+/// branch begins at the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface
+/// declared first: cuts of two surfaces by each other are one curve. Each of its points is on both
+/// shapes, to rounding. It crosses the seam of a closed surface, where its parameter on the surface
+/// changes from u = 1 to u = 0.
 ///
-/// All branches longer than 2 % of the size are found that cross at an angle somewhere. Where the
-/// shapes only touch there is none.
+/// All branches longer than 2 % of the size with a transversal point are found. Shapes that only
+/// touch have no intersection.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -40,15 +40,15 @@ use moldloft_registry::{
                IntRing r(x, \"y=0\", {0, 1, 0}); AbsMagnet near(S, 0.5, 0.5); IntSnake y(near, T, start = r);"
 )]
 pub struct IntSnake<T: Real> {
-    /// The surface that the snake lies on, or a magnet of it near the branch that is meant.
+    /// The surface of the snake, or a magnet on it near the intended branch.
     surface: Onto<T>,
-    /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
+    /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
     /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,
-    /// For a plane: the parallel plane through this point is meant.
+    /// With a plane: selects the parallel plane through this point.
     point: Option<Point<T>>,
 }
 
@@ -61,8 +61,8 @@ impl<T: Real> Build<T> for IntSnake<T> {
     }
 }
 
-/// The curve in space along which a surface meets a plane, another surface or the zero set of a
-/// field, as [`IntSnake`], where the surface it is on does not matter.
+/// The intersection of a surface with a plane, another surface or the zero set of a field, as a
+/// curve in space: [`IntSnake`] without its surface.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -72,15 +72,15 @@ impl<T: Real> Build<T> for IntSnake<T> {
                AbsBead b(c, 0.5);"
 )]
 pub struct IntCurve<T: Real> {
-    /// The surface, or a magnet of it near the branch that is meant.
+    /// The surface, or a magnet on it near the intended branch.
     surface: Onto<T>,
-    /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
+    /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
     /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,
-    /// For a plane: the parallel plane through this point is meant.
+    /// With a plane: selects the parallel plane through this point.
     point: Option<Point<T>>,
 }
 

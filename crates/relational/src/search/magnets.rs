@@ -33,8 +33,8 @@ fn magnet<T: Real>(
     Ok(Value::Point(Box::new(Point::on_surface(onto.surface, u, v).with_found(found))))
 }
 
-/// The foot of a point on a surface. With `edges` a foot on an edge is as good as any, and the
-/// nearest of the whole surface is meant.
+/// The foot of a point on a surface. With `edges` a foot on an edge is admissible, and the result
+/// is the nearest of the whole surface.
 pub(super) fn foot<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,
@@ -111,7 +111,7 @@ pub(super) fn on_ray<T: Real>(
 /// The projection of a point onto a surface: along the surface's normal (the foot of the
 /// perpendicular), along a direction, or away from a point.
 ///
-/// From a magnet it is what Newton's method leads to; without one the nearest of all. A foot
+/// From a magnet it is the foot found by Newton's method; without one, the nearest of all. A foot
 /// beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
@@ -125,10 +125,10 @@ pub(super) fn on_ray<T: Real>(
 pub struct ProjMagnet<T: Real> {
     /// The point to project.
     point: Point<T>,
-    /// The surface, or a magnet of it near the place that is meant.
+    /// The surface, or a magnet on it near the intended point.
     surface: Onto<T>,
-    /// Along what: a plane's normal, a line's direction, or away from a point. Not given: along
-    /// the surface's own normal.
+    /// Direction of projection: a plane's normal, a line's direction, or rays from a point.
+    /// Default: the surface's own normal.
     mirror: Option<MirrorArgument<T>>,
 }
 
@@ -165,7 +165,7 @@ impl<T: Real> Build<T> for ProxMagnet<T> {
     }
 }
 
-/// The point where a curve goes through a surface, as a point of the surface: C(t) = S(u, v).
+/// The intersection of a curve with a surface, as a point of the surface: C(t) = S(u, v).
 ///
 /// The bead names the curve and a start t, the magnet the surface and a start (u, v).
 #[derive(Kind)]
@@ -200,7 +200,7 @@ impl<T: Real> Build<T> for IntMagnet<T> {
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); XYZMagnet m1(S, \"x\", 1, \"z\", 0.75);"
 )]
 pub struct XYZMagnet<T: Real> {
-    /// The surface, or a magnet of it near the place that is meant.
+    /// The surface, or a magnet on it near the intended point.
     surface: Onto<T>,
     /// The first coordinate: "x", "y" or "z".
     axis1: Arc<str>,
@@ -248,7 +248,7 @@ impl<T: Real> Build<T> for XYZMagnet<T> {
                TanMagnet q(p, 0.5, -0.25);"
 )]
 pub struct TanMagnet<T: Real> {
-    /// The magnet it is relative to.
+    /// Reference magnet.
     magnet: crate::arguments::Magnet<T>,
     /// Distance along u.
     #[field(default = 0)]

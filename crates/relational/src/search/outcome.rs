@@ -60,7 +60,7 @@ pub fn tangent() -> CallError {
 
 /// The fault of an iteration that came to nothing.
 pub fn diverged(report: &LocateReport) -> CallError {
-    CallError::new("no-convergence", "the search for the nearest point came to no end")
+    CallError::new("no-convergence", "the search for the nearest point did not converge")
         .found(format!("a residual of {:.3e}", report.residual))
         .help("give a start near the place that is meant")
 }

@@ -35,8 +35,8 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
 ///
 /// On the zero set of a field it is the foot found by descent along the field.
 ///
-/// On a surface it is the nearest foot; from a magnet of the surface the one that descent from
-/// there leads to. A foot beyond an edge is clamped to the edge and reported.
+/// On a surface it is the nearest foot; from a magnet of the surface, the foot found by descent
+/// from there. A foot beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
     class = Point,

@@ -33,10 +33,10 @@ const TABLE_ACCURACY: f64 = 1e-13;
 /// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
 /// normals, along a direction, or away from a point.
 ///
-/// The foot of the start of the curve is found first, near the magnet if one is given; from there
-/// the projection follows the curve without a jump. Each point of it is on the surface and is
-/// the projection to rounding. Where the projection leaves the surface or grazes it, there is no
-/// snake.
+/// The foot of the start of the curve is found first, near the magnet if one is given; the
+/// projection follows the curve from there continuously. Each of its points is on the surface and
+/// is the projection to rounding. A projection that leaves the surface or is tangent to it is an
+/// error.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -51,8 +51,8 @@ pub struct ProjSnake<T: Real> {
     curve: CurveRef<T>,
     /// The surface, or a magnet of it near the projection of the start of the curve.
     surface: Onto<T>,
-    /// Along what: a plane's normal, a line's direction, or away from a point. Not given: along
-    /// the surface's own normals.
+    /// Direction of projection: a plane's normal, a line's direction, or rays from a point.
+    /// Default: the surface's own normals.
     mirror: Option<MirrorArgument<T>>,
     /// Magnets at the two ends, which other snakes end in too, so that patches join there.
     #[field(default)]

@@ -7,10 +7,11 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, V
 
 /// The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
 ///
-/// It runs as the fillet's u does. A part of the surface that ends in it (`SubSurf`, `TrimSurf`) has the
-/// fillet's vertices there, by identity: rings at t = 0 and 1 are the corners. Over the seam of a closed
-/// surface it runs on, its place going over from 1 to 0; where the way of a ball that rolls round
-/// begins is chosen by the magnet given to the fillet, and at the seam the snake is without a jump.
+/// Its parameter is the fillet's u. A part of the surface bounded by it (`SubSurf`, `TrimSurf`)
+/// shares the fillet's vertices, which are the rings at t = 0 and 1. It crosses the seam of a
+/// closed surface, where its parameter jumps from 1 to 0; the magnet of the fillet chooses the
+/// start of the path of a ball that rolls round the whole surface, and a start at the seam avoids
+/// the jump.
 #[derive(Kind)]
 #[kind(
     class = Snake,

@@ -9,9 +9,9 @@ use moldloft_registry::{Build, CallError, Context, Kind, Value};
 foil_kind!(
     /// A foil section in the parameter plane of a surface, between 3, 4 or 5 magnets, as a foil curve.
     ///
-    /// It is a true foil in space only where the surface is a scaled plane; on a cylinder with u its
-    /// angle and v a length, `metric` = {radius^2, 0, 1} makes thickness perpendicular to the chord as
-    /// measured on the unrolled surface.
+    /// The section is a true foil in space only if the surface is a scaled plane. On a cylinder
+    /// with u the angle and v a length, `metric` = {radius^2, 0, 1} makes the thickness
+    /// perpendicular to the chord on the unrolled surface.
     #[derive(Kind)]
     #[kind(
         class = Snake,
@@ -25,7 +25,7 @@ foil_kind!(
     FoilSnake {
         /// Three, four or five magnets of one surface.
         magnets (MAGNETS): Magnet<T>,
-        /// Metric of the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
+        /// Metric of the parameter plane: {uu, uv, vv}; default: {1, 0, 1}.
         metric (METRIC): Option<Vec3<T>>,
     }
 );

@@ -7,7 +7,7 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::sync::Arc;
 
-/// What a snake along edge `k` (0..4: v = 0, u = 1, v = 1, u = 0) of a surface runs along.
+/// The trace of a snake along edge `k` (0..4: v = 0, u = 1, v = 1, u = 0) of a surface.
 pub fn edge_trace<T: Real>(surface: &SurfaceRef<T>, k: usize) -> Trace<T> {
     let mut edges = surface.edges();
     match std::mem::replace(&mut edges.edges[k], Edge::Own) {
@@ -76,7 +76,7 @@ pub fn edge<T: Real>(surface: SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef
 
 /// A parameter line of a surface: X(t) = S(value, t), or X(t) = S(t, value).
 ///
-/// At the values 0 and 1 it is the edge of the surface itself, for meshes that join there.
+/// At the values 0 and 1 it is the edge of the surface itself and joins in meshes.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -88,9 +88,9 @@ pub fn edge<T: Real>(surface: SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef
 pub struct UVSnake<T: Real> {
     /// The surface.
     surface: SurfaceRef<T>,
-    /// The parameter that is held: "u" or "v". The snake runs along the other.
+    /// Constant parameter, "u" or "v"; the snake runs along the other.
     parameter: Arc<str>,
-    /// The value at which it is held.
+    /// Value of the constant parameter.
     value: T,
 }
 

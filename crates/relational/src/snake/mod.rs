@@ -1,4 +1,4 @@
-//! Snakes: curves on surfaces, given in the surface's parameter plane.
+//! Snakes: curves on surfaces, defined in the surface's parameter plane.
 
 mod contact;
 mod foil;

@@ -9,7 +9,7 @@ use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::InterpolatingSpline;
 
-/// The places of magnets, and the surface that they all lie on; they are the list in `field`.
+/// Parameters of magnets and their common surface; the magnets are the list in `field`.
 fn places<T: Real>(
     magnets: &[Magnet<T>],
     field: FieldId,
@@ -25,7 +25,7 @@ fn places<T: Real>(
     Ok((surface, magnets.iter().map(|m| flat(m.uv)).collect()))
 }
 
-/// The three places of these fields.
+/// Parameters of the magnets in these three fields.
 fn three<T: Real>(
     m: [&Magnet<T>; 3],
     fields: [FieldId; 3],
@@ -143,7 +143,7 @@ pub struct NURBSnake<T: Real> {
     degree: usize,
     /// Knots, end knots included, ascending.
     knots: Option<Vec<T>>,
-    /// Weights of the magnets, positive; of `places` too, between those of the two magnets.
+    /// Weights of the magnets, positive; those of `places` between those of the two magnets.
     weights: Option<Vec<T>>,
     /// Control points that are no objects, as u, v, u, v, ...: they are between the first magnet and the second, and there
     /// are no other magnets.
@@ -192,7 +192,7 @@ pub struct ConicSnake<T: Real> {
     /// Start of the snake.
     #[field(angle, default = 0)]
     a1: T,
-    /// End; a full turn when not given.
+    /// End angle; default: a full turn.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -222,7 +222,7 @@ impl<T: Real> Build<T> for ConicSnake<T> {
                RelSnake t(s, a, b);"
 )]
 pub struct RelSnake<T: Real> {
-    /// The snake it is relative to.
+    /// Reference snake.
     snake: Snake<T>,
     /// Start, on the same surface.
     m1: Magnet<T>,
@@ -253,7 +253,7 @@ impl<T: Real> Build<T> for RelSnake<T> {
                LineSnake s(p, q); CopySnake t(s, T);"
 )]
 pub struct CopySnake<T: Real> {
-    /// The snake whose path is copied.
+    /// Snake with the path.
     snake: Snake<T>,
     /// The target surface.
     surface: SurfaceRef<T>,

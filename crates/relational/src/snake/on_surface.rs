@@ -12,7 +12,7 @@ pub struct OnSurface<T: Real, P> {
     pub surface: SurfaceRef<T>,
     /// The path.
     pub path: P,
-    /// What the curve runs along.
+    /// Curves and points that it follows.
     pub trace: Trace<T>,
 }
 
@@ -25,13 +25,13 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
         jet
     }
 
-    /// Those of the path, and where it crosses those of the surface.
+    /// Breaks of the path, and crossings with those of the surface.
     fn breaks(&self) -> Vec<f64> {
         let mut breaks = self.path.breaks();
         let mut spans = vec![0.0];
         spans.extend(&breaks);
         spans.push(1.0);
-        // Each line of the surface is looked for at the same places of the path.
+        // All lines of the surface are sought at the same parameters of the path.
         let known: RefCell<HashMap<u64, [f64; 2]>> = RefCell::default();
         let path = |t: f64| {
             *known.borrow_mut().entry(t.to_bits()).or_insert_with(|| {

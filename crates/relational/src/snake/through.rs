@@ -21,7 +21,7 @@ pub(super) fn snake<T: Real>(
     Ok(Value::Curve(CurveRef::snake(shape, surface, nesting)))
 }
 
-/// A place of the parameter plane.
+/// A point of the parameter plane.
 pub(super) fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
     Vec3::new(u, v, T::zero())
 }

@@ -8,9 +8,9 @@ use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SolidRef, Surf
 /// A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
 /// ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
 ///
-/// The parameters of a face are the solid's other two, in order: (v, w), (u, w), (u, v). A surface that
-/// runs otherwise is turned by its number in `turns`: 1 if its u runs along the second of the two, plus
-/// 2 if its u and plus 4 if its v runs against the solid's. Faces must meet along the twelve edges.
+/// The parameters of a face are the solid's other two, in order: (v, w), (u, w), (u, v). A surface
+/// of another orientation has a number in `turns`: 1 if its u is the second of the two, plus 2 if
+/// its u and plus 4 if its v is opposite to the solid's. Faces must meet along the twelve edges.
 #[derive(Kind)]
 #[kind(
     class = Solid,
@@ -29,7 +29,7 @@ pub struct BlendSolid<T: Real> {
     /// The six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1.
     #[field(min_items = 6)]
     surfaces: Vec<SurfaceRef<T>>,
-    /// Orientation of each surface, 0 to 7; all 0 if not given.
+    /// Orientation of each surface, 0 to 7; default: all 0.
     turns: Option<Vec<usize>>,
 }
 
@@ -69,7 +69,7 @@ struct CoonsSolid<T: Real> {
     turns: [Turn; 6],
 }
 
-/// The parameters of the two ends of a way along `axis` at the low or high side of the other axes.
+/// The other two axes of `axis`.
 const fn others(axis: usize) -> [usize; 2] {
     match axis {
         0 => [1, 2],
@@ -78,14 +78,14 @@ const fn others(axis: usize) -> [usize; 2] {
     }
 }
 
-/// How far apart edges that should meet may be, as a share of the size of the solid.
+/// Maximum distance between edges at a common edge, relative to the size of the solid.
 const MEETING: f64 = 1e-9;
 
 /// The parameters at which edges are compared.
 const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
 impl<T: Real> CoonsSolid<T> {
-    /// The position on face 0..6, turned so, at two of the three parameters.
+    /// The position on face 0..6, in its orientation, at two of the three parameters.
     fn turned<J: Jet<T>>(&self, face: usize, turn: Turn, at: [J; 3]) -> Vec3<J> {
         let [a, b] = others(face / 2);
         let [u, v] = turn.place(at[a], at[b]);
@@ -96,7 +96,7 @@ impl<T: Real> CoonsSolid<T> {
         self.turned(face, self.turns[face], at)
     }
 
-    /// The largest distance between two faces, turned so, along their common edge.
+    /// The largest distance between two faces, in their orientations, along their common edge.
     fn gap(&self, [a, b]: [usize; 2], [s, t]: [Turn; 2]) -> (f64, [f64; 3]) {
         let along = 3 - a / 2 - b / 2;
         let mut worst = (0.0, [0.0; 3]);
@@ -171,7 +171,7 @@ impl<T: Real> CoonsSolid<T> {
     }
 }
 
-/// The linear shares of the low and the high side.
+/// The linear weights of the low and the high side.
 fn shares<J: Real>(t: J) -> [J; 2] {
     [-t + 1.0, t]
 }

@@ -8,7 +8,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, SolidRef, SurfaceRef, V
 /// A face of a solid as a surface: 1 is u = 0, 2 is u = 1, 3 is v = 0, 4 is v = 1, 5 is w = 0, 6 is
 /// w = 1. Its parameters are the solid's other two, in order.
 ///
-/// A solid that has it as a face shares the vertices of the first solid there.
+/// Another solid with this surface as a face shares the vertices of the first solid there.
 #[derive(Kind)]
 #[kind(
     class = Surface,

@@ -1,4 +1,4 @@
-//! What solids say of surfaces that are their faces or layers.
+//! Surfaces that are faces or layers of solids: facts known from the solid.
 
 use moldloft_num::Real;
 use moldloft_num::trace::{Edge, Edges, Face, Piece, Root, Turn};

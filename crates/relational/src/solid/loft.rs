@@ -11,8 +11,8 @@ use smallvec::SmallVec;
 
 /// A solid between two surfaces: X(u, v, w) = (1 - w) S1(u, v) + w S2(u, v).
 ///
-/// Solids whose surfaces join along an edge join along the face over it, when they are divided
-/// alike.
+/// Solids whose surfaces join along an edge join along the face over it if they have equal
+/// divisions.
 #[derive(Kind)]
 #[kind(
     class = Solid,

@@ -18,7 +18,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SolidRef, Sur
 pub struct TranSolid<T: Real> {
     /// The face w = 0.
     surface: SurfaceRef<T>,
-    /// The curve along which it is moved.
+    /// Path of the surface.
     curve: CurveRef<T>,
 }
 
@@ -66,12 +66,12 @@ impl<T: Real> SolidFormula for TranslationSolid<T> {
 pub struct SweepSolid<T: Real> {
     /// The face w = 0.
     surface: SurfaceRef<T>,
-    /// The curve along which it is carried.
+    /// Path of the surface.
     path: CurveRef<T>,
     /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
-    /// The direction that stays upright with frame = "up"; z if not given.
+    /// Upright direction of frame = "up"; default: z.
     up: Option<Vec3<T>>,
 }
 

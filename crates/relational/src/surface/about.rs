@@ -17,7 +17,7 @@ impl<T: Real> About<T> {
         Self { point: line.point, along, across: [first, along.cross(first)] }
     }
 
-    /// Turns places into coordinates; each angle is within half a turn of the one before.
+    /// Converts points to coordinates; each angle is within half a turn of the one before.
     pub fn coordinates<S: Jet<T>>(&self, points: &mut [Vec3<S>]) {
         let fixed = |v: Vec3<T>| v.map(S::fixed);
         let [e1, e2] = self.across.map(fixed);
@@ -33,7 +33,7 @@ impl<T: Real> About<T> {
         }
     }
 
-    /// The place, and its derivatives, of coordinates with theirs.
+    /// The point with its derivatives, from coordinates with theirs.
     pub fn places<S: Jet<T>>(&self, [q, d, dd]: CurveJet<S>) -> CurveJet<S> {
         let fixed = |v: Vec3<T>| v.map(S::fixed);
         let [e1, e2] = self.across.map(fixed);

@@ -7,12 +7,12 @@ use moldloft_num::{Jet, Real};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::{ArcError, CircularArc};
 
-/// Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
-/// those of the curves at u.
+/// A surface of circular arcs by three curves: at each u the arc, of a type as for `Arc`, by the
+/// three points of the curves at u.
 ///
-/// Where the three points are in line types 1, 3 and 4 are straight when the second lies between the
-/// others, and have no finite radius when it lies beyond; types 5 and 6 have no plane there. Such u
-/// are refused and named.
+/// If the three points are collinear, types 1, 3 and 4 are straight for a second point between the
+/// others and have no finite radius for one outside, and types 5 and 6 have no plane: such u are an
+/// error that names u.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -67,7 +67,7 @@ struct ArcLoft<T: Real> {
 }
 
 impl<T: Real> ArcLoft<T> {
-    /// What is wrong with the arc at `u`, and what was expected.
+    /// The error of the arc at `u`, and the expected condition.
     fn trouble(&self, u: f64) -> Option<(&'static str, &'static str)> {
         let points = self.masters.at(T::from(u));
         let [p, q, r] = [0, 1, 2].map(|k| points[k].re());
@@ -82,7 +82,7 @@ impl<T: Real> ArcLoft<T> {
             }
             Err(ArcError::NotFinite { .. }) => Some(("a point is not finite", "finite points")),
             Ok(_) => {
-                // The angle of the arc comes near a full turn when the second point lies beyond.
+                // The angle of the arc approaches a full turn for a second point outside.
                 let (a, b) = match self.kind {
                     1 => (q - p, r - q),
                     3 => (q - p, r - p),
@@ -117,14 +117,14 @@ impl<T: Real> Column for ArcLoft<T> {
     }
 
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
-        // Neither the end of an arc nor that of a section need lie on a master.
+        // The end of an arc or of a section need not be on a master.
         match k % 2 {
             0 => Vec::new(),
             _ => self.masters.edge_made_of(k),
         }
     }
 
-    /// Where arcs begin and end on masters, edges run along them; a full circle closes.
+    /// Edges follow the masters on which arcs begin and end; a full circle closes the surface.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.edges();
         let curves = self.masters.curves();

@@ -10,11 +10,11 @@ use std::sync::Arc;
 
 /// A bump on a surface inside a closed snake: a sonar dome, a blister of a fairing, a bulge round a shaft.
 ///
-/// S(u, v) = P(w) + h b(v) n(w), with w on the straight line of the parameter plane from the snake at u
-/// (v = 0) to the magnet (v = 1), n the unit normal of the surface P and b a polynomial from 0 to 1. At
-/// the edge the bump is "sharp" (b' is not 0 there), "tangent" to the surface (b' = 0), or "curvature"
-/// (b' = b'' = 0, the curvatures agree as well); its top is "round" (b' = 0 at v = 1) or "pointed". It
-/// joins what else is built on the snake.
+/// S(u, v) = P(w) + h b(v) n(w), with w on the straight line of the parameter plane from the snake
+/// at u (v = 0) to the magnet (v = 1), n the unit normal of the surface P and b a polynomial from 0
+/// to 1. Edge of the bump: "sharp" (b' non-zero), "tangent" to the surface (b' = 0), or "curvature"
+/// (b' = b'' = 0, equal curvatures too). Top: "round" (b' = 0 at v = 1) or "pointed". It joins
+/// other objects on the same snake.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -40,7 +40,7 @@ pub struct Blister<T: Real> {
     top: BumpTop,
 }
 
-/// How a bump leaves the surface.
+/// Contact of a bump with the surface at its edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BumpEdge {
     /// At an angle.
@@ -51,7 +51,7 @@ pub enum BumpEdge {
     Curvature,
 }
 
-/// What a bump is at its highest.
+/// Shape of a bump at its top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BumpTop {
     /// Level.
@@ -118,7 +118,7 @@ struct Bump<T: Real> {
 }
 
 impl<T: Real> Bump<T> {
-    /// The share of the height at v: the polynomial of least degree that meets the conditions.
+    /// The fraction of the height at v: the polynomial of least degree that meets the conditions.
     fn share<J: Jet<T>>(&self, v: J) -> J {
         let square = v * v;
         match (self.edge, self.top) {

@@ -86,11 +86,11 @@ pub struct NURBSurf<T: Real> {
     /// Polynomial degree in v.
     #[field(default = 3, min = 1, max = 25)]
     degree_v: usize,
-    /// Positive weights in the order of the points; all 1 if not given.
+    /// Positive weights in the order of the points; default: all 1.
     weights: Option<Vec<T>>,
-    /// Knots in u: nu + degree_u + 1 ascending numbers; uniform if not given.
+    /// Knots in u: nu + degree_u + 1 ascending numbers; default: uniform.
     knots_u: Option<Vec<T>>,
-    /// Knots in v: nv + degree_v + 1 ascending numbers; uniform if not given.
+    /// Knots in v: nv + degree_v + 1 ascending numbers; default: uniform.
     knots_v: Option<Vec<T>>,
 }
 
@@ -151,7 +151,7 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
     }
 }
 
-/// A B-spline surface that knows the point objects at its corners.
+/// A B-spline surface with the point objects at its corners.
 struct KeyedBSpline<T: Real> {
     surface: BSplineSurface<T>,
     corners: [Option<Key>; 4],

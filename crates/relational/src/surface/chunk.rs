@@ -3,19 +3,19 @@
 use moldloft_num::{Real, Vec3};
 use std::marker::PhantomData;
 
-/// How many parameters v are evaluated together: few enough for the fastest cache.
+/// Number of parameters v that are evaluated together; the data fit in the first-level cache.
 pub const LANES: usize = 64;
 
 /// One plain number at each of the parameters.
 pub type Plane = [f64; LANES];
 
-/// Runs loops with the widest registers that the processor has. Each number is computed as it is
-/// with narrow ones, in the same order, without fused operations: the bits are the same.
+/// Runs loops with the widest registers of the processor. Operations and their order are those of
+/// narrow registers, without fused operations: the bits are the same.
 pub fn widest<R>(loops: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(loops)
 }
 
-/// What a chunk holds.
+/// Contents of a chunk.
 #[derive(Clone, Copy)]
 pub enum ChunkQuantity {
     /// Positions.
@@ -92,7 +92,7 @@ impl<T: Real> Chunk<T> {
                 dz[j] = (z - nz[j] * along) * self.inverse[j];
             }
         }
-        // Here the three coordinates of a part stand together.
+        // Here the three coordinates of a part are adjacent.
         for (j, normal) in out.iter_mut().enumerate().take(n) {
             let of = |axis: usize| T::from_parts(|k| self.normals[3 * k + axis][j]);
             *normal = Vec3 { x: of(0), y: of(1), z: of(2) };

@@ -194,7 +194,7 @@ fn is_one_point<T: Real>(points: &[Vec3<T>]) -> bool {
     points.iter().all(|p| near(p.re()))
 }
 
-/// Where the knots of a loft are.
+/// Knots of a loft.
 #[derive(Clone, Copy)]
 enum Knots {
     /// At chord lengths.
@@ -209,7 +209,7 @@ struct Loft<T: Real> {
     masters: Masters<T>,
     knots: Knots,
     ends: EndRule,
-    /// Of clamped ends.
+    /// End slopes of clamped ends.
     slopes: Option<[Vec3<T>; 2]>,
     about: Option<About<T>>,
 }
@@ -278,8 +278,8 @@ impl<T: Real> Loft<T> {
         }
     }
 
-    /// The spline of one column. Where masters meet, which only a column that is one point was let
-    /// pass with, its knots are uniform; where a master is not finite there is none.
+    /// The spline of one column. Coincident masters, accepted only for a column of one point, have
+    /// uniform knots; with a master that is not finite there is no spline.
     fn column<S: Jet<T>>(&self, points: &[Vec3<S>]) -> Option<InterpolatingSpline<S>> {
         let spline = self.spline(points).or_else(|_| {
             let last = (points.len() - 1) as f64;
@@ -423,8 +423,8 @@ impl<T: Real> Surface<T> for Loft<T> {
         );
     }
 
-    /// The knots across the masters move with u, so no line v = const is one at which only
-    /// derivatives jump; of those lines none is reported.
+    /// The knots across the masters depend on u, so no line v = const has jumps of derivatives
+    /// alone; none of those lines is reported.
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.masters.breaks(), Vec::new()]
     }
@@ -467,7 +467,7 @@ fn rebased<S: Real>(spline: &PiecewiseCubic<S>, piece: usize) -> (f64, [Vec3<S>;
     )
 }
 
-/// The pieces of the spline with the stretch of `vs`, at most [`LANES`] long, that each serves.
+/// The pieces of the spline, each with its interval of `vs` of at most [`LANES`] parameters.
 fn stretches<'a, S: Real>(
     spline: &'a PiecewiseCubic<S>,
     vs: &'a [f64],

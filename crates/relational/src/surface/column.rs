@@ -10,7 +10,7 @@ pub trait Column: Send + Sync {
     type Scalar: Real;
     /// The curves, over any scalar.
     type Across<S: Real>: Curve<S>;
-    /// The curve at `u`; `None` where there is none.
+    /// The curve at `u`, or `None`.
     fn across<J: Jet<Self::Scalar>>(&self, u: J) -> Option<Self::Across<J>>;
     /// See [`Surface::breaks`].
     fn breaks(&self) -> [Vec<f64>; 2];

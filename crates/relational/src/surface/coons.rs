@@ -11,8 +11,8 @@ use moldloft_registry::{
 /// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
 /// parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
 ///
-/// Of three curves the edge u = 0 is the point where the first and the third begin. Curves that do
-/// not meet at the corners are errors; they are never reversed.
+/// With three curves the edge u = 0 is the point at which the first and the third begin. Curves
+/// that do not meet at the corners are errors; they are never reversed.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -72,8 +72,8 @@ pub struct CoonsBoundary<T: Real> {
     pub corners: [Vec3<T>; 4],
 }
 
-/// How far apart ends that should meet may be, as a share of the size of the patch: what joins of
-/// panels take as one place.
+/// Maximum distance between ends at a corner, relative to the size of the patch: the tolerance for
+/// one point in joins of panels.
 const MEETING: f64 = 1e-9;
 
 impl<T: Real> CoonsBoundary<T> {
@@ -147,7 +147,7 @@ impl<T: Real> CoonsBoundary<T> {
 
 struct CoonsPatch<T: Real> {
     boundary: CoonsBoundary<T>,
-    /// 16 times the way from the middle of the Coons patch to the centre.
+    /// 16 times the vector from the middle of the Coons patch to the centre.
     lift: Option<Vec3<T>>,
 }
 

@@ -1,4 +1,4 @@
-//! Whether the sides of a patch meet at its corners.
+//! Check that the sides of a patch meet at its corners.
 
 use moldloft_num::Vec3;
 use moldloft_registry::{CallError, FieldId};
@@ -12,13 +12,13 @@ const FOUR: [Corner; 4] = [[(0, 1), (1, 0)], [(1, 1), (2, 1)], [(2, 0), (3, 1)],
 /// The corners of three, the fourth being the point where the first and the third begin.
 const THREE: [Corner; 3] = [[(0, 1), (1, 0)], [(1, 1), (2, 1)], [(2, 0), (0, 0)]];
 
-/// The corners of so many sides.
+/// Corners of a patch of `count` sides.
 pub fn of(count: usize) -> &'static [Corner] {
     if count == 3 { &THREE } else { &FOUR }
 }
 
-/// Refuses sides (in the list of field `field`) whose ends are farther apart than `tolerance` by
-/// `distance`; `place` spells a place.
+/// Error for sides (in the list of field `field`) whose ends are farther apart than `tolerance` by
+/// `distance`; `place` formats a position.
 pub fn check(
     ends: &[[Vec3<f64>; 2]],
     tolerance: f64,

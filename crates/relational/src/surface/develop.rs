@@ -15,11 +15,11 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, V
 /// rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
 /// = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 ///
-/// Rulings run from that of both starts to that of both ends. Where those are no rulings of the plate,
-/// fans complete it: cones about an end of a curve. By itself u is (s + t) / 2, and no edge is
-/// divided as its curve is: build neighbours on an EdgeSnake of this surface. With `along` = "c1" (or
-/// "c2") u is the parameter of that curve, so that meshes join along it; a fan about one of its ends
-/// is refused then. It is refused where no pair of places has a common tangent plane, or rulings would
+/// The rulings run from the ruling of both starts to that of both ends; cones about an end of a
+/// curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and
+/// no edge has the divisions of its curve: build neighbours on an EdgeSnake of this surface. With
+/// `along` = "c1" (or "c2") u is the parameter of that curve and meshes join along it; a fan about
+/// one of its ends is then an error. Errors: no pair of points has a common tangent plane; rulings
 /// cross between the curves.
 #[derive(Kind)]
 #[kind(
@@ -35,7 +35,7 @@ pub struct DevSurf<T: Real> {
     c1: CurveRef<T>,
     /// Edge v = 1.
     c2: CurveRef<T>,
-    /// Whose parameter u is: "both", "c1" or "c2".
+    /// Curve or curves whose parameter is u: "both", "c1" or "c2".
     #[field(default = "both")]
     along: NamedOption,
 }
@@ -55,19 +55,19 @@ impl<T: Real> Build<T> for DevSurf<T> {
     }
 }
 
-/// What rules between two stations.
+/// Rule between two stations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
     /// Rulings with one tangent plane.
     Rulings,
     /// A fan: one of s and t stays at 0 or 1.
     Fan {
-        /// True when it is s that stays.
+        /// True if s is constant.
         first: bool,
         /// Where.
         end: f64,
     },
-    /// The curves lie in one plane: any pairing does, so equal parameters are paired.
+    /// The curves are coplanar: any pairing is developable, so equal parameters are paired.
     Flat,
 }
 
@@ -122,7 +122,7 @@ impl<T: Real> DevelopableSurface<T> {
         Ok(plate)
     }
 
-    /// Where phases meet, and where rulings reach breaks of the curves.
+    /// Breaks: ends of phases, and rulings at breaks of the curves.
     fn find_breaks(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.phases[1..].iter().map(|(u, _)| *u).collect();
         let mut ends = vec![0.0];
@@ -219,7 +219,7 @@ impl<T: Real> Implicit<T, 1> for Tangency<'_, T> {
         let [c, c1, c2] = self.curves[0].jet(u + w * self.a, Order::Second);
         let [d, d1, d2] = self.curves[1].jet(u - w * self.b, Order::Second);
         let ruling = d - c;
-        // The change of the ruling lies in the plane of both tangents.
+        // The change of the ruling is in the plane of both tangents.
         let by_s = c2.cross(d1).dot(ruling);
         let by_t = c1.cross(d2).dot(ruling);
         [[by_s * self.a - by_t * self.b]]
@@ -248,7 +248,7 @@ impl<T: Real> Column for DevelopableSurface<T> {
         }
     }
 
-    /// An edge runs along its curve when u is that curve's parameter; the ends are rulings.
+    /// An edge follows its curve if u is that curve's parameter; the ends are rulings.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.straight_edges();
         if self.a != 0.0 {

@@ -8,14 +8,14 @@ use moldloft_num::trace::Edges;
 use moldloft_num::{Frame, Jet, Order, Real, Vec3, gauss_points};
 use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
-/// A developable surface laid flat: the plate before it is bent, with all lengths and angles as on the
+/// A developable surface unrolled: the plate before bending, with lengths and angles of the
 /// surface, at equal parameters.
 ///
-/// Its lines u = const must be straight with one tangent plane along each, as those of DevSurf, of cones
-/// and of cylinders are. The plate lies in the xy plane of `frame` (of the world when none is given), its
-/// normal along z: the first ruling along y with its middle at the origin. From ruling to ruling the
-/// direction turns as it does in the tangent plane, which turns along with the surface (parallel
-/// transport; do Carmo 1976, section 4-4). The image of a snake is its CopySnake on the plate.
+/// Its lines u = const must be straight with one tangent plane along each, like those of DevSurf,
+/// cones and cylinders. The plate is in the xy plane of `frame` (default: world), its normal along
+/// z, its first ruling along y with the middle at the origin. From ruling to ruling the direction
+/// turns as in the tangent plane under parallel transport (do Carmo 1976, section 4-4). The image
+/// of a snake is its CopySnake on the plate.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -27,11 +27,11 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 pub struct ExpandedSurf<T: Real> {
     /// The surface to lay flat.
     surface: SurfaceRef<T>,
-    /// The frame in which it is laid.
+    /// Frame whose xy plane contains the plate; default: world axes.
     frame: Option<Frame<T>>,
 }
 
-/// Each smooth stretch along u is integrated in so many parts.
+/// Parts of each smooth piece along u, for integration.
 const PARTS: usize = 12;
 
 /// The sine of the angle by which a tangent plane may turn along a ruling, and by which a ruling may be
@@ -112,7 +112,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallErr
     Ok(())
 }
 
-/// Where the middle of a ruling is laid, and by how much the ruling is turned from the y axis.
+/// Position of the middle of a ruling on the plate, and angle of the ruling from the y axis.
 #[derive(Clone, Copy)]
 struct RulingStation<T> {
     u: f64,
@@ -128,7 +128,7 @@ struct Plate<T: Real> {
 }
 
 impl<T: Real> Plate<T> {
-    /// Refuses a surface whose rulings have no length, or no tangent plane, somewhere.
+    /// Error for a surface with a ruling of zero length or without a tangent plane.
     fn check_stations(&self) -> Result<(), CallError> {
         let laid = |at: &&RulingStation<T>| {
             let numbers = [at.angle, at.place[0], at.place[1], self.turning(T::from(at.u))];
@@ -149,7 +149,7 @@ impl<T: Real> Plate<T> {
         tangents(&*self.surface, u, J::from(0.5))
     }
 
-    /// How fast the ruling turns in the tangent plane.
+    /// Rate of rotation of the ruling in the tangent plane.
     fn turning<J: Jet<T>>(&self, u: J) -> J {
         let [along, across] = self.middle(u);
         let [_, twist, _] = bends(&*self.surface, u, J::from(0.5));
@@ -164,15 +164,15 @@ impl<T: Real> Plate<T> {
         [along.cross(across).norm() / length, along.dot(across) / length]
     }
 
-    /// That step in the plane, where the ruling is turned by `angle` from the y axis.
+    /// That step in the plane, with the ruling at `angle` from the y axis.
     fn laid<J: Jet<T>>([across, along]: [J; 2], angle: J) -> [J; 2] {
         let (c, s) = (angle.cos(), angle.sin());
         [across * c - along * s, across * s + along * c]
     }
 
-    /// The station at a break of the surface, which moves with what the surface depends on. How fast
-    /// follows from the surface on both sides of it, which meet there wherever it is; the stretches
-    /// before and after change by what lies between.
+    /// The station at a break of the surface, whose parameter depends on the model's variables. Its
+    /// derivative follows from the surface on both sides, which are continuous there; the adjacent
+    /// pieces change by the area between.
     fn past_break(&self, at: RulingStation<T>) -> RulingStation<T> {
         let [before, after] = [at.u.next_down(), at.u.next_up()].map(T::from);
         let half = T::from(0.5);
@@ -215,7 +215,7 @@ impl<T: Real> Column for Plate<T> {
         let plain = u.re();
         let k = self.stations.partition_point(|s| s.u <= plain).clamp(1, self.stations.len() - 1);
         let at = self.carried(&self.stations[k - 1], plain);
-        // What of u is not a plain number is small: the midpoint rule is exact to its square.
+        // The non-constant part of u is small: the midpoint rule is exact to its square.
         let du = u - plain;
         let angle_at =
             |share: f64| J::fixed(at.angle) + du * share * self.turning(du * (0.5 * share) + plain);

@@ -10,13 +10,13 @@ use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Surfa
 use std::sync::Arc;
 
 /// A fillet between two snakes, tangent to their surfaces: for each u a cubic from the first snake
-/// at v = 0 to the second at v = 1, whose end tangents lie in the two tangent planes.
+/// at v = 0 to the second at v = 1, with end tangents in the two tangent planes.
 ///
 /// The tangents are perpendicular to the snakes ("perpendicular"), along the chord between the two
-/// snakes as seen in the tangent plane ("chord"), or along a parameter line of the surface ("u",
-/// "v"); they are `m1` and `m2` times as long as the chord (1.17 comes closest to a circular quarter).
-/// With `continuity = 2` it is a quintic whose curvature across equals that of both surfaces, too.
-/// Where snakes are closed, `closed = 1` says that the edges u = 0 and u = 1 are one line.
+/// snakes projected to the tangent plane ("chord"), or along a parameter line of the surface ("u",
+/// "v"). Their lengths are `m1` and `m2` chords; 1.17 is closest to a circular quarter. With
+/// `continuity = 2` it is a quintic that also has the curvature of both surfaces across the edges.
+/// For closed snakes `closed = 1` declares the edges u = 0 and u = 1 as one line.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -40,7 +40,7 @@ pub struct FilletSurf<T: Real> {
     /// Length of the tangent at v = 1, in chords between the snakes.
     #[field(default = 1, min = 0)]
     m2: T,
-    /// 1 for common tangent planes, 2 for common curvature across, too.
+    /// 1: common tangent planes; 2: common curvature across the edges too.
     #[field(default = 1, min = 1, max = 2)]
     continuity: usize,
     /// Direction at the first surface: "perpendicular", "chord", "u" or "v".
@@ -108,7 +108,7 @@ struct FilletSide<T: Real> {
     snake: Snake<T>,
     length: T,
     direction: Direction,
-    /// Which way it leaves along its direction.
+    /// Sign of the end tangent along its direction.
     sign: f64,
 }
 
@@ -120,7 +120,7 @@ struct Fillet<T: Real> {
 }
 
 impl<T: Real> FilletSide<T> {
-    /// The unit direction along increasing v, zero where there is none.
+    /// The unit direction of increasing v, or zero if undefined.
     fn direction<J: Jet<T>>(&self, at: &SnakePoint<J>, chord: Vec3<J>) -> Vec3<J> {
         let raw = match self.direction {
             Direction::Perpendicular => at.normal.cross(at.along),
@@ -208,7 +208,7 @@ impl<T: Real> Fillet<T> {
                     .help("use `continuity = 1`, or move the snake off the pole")
                     .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
             }
-            // The curve itself must not go back either: its control polygon is short enough.
+            // The curve itself must not reverse either: its control polygon is short enough.
             for j in 0..=8 {
                 let v = f64::from(j) / 8.0;
                 let speed = slope(&points, v).dot(chord) / length;

@@ -11,9 +11,9 @@ use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
 /// of the surface.
 ///
 /// The lines v = const are fitted first, then their control points across, which is the fit of the
-/// tensor product; each edge is the fit of the surface's edge. The member `residual` is the greatest
-/// distance between the two at equal parameters. With `accuracy` it is refused when it comes no nearer
-/// than that.
+/// tensor product; each edge is the fit of the surface's edge. The member `residual` is the
+/// greatest distance between surface and fit at equal parameters; a residual above `accuracy` is an
+/// error.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -100,7 +100,7 @@ impl<T: Scalar> Build<T> for NUBFitSurf<T> {
     }
 }
 
-/// So many places of the surface per control point are compared, in each direction.
+/// Points of the surface compared per control point and direction.
 const SAMPLES: usize = 6;
 
 /// The fit with these knots; the fields are theirs, or those of the numbers of points, and that of the

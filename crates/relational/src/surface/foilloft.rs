@@ -12,11 +12,11 @@ foil_kind!(
     /// Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
     /// laid between the points of the curves at u. A wing, a keel, a blade.
     ///
-    /// Of three curves (nose, thickness, tail) v runs from nose to tail; of four (upper tail,
-    /// thickness, nose, lower tail) and five (a lower thickness before the lower tail) from the upper
-    /// tail to the nose, at v = 1/2, and back. The sections of the 6-series have the form of the
-    /// thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose and
-    /// tail are apart.
+    /// With three curves (nose, thickness, tail) v runs from nose to tail; with four (upper tail,
+    /// thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the
+    /// upper tail to the nose at v = 1/2, and back. Sections of the 6-series have the form of the
+    /// thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose
+    /// and tail must be distinct.
     #[derive(Kind)]
     #[kind(
         class = Surface,
@@ -79,7 +79,7 @@ impl<T: Real> Column for FoilLoft<T> {
     }
 
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
-        // Neither the end of an arc nor that of a section need lie on a master.
+        // The end of an arc or of a section need not be on a master.
         match k % 2 {
             0 => Vec::new(),
             _ => self.masters.edge_made_of(k),

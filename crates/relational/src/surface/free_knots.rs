@@ -1,4 +1,4 @@
-//! Rational B-spline surfaces whose knots are scalars: for derivatives by the knots.
+//! Rational B-spline surfaces with scalar knots, for derivatives with respect to the knots.
 
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Jet, Rational, Real, SurfaceFormula, Uni1, Vec3};
@@ -24,7 +24,7 @@ impl<T: Real> FreeKnots<T> {
         let (p, last) = (self.degree, self.knots.len() - self.degree - 2);
         let inner = (p..=last).rev().find(|&i| self.knots[i].re() <= t.re());
         let mut span = inner.unwrap_or(p);
-        // At the end of the domain the last stretch that is none.
+        // At the end of the domain: the last interval of non-zero length.
         while span > p && self.knots[span].re() == self.knots[span + 1].re() {
             span -= 1;
         }
@@ -57,7 +57,7 @@ pub struct FreeNet<T: Real> {
     pub knots: [FreeKnots<T>; 2],
     /// v fastest.
     pub points: Vec<Vec3<T>>,
-    /// As many; all 1 where there are none.
+    /// One weight per control point; default: all 1.
     pub weights: Option<Vec<T>>,
     pub corners: [Option<Key>; 4],
     /// The point objects along the edges.

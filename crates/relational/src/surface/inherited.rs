@@ -3,10 +3,10 @@
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Box3, Order, Real, Surface};
 
-/// Places along an edge at which it is compared.
+/// Points along an edge at which it is compared.
 const TRIALS: usize = 16;
 
-/// How far apart places of one line, or of a pole, may be as a share of the surface's size.
+/// Maximum distance between points of one line, or of a pole, relative to the surface's size.
 const SAME_PARAMETER: f64 = 1e-12;
 
 /// The edges of `own`, which closes and has poles where `parent` does, if it really does so there.

@@ -9,7 +9,7 @@ use moldloft_spline::BSplineCurve;
 /// with these coefficients, which are those of field `field`.
 ///
 /// # Errors
-/// `too-few-items` for none.
+/// `too-few-items` for an empty list.
 pub fn law<T: Real>(
     values: Option<Vec<T>>,
     field: FieldId,

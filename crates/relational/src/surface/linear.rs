@@ -9,7 +9,7 @@ use moldloft_spline::{Basis, KnotVector};
 /// Masters blended by the basis functions of a clamped knot vector.
 pub struct LinearLoft<T: Real> {
     pub masters: Masters<T>,
-    /// As many control points as masters, on [0, 1].
+    /// One control point per master, on [0, 1].
     pub knots: KnotVector,
 }
 

@@ -6,7 +6,7 @@ use moldloft_registry::{
     Build, CallError, Context, Kind, MirrorArgument, Point, SurfaceRef, Value,
 };
 
-/// An affine map: p goes to `to` + A (p - `from`).
+/// An affine map of p to `to` + A (p - `from`).
 enum AffineTransform<T: Real> {
     /// A turn about an axis, with the cosine and sine of its angle.
     Turn(Axis<T>, T, T),
@@ -119,8 +119,7 @@ impl<T: Real> Surface<T> for Image<T> {
 
 /// The mirror image of a surface in a plane, line or point, point by point.
 ///
-/// A plane or point reverses the natural normal; panels keep the side of the original's all the
-/// same.
+/// A plane or point reverses the natural normal; panels keep the orientation of the original.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -143,8 +142,8 @@ impl<T: Real> Build<T> for MirrSurf<T> {
     }
 }
 
-/// A surface turned about a line, right-handed about the direction from the line's start to its end
-/// (Rodrigues). Images of joined surfaces under the same turn are joined.
+/// A surface rotated about a line, right-handed about the direction from the line's start to its
+/// end (Rodrigues). Images of joined surfaces under the same rotation are joined.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -157,7 +156,7 @@ impl<T: Real> Build<T> for MirrSurf<T> {
 pub struct RotatSurf<T: Real> {
     /// The surface to turn.
     surface: SurfaceRef<T>,
-    /// The line about which it is turned.
+    /// Axis of rotation.
     line: Axis<T>,
     /// The angle, in radians (degrees in model files).
     #[field(angle)]
@@ -172,10 +171,11 @@ impl<T: Real> Build<T> for RotatSurf<T> {
     }
 }
 
-/// A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
+/// A copy of a surface, translated and scaled along the axes: p maps to `to` + diag(sx, sy, sz) (p
+/// - `from`).
 ///
-/// A negative product of the three factors reverses the natural normal; panels keep the side of
-/// the original's all the same.
+/// A negative product of the three factors reverses the natural normal; panels keep the orientation
+/// of the original.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -208,7 +208,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
         let factors = Vec3::new(sx, sy, sz);
         let zeros = factors.re().to_array().iter().filter(|f| **f == 0.0).count();
         if zeros > 1 {
-            return Err(CallError::new("no-area", "two factors of 0 leave no surface")
+            return Err(CallError::new("no-area", "two zero factors: the surface has no area")
                 .expected("at most one factor of 0")
                 .found(format!("{zeros} factors of 0"))
                 .in_field(Self::SX));
@@ -219,7 +219,8 @@ impl<T: Real> Build<T> for CopySurf<T> {
     }
 }
 
-/// A surface projected to a plane, along its normal: each point goes to its foot.
+/// A surface projected to a plane along its normal: each point maps to the foot of its
+/// perpendicular.
 ///
 /// The image of a surface perpendicular to the plane degenerates; panels overlap there.
 #[derive(Kind)]
@@ -318,8 +319,8 @@ impl<T: Real> Surface<T> for ProjectedSurface<T> {
     moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
-/// A surface whose four corners are moved to given points: S plus the bilinear blend of the corners'
-/// displacements. Between the corners each edge keeps its shape but for a linear change.
+/// A surface whose four corners are moved to given points: S plus the bilinear blend of the
+/// corners' displacements, which is linear along each edge.
 #[derive(Kind)]
 #[kind(
     class = Surface,

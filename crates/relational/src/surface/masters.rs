@@ -1,4 +1,4 @@
-//! What all lofts have in common: their master curves, and so their edges.
+//! Common part of all lofts: the master curves, and the edges that follow from them.
 
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Jet, Order, Pace, Rational, Real, Uni1, Vec3, Weight};
@@ -52,12 +52,12 @@ impl<T: Real> Masters<T> {
         self.merged(|curve| curve.kinks())
     }
 
-    /// The parameters u at which a master goes over to another formula.
+    /// The parameters u of joints of masters.
     pub fn joints(&self) -> Vec<f64> {
         self.merged(|curve| curve.joints())
     }
 
-    /// What makes surfaces rational that are linear in the masters: one pace along all, and the
+    /// Homogeneous form of surfaces that are linear in the masters: equal speed along all, and the
     /// product of their different weights.
     pub fn rational(&self) -> Rational<2> {
         let all: Vec<Rational<1>> = self.0.iter().map(|c| c.rational()).collect();
@@ -94,8 +94,8 @@ impl<T: Real> Masters<T> {
         self.0.iter().filter_map(|c| c.end_points()[end]).collect()
     }
 
-    /// What the edges are made of: those across the masters of the masters' ends, those along them of
-    /// the first and the last.
+    /// Identity of the edges: ends of the masters for edges across them, first and last master for
+    /// edges along them.
     pub fn edge_made_of(&self, k: usize) -> Vec<Key> {
         match k {
             0 => self.0[0].made_of(),
@@ -128,9 +128,9 @@ impl<T: Real> Masters<T> {
         edges
     }
 
-    /// The edges of a surface that begins with the first master at v = 0 and ends with the last at
-    /// v = 1: those two run along the masters. Where all masters meet in one point object, the
-    /// edge is that point; where each begins and ends in one, the surface closes.
+    /// The edges of a surface from the first master at v = 0 to the last at v = 1, which are its
+    /// edges along u. If all masters meet in one point object, the edge across is that point; if
+    /// each master begins and ends in one point object, the surface is closed.
     pub fn edges(&self) -> Edges<T> {
         let (first, last) = (&self.0[0], &self.0[self.0.len() - 1]);
         let ends: Vec<[Option<Key>; 2]> = self.0.iter().map(|c| c.end_points()).collect();
@@ -154,7 +154,7 @@ pub fn is_closed([start, end]: [Option<Key>; 2]) -> bool {
     start.is_some() && start == end
 }
 
-/// The edge that runs along the whole of a curve.
+/// The edge along the whole of a curve.
 pub fn along<T: Real>(curve: &CurveRef<T>) -> Edge<T> {
     if let Trace::Point(point) = curve.trace() {
         return Edge::Pole(point);

@@ -11,9 +11,9 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 /// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
 /// n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
 ///
-/// At a pole the normal is the limit along the parameter line that ends there. The offset is an error
-/// where the distance exceeds a radius of curvature on that side, since it is folded there, and where
-/// the surface has no normal.
+/// At a pole the normal is the limit along the parameter line that ends there. Errors: a distance
+/// beyond a radius of curvature on that side, which would fold the offset; a surface without a
+/// normal.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -47,10 +47,10 @@ pub fn parallel<T: Real>(surface: SurfaceRef<T>, distance: T, context: &Context)
     SurfaceRef::new(ParallelSurface { surface, distance, edges }, nesting)
 }
 
-/// Each direction of the surface is tried at so many places.
+/// Number of points tested per direction of the surface.
 const TRIALS: usize = 24;
 
-/// The places of a direction: some in each span, and its ends from inside.
+/// The tested parameters of a direction: some in each span, and its ends from inside.
 fn trials(breaks: &[f64]) -> Vec<f64> {
     let mut ends = vec![0.0];
     ends.extend_from_slice(breaks);
@@ -65,7 +65,7 @@ fn trials(breaks: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Refuses a distance beyond a radius of curvature, and places without a normal.
+/// Error for a distance beyond a radius of curvature, and for points without a normal.
 fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallError> {
     let [us, vs] = surface.breaks().map(|b| trials(&b));
     let mut worst: Option<(f64, f64, f64)> = None;
@@ -84,7 +84,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallErro
             .in_field(OffsetSurf::<T>::SURFACE));
         }
         let Some(bends) = curvatures(surface, u, v) else { continue };
-        // How the offset moves on, as a share of the surface's own way: at most 0 where it folds.
+        // Speed of the offset relative to that of the surface: at most 0 at a fold.
         let share = bends.into_iter().map(|k| 1.0 - distance * k).fold(f64::INFINITY, f64::min);
         if worst.is_none_or(|(least, ..)| share < least) {
             worst = Some((share, u, v));
@@ -109,8 +109,8 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallErro
     }
 }
 
-/// The principal curvatures, positive where the surface bends towards its normal; none where it is
-/// singular.
+/// The principal curvatures, positive where the surface bends towards its normal; `None` at a
+/// singular point.
 pub fn curvatures<T: Real>(surface: &SurfaceRef<T>, u: f64, v: f64) -> Option<[f64; 2]> {
     let jet = surface.jet(T::from(u), T::from(v), Order::Second);
     let (su, sv) = (jet.u.re(), jet.v.re());
@@ -163,7 +163,7 @@ impl<T: Real> SurfaceFormula for ParallelSurface<T> {
         self.edges.clone()
     }
 
-    /// That of the surface, moved.
+    /// The identity of the surface's edge under the map.
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.surface.key.and_then(|s| s.edge(k)).into_iter().collect()
     }
@@ -199,7 +199,7 @@ pub fn beside<T: Real, J: Jet<T>>(surface: &dyn Surface<T>, distance: J, u: J, v
 /// rounding.
 const SINGULAR: f64 = 1e-10;
 
-/// The unit normal at parameters that may be jets; at a pole its limit, where there is none zero.
+/// The unit normal at parameters that may be jets; its limit at a pole; zero if undefined.
 pub fn normal<T: Real, J: Jet<T>>(surface: &dyn Surface<T>, u: J, v: J) -> Vec3<J> {
     let [su, sv] = tangents(surface, u, v);
     let (along, across) = (su.re().norm(), sv.re().norm());

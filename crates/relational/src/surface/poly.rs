@@ -30,7 +30,7 @@ pub struct PolySurf<T: Real> {
     /// The parameter along which they follow one another: "u" or "v".
     #[field(default = "u")]
     along: NamedOption,
-    /// The parameters at which pieces meet, ascending between 0 and 1; equal shares when not given.
+    /// Parameters of the seams, ascending between 0 and 1; default: equal intervals.
     breaks: Option<Vec<T>>,
 }
 
@@ -57,7 +57,7 @@ impl<T: Real> Build<T> for PolySurf<T> {
     }
 }
 
-/// Each seam is tried at so many places.
+/// Number of points at which each seam is compared.
 const TRIALS: usize = 32;
 
 struct PiecewiseSurface<T: Real> {
@@ -71,7 +71,7 @@ impl<T: Real> PiecewiseSurface<T> {
         if self.by_u { [0, 2, 3, 1] } else { [3, 1, 0, 2] }
     }
 
-    /// A place on the begin (0) or end (1) of a piece.
+    /// A point on the start (0) or end (1) of a piece.
     fn place(&self, k: usize, end: f64, t: f64) -> moldloft_num::Vec3 {
         let (u, v) = if self.by_u { (end, t) } else { (t, end) };
         self.surfaces[k].jet(T::from(u), T::from(v), Order::Zero).p.re()
@@ -118,7 +118,7 @@ impl<T: Real> PiecewiseSurface<T> {
         })
     }
 
-    /// What an edge of a piece runs along; `None` where that is known to no one else.
+    /// The trace of an edge of a piece; `None` if it is not shared.
     fn pieces(&self, k: usize, edge: usize) -> Option<SmallVec<[Piece<T>; 1]>> {
         match edge_trace(&self.surfaces[k], edge) {
             Trace::Pieces(pieces) => Some(pieces),
@@ -157,7 +157,7 @@ impl<T: Real> PiecewiseSurface<T> {
         ] {
             edges.edges[edge] = value;
         }
-        // Where one surface with poles or a seam is all there is along an edge, it keeps them.
+        // One surface along the whole of an edge keeps its poles and seams.
         let of = |k: usize| self.surfaces[k].edges();
         if last == 0 {
             edges.edges = of(0).edges.map(|edge| match edge {

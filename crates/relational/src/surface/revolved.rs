@@ -6,8 +6,8 @@ use moldloft_num::{Axis, Jet, Order, Pace, Rational, Real, SurfaceFormula, Vec3,
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A curve turned about a line: S(u, v) is C(u) turned by a1 + v (a2 - a1), right-handed about the
-/// direction from the line's start to its end (Rodrigues).
+/// A curve rotated about a line: S(u, v) is C(u) rotated by a1 + v (a2 - a1), right-handed about
+/// the direction from the line's start to its end (Rodrigues).
 ///
 /// An end of the curve on the line gives a pole. A full turn closes the surface.
 #[derive(Kind)]
@@ -19,9 +19,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
                RevSurf S(c, axis, 0.25, 2.5);"
 )]
 pub struct RevSurf<T: Real> {
-    /// The curve that is turned.
+    /// Generating curve.
     curve: CurveRef<T>,
-    /// The line about which it is turned.
+    /// Axis of rotation.
     line: Axis<T>,
     /// Angle at v = 0, in radians (degrees in model files).
     #[field(default = 0, angle)]
@@ -54,7 +54,7 @@ struct Revolved<T: Real> {
     a1: T,
     sweep: T,
     full: bool,
-    /// Whether the ends of the curve lie on the axis.
+    /// True for each end of the curve on the axis.
     on_axis: [bool; 2],
 }
 
@@ -85,7 +85,7 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
         [self.curve.breaks(), Vec::new()]
     }
 
-    /// The circle of an end of the curve, and the turned curve itself.
+    /// The circle of an end of the curve, and the rotated curve itself.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         match k {
             0 | 2 => self.curve.made_of(),
@@ -103,8 +103,8 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
         Rational { paces: [pace, Pace::Angle(self.sweep.re())], weight }
     }
 
-    /// Edge v = 0 runs along the curve when the first angle is 0; after a full turn edge v = 1 is
-    /// edge v = 0.
+    /// Edge v = 0 follows the curve if the first angle is 0; after a full turn edge v = 1 is edge v
+    /// = 0.
     fn edges(&self) -> Edges<T> {
         let mut edges = Edges::own();
         let ends = self.curve.end_points();

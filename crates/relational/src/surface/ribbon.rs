@@ -15,7 +15,7 @@ pub struct SnakePoint<J> {
     pub along: Vec3<J>,
     /// S_u and S_v.
     pub tangents: [Vec3<J>; 2],
-    /// The unit normal, or zero where there is none.
+    /// The unit normal, or zero if undefined.
     pub normal: Vec3<J>,
 }
 

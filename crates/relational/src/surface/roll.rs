@@ -23,16 +23,16 @@ use std::sync;
 /// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
 /// the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
 ///
-/// The centre of the ball is where both surfaces, offset by the radius, meet; it rolls from edge to edge
-/// or round, and u is the share of the way of its centre. Which way it goes and where among several is
-/// as for IntSnake: the ball that touches nearest to a magnet, if one is given. With `radii` the radius
-/// follows a law along u (the coefficients of a clamped uniform B-spline of degree 3 or less): there the
-/// centre lies in the plane across the way of a ball of `radius`, and arcs are those through both points
-/// of contact, which is still tangent to both surfaces. A ball larger than a radius of curvature of
-/// either surface on its side would turn back, and is refused.
+/// The centre of the ball is on the intersection of both surfaces offset by the radius; it runs
+/// from edge to edge or round a closed path, and u is the fraction of the length of that path. The
+/// direction and the choice among several paths follow IntSnake: a magnet selects the ball with the
+/// nearest contact. With `radii` the radius is a function of u (coefficients of a clamped uniform
+/// B-spline of degree at most 3): the centre is then in the plane across the path of a ball of
+/// `radius`, and arcs pass through both points of contact, tangent to both surfaces. A ball larger
+/// than a radius of curvature of either surface on its side is an error.
 ///
-/// Where it touches, `ContactSnake` gives the snakes on both surfaces that are its edges v = 0 and
-/// v = 1: parts of the surfaces that end in these (`SubSurf`, `TrimSurf`) join the fillet exactly.
+/// `ContactSnake` gives the lines of contact on both surfaces, which are the edges v = 0 and v = 1.
+/// Parts of the surfaces bounded by them (`SubSurf`, `TrimSurf`) join the fillet exactly.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -44,7 +44,7 @@ use std::sync;
                RollFillet more(floor, wall, 0.5, radii = {0.25, 0.5, 0.75}, visible = 0);"
 )]
 pub struct RollFillet<T: Real> {
-    /// The first surface, or a magnet of it near where the ball is meant to touch.
+    /// The first surface, or a magnet on it near the intended contact.
     surface1: Onto<T>,
     /// The second surface, or a magnet of it.
     surface2: Onto<T>,
@@ -64,8 +64,8 @@ pub struct RollFillet<T: Real> {
 /// Stations along the fillet at which iterations begin, and at which a new one is tried.
 const STATIONS: usize = 48;
 
-/// How far beyond an edge, in u or v, a ball whose radius changes may touch a surface: it is another
-/// ball than the one whose way ends there.
+/// Maximum distance beyond an edge, in u or v, of a contact of a ball of variable radius: that ball
+/// differs from the one whose path ends at the edge.
 const BEYOND: f64 = 0.05;
 
 impl<T: Scalar> Build<T> for RollFillet<T> {
@@ -115,7 +115,7 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
     }
 }
 
-/// The way of the centre of a ball of one radius: where the offset surfaces meet.
+/// Path of the centre of a ball of constant radius: the intersection of the offset surfaces.
 fn spine<T: Scalar>(
     onto: [&Onto<T>; 2],
     distances: [T; 2],
@@ -165,7 +165,7 @@ struct Ball<T: Real> {
     /// Which parameters of both run round.
     round: [[bool; 2]; 2],
     sides: [f64; 2],
-    /// The way of the centre of a ball of `radius`.
+    /// Path of the centre of a ball of `radius`.
     spine: CurveRef<T>,
     radius: T,
     radii: Option<BSplineCurve<T>>,
@@ -182,14 +182,14 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// The centre from the place on surface `k`, which may lie beyond its seams.
+    /// The centre from the contact on surface `k`, whose parameters may be beyond a seam.
     fn centre<J: Jet<T>>(&self, k: usize, radius: J, w: [J; 2]) -> Vec3<J> {
         let [u, v] = within(self.round[k], w);
         beside(&*self.surfaces[k], radius * self.sides[k], u, v)
     }
 
-    /// Where the ball of `radius` touches at stations along its way, without jumps at seams: beyond
-    /// one, parameters run on past 0 or 1.
+    /// Contacts of the ball of `radius` at stations along its path, continuous at seams: parameters
+    /// beyond one exceed [0, 1].
     fn stations(&self) -> Vec<[f64; 4]> {
         let second = BallCentreSurface { ball: self, k: 1 };
         let second: &dyn Surface<T> = &second;
@@ -224,7 +224,7 @@ impl<T: Real> Ball<T> {
     }
 }
 
-/// The surface that the centre of the ball of `radius` lies on, for surface `k`.
+/// Surface of the centres of balls of `radius` in contact with surface `k`.
 struct BallCentreSurface<'b, T: Real> {
     ball: &'b Ball<T>,
     k: usize,
@@ -268,13 +268,13 @@ impl<T: Real> Implicit<T, 4> for Ball<T> {
 
 struct Rolled<T: Real> {
     ball: Ball<T>,
-    /// Places of contact to begin iterations with.
+    /// Contacts from which iterations start.
     stations: Vec<[f64; 4]>,
     closed: bool,
 }
 
 impl<T: Real> Rolled<T> {
-    /// The places of contact at a plain parameter; `None` when the iteration comes to no end.
+    /// Parameters of contact for a plain parameter; `None` if the iteration does not converge.
     fn contact(&self, t: f64) -> Option<[f64; 4]> {
         let at = (t * STATIONS as f64).floor().clamp(0.0, (STATIONS - 1) as f64);
         let share = t * STATIONS as f64 - at;
@@ -381,7 +381,7 @@ impl<T: Real> Rolled<T> {
 }
 
 impl<T: Real> Rolled<T> {
-    /// The places of contact at a parameter that is a jet.
+    /// Parameters of contact for a parameter that is a jet.
     fn places<J: Jet<T>>(&self, u: J) -> Option<[[J; 2]; 2]> {
         let plain = self.contact(u.re())?;
         let jet = jets(&self.ball, plain, u.value(), J::ORDER)?;
@@ -429,13 +429,14 @@ impl<T: Real> Column for Rolling<T> {
     }
 }
 
-/// Where the ball touches surface `k`, as a path in its parameter plane.
+/// Path of the contact on surface `k` in its parameter plane.
 struct Contact<T: Real> {
     fillet: sync::Arc<Rolled<T>>,
     k: usize,
 }
 
-/// A contact so near to an edge lies on it: the ball's way ends where one of the two does.
+/// Distance from an edge below which a contact is on it: the path ends at the first of the two
+/// contacts to reach an edge.
 const ON_EDGE: f64 = 1e-11;
 
 impl<T: Real> CurveFormula for Contact<T> {

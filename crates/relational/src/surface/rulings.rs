@@ -1,4 +1,4 @@
-//! Which places of two curves a developable surface joins by rulings.
+//! Pairs of points of two curves joined by the rulings of a developable surface.
 
 use super::develop::Phase;
 use moldloft_num::{Order, Real, Vec3, find_root};
@@ -7,10 +7,11 @@ use moldloft_registry::{CallError, CurveRef};
 /// Steps of each curve's parameter in which pairs are searched for.
 const STEPS: usize = 128;
 
-/// A determinant below this share of its factors is rounding: the three vectors lie in a plane.
+/// Determinant relative to its factors below which it is rounding and the three vectors are
+/// coplanar.
 const FLAT: f64 = 1e-11;
 
-/// How pairs (s, t) run from (0, 0) to (1, 1).
+/// Pairs (s, t) from (0, 0) to (1, 1).
 pub struct Pairing {
     /// The pair at which a phase begins, and the phase.
     pub phases: Vec<([f64; 2], Phase)>,
@@ -18,12 +19,12 @@ pub struct Pairing {
     pub stations: Vec<[f64; 2]>,
 }
 
-/// A candidate on a level s + t = const: w = (s - t) / 2 and what it is.
+/// A candidate on a level s + t = const: w = (s - t) / 2 and its type.
 #[derive(Clone, Copy)]
 struct RulingCandidate {
     w: f64,
     kind: RulingKind,
-    /// The length of the best way there, and the candidate of the level before that it comes from.
+    /// Length of the shortest path to it, and its predecessor on the level before.
     cost: f64,
     from: usize,
 }
@@ -42,8 +43,8 @@ enum RulingKind {
 /// Position, first derivative.
 type Place = [Vec3<f64>; 2];
 
-/// The determinant of a pair, as a share of its factors, and whether the surface passes the ruling
-/// without folding back between the curves.
+/// The determinant of a pair, relative to its factors, and true if the surface crosses the ruling
+/// without a fold between the curves.
 fn determinant([p, d]: Place, [q, e]: Place) -> (f64, bool) {
     let ruling = q - p;
     let size = d.norm() * e.norm() * ruling.norm();
@@ -57,11 +58,11 @@ struct RulingSearch<'c, T: Real> {
     places: [Vec<Place>; 2],
 }
 
-/// The pairs between two curves: rulings where there are such, fans where there are none at the ends.
+/// Pairs between two curves: rulings, and fans at ends without rulings.
 ///
-/// On each of the lines s + t = const the determinant is searched for changes of sign; the chain of
-/// such roots that never runs back along either curve, completed by fans as short as possible, is
-/// found as the shortest way through the levels (Bellman).
+/// On each of the lines s + t = const the determinant is searched for changes of sign. The chain of
+/// such roots that is monotonic along both curves, completed by fans of least length, is the
+/// shortest path through the levels (Bellman).
 ///
 /// # Errors
 /// `no-rulings` and `rulings-cross`.
@@ -104,10 +105,10 @@ pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
     Ok(search.phases(&way))
 }
 
-/// How far in u one level is from the next.
+/// Step of u between levels.
 const RISE: f64 = 0.5 / STEPS as f64;
 
-/// Gives each candidate its best way from the level before, and drops those that have none.
+/// Assigns each candidate its shortest path from the level before, and drops unreachable ones.
 fn connect(before: &[RulingCandidate], nodes: &mut Vec<RulingCandidate>) {
     for node in nodes.iter_mut() {
         node.cost = f64::INFINITY;
@@ -117,7 +118,7 @@ fn connect(before: &[RulingCandidate], nodes: &mut Vec<RulingCandidate>) {
             if step > RISE * (1.0 + 1e-9) {
                 continue;
             }
-            // Fans cost their length, corners of the way a little.
+            // The cost of a fan is its length; corners of the path have a small cost.
             let fan = f64::from(u8::from(matches!(node.kind, RulingKind::Low | RulingKind::High)));
             let turn = f64::from(u8::from(node.kind != from.kind));
             let cost = from.cost + fan + 0.25 * turn + 0.01 * (step / RISE).powi(2);
@@ -143,8 +144,8 @@ impl<T: Real> RulingSearch<'_, T> {
         determinant(p, q)
     }
 
-    /// The candidates on a level, roots and both ends of it; a root at which the surface would fold
-    /// back is noted.
+    /// The candidates on a level: roots and both ends. Roots at which the surface would fold are
+    /// recorded.
     fn candidates(&self, level: usize, crossed: &mut Option<[f64; 2]>) -> Vec<RulingCandidate> {
         let u = level as f64 * RISE;
         let (first, last) = (level.saturating_sub(STEPS), level.min(STEPS));
@@ -170,7 +171,7 @@ impl<T: Real> RulingSearch<'_, T> {
         nodes
     }
 
-    /// The fault of a way that leads no further than a level (0: of fans only).
+    /// Error of a path that ends at a level (0: fans only).
     fn broken(&self, level: usize, crossed: Option<[f64; 2]>) -> CallError {
         let [a, b] = self.curves;
         let fault = match crossed {
@@ -197,7 +198,7 @@ impl<T: Real> RulingSearch<'_, T> {
         fault.related(a.key, "is the first curve").related(b.key, "is the second curve")
     }
 
-    /// Phases and stations of a way through the levels.
+    /// Phases and stations of a path through the levels.
     fn phases(&self, way: &[RulingCandidate]) -> Pairing {
         let pair_of = |level: usize, w: f64| {
             let u = level as f64 * RISE;
@@ -245,8 +246,8 @@ impl<T: Real> RulingSearch<'_, T> {
         Pairing { phases, stations }
     }
 
-    /// The pair at which a fan ends and rulings begin, or the other way round, between two levels: on
-    /// the line of the fan, the determinant vanishes.
+    /// The pair between two levels at which a fan changes to rulings or rulings to a fan: the zero
+    /// of the determinant on the line of the fan.
     fn corner(&self, low: [f64; 2], high: [f64; 2], before: Phase, after: Phase) -> [f64; 2] {
         let (first, end) = match (before, after) {
             (Phase::Fan { first, end }, _) | (_, Phase::Fan { first, end }) => (first, end),
@@ -259,7 +260,7 @@ impl<T: Real> RulingSearch<'_, T> {
             let [s, t] = place(x);
             self.at(s, t).0
         };
-        // One level of room on either side.
+        // One level of margin on either side.
         let (a, b) = (near[0].min(near[1]) - 2.0 * RISE, near[0].max(near[1]) + 2.0 * RISE);
         let root = find_root(value, a.max(0.0), b.min(1.0));
         place(root.unwrap_or(0.5 * (near[0] + near[1])))

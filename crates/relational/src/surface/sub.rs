@@ -16,13 +16,13 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Surf
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
 ///
-/// Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the edges
-/// v = 0, u = 1, v = 1, u = 0, in this order and each in increasing parameter, so the third and the
-/// fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
-/// the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
-/// side without length. Sides that do not meet are refused, never turned round, and so are patches
-/// that are folded. Two sides that end where they begin, at one point or at the seam of a closed
-/// surface, make a closed band; a closed snake and a magnet within it a whole cap.
+/// Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the
+/// edges v = 0, u = 1, v = 1, u = 0 in this order, each in increasing parameter (the third and the
+/// fourth are therefore opposite to a walk round the patch); w is the bilinear Coons patch (Coons
+/// 1967). Three sides: the same, with the edge u = 0 reduced to the point at which the first and
+/// the third begin. A magnet is a side of zero length. Sides that do not meet are errors, never
+/// reversed; so are folded patches. Two sides that each begin and end at one point, or at the seam
+/// of a closed surface, bound a closed band; a closed snake and a magnet inside it, a cap.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -42,7 +42,7 @@ pub struct SubSurf<T: Real> {
     sides: Vec<Side<T>>,
 }
 
-/// How far apart, in u or v, ends that should meet may be: far below a panel, far above rounding.
+/// Maximum distance in u or v between ends at a corner: far below a panel, far above rounding.
 const MEETING: f64 = 1e-6;
 
 impl<T: Real> Build<T> for SubSurf<T> {
@@ -83,7 +83,7 @@ impl<T: Real> Build<T> for SubSurf<T> {
     }
 }
 
-/// The sides of a patch and where they lie.
+/// Sides of a patch and their arrangement.
 // A patch has one of them: a box would save nothing.
 #[allow(clippy::large_enum_variant)]
 enum SideLayout<T: Real> {
@@ -100,7 +100,7 @@ pub struct SubPatch<T: Real> {
     corners: [Vec3<T>; 4],
 }
 
-/// The place (u, v, 0) on the surface at the parameter `t` of a side.
+/// The point (u, v, 0) of the surface at the parameter `t` of a side.
 fn place<T: Real, J: Jet<T>>(side: &Side<T>, t: J) -> Vec3<J> {
     match side {
         Side::Snake(snake) => lift_curve(&snake.path(t.value(), J::ORDER), t),
@@ -123,7 +123,7 @@ fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), CallE
     corners::check(&ends, MEETING, apart, says, field)
 }
 
-/// How many steps the patch is tried with in each direction.
+/// Steps per direction of the test for folds.
 const TRIALS: usize = 8;
 
 impl<T: Real> SubPatch<T> {
@@ -133,17 +133,17 @@ impl<T: Real> SubPatch<T> {
         Self { surface, layout, corners: [Vec3::zero(); 4] }
     }
 
-    /// The surface of which it is a part.
+    /// The parent surface.
     pub fn surface(&self) -> &SurfaceRef<T> {
         &self.surface
     }
 
-    /// The place on the surface.
+    /// The parameters on the surface.
     pub fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         self.blended(u, v, self.along_u(u), self.along_v(v))
     }
 
-    /// The places on the edges v = 0 and v = 1.
+    /// Parameters on the edges v = 0 and v = 1.
     fn along_u<J: Jet<T>>(&self, u: J) -> [Vec3<J>; 2] {
         match &self.layout {
             SideLayout::Between([first, last]) => [place(first, u), place(last, u)],
@@ -151,7 +151,7 @@ impl<T: Real> SubPatch<T> {
         }
     }
 
-    /// The places on the edges u = 0 and u = 1, of a patch that has sides there.
+    /// Parameters on the edges u = 0 and u = 1 of a patch with sides there.
     fn along_v<J: Jet<T>>(&self, v: J) -> [Vec3<J>; 2] {
         match &self.layout {
             SideLayout::Between(_) => [Vec3::zero(); 2],
@@ -165,7 +165,7 @@ impl<T: Real> SubPatch<T> {
         }
     }
 
-    /// The place inside, from those on the edges at its u and v.
+    /// Parameters inside, from those on the edges at its u and v.
     fn blended<J: Jet<T>>(
         &self,
         u: J,
@@ -190,7 +190,7 @@ impl<T: Real> SubPatch<T> {
     }
 }
 
-/// How far apart in the other parameter the ends of a side may be that meet at a seam.
+/// Maximum difference of the other parameter between the ends of a side that meet at a seam.
 const AT_SEAM: f64 = 1e-9;
 
 impl<T: Real> SubPatch<T> {
@@ -216,7 +216,7 @@ impl<T: Real> SubPatch<T> {
         meets(0) && meets(1) && (by_name || turned)
     }
 
-    /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
+    /// Error for a patch with a folded parameter plane: det(w_u, w_v) must not change its sign.
     pub fn check_folds(&self) -> Result<(), CallError> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
         let at = |k: usize| T::from(k as f64 / TRIALS as f64);
@@ -238,7 +238,7 @@ impl<T: Real> SubPatch<T> {
         else {
             return Ok(());
         };
-        // Turned against the run of the surface is not a fold: then all signs are negative.
+        // The opposite orientation of the surface is not a fold: then all signs are negative.
         let sum: f64 = all.iter().map(|x| x.0).sum();
         let (worst, best) = if sum < 0.0 { (high, -low.0) } else { (low, high.0) };
         let against = if sum < 0.0 { -worst.0 } else { worst.0 };
@@ -263,7 +263,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         surface_jet_of!(self, Self::position, u, v, order)
     }
 
-    /// As point by point, with the places on the sides found once a row and once a column.
+    /// As for single points, with the sides evaluated once per row and column.
     fn grid(
         &self,
         us: &[f64],
@@ -304,7 +304,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         }
     }
 
-    /// As point by point; the surface is asked for all places at once.
+    /// As for single points; the surface is evaluated at all points at once.
     fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
         let inside = |&[u, v]: &[f64; 2]| self.inside(T::from(u), T::from(v));
         if T::PARTS == 1 {
@@ -326,7 +326,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         self.merged(|curve| curve.kinks())
     }
 
-    /// Those of the patch's own lines, and of the surface, which lie across them.
+    /// Crossings with lines of the patch and of the surface across it.
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         let own = line_crossings(&self.breaks(), path, spans);
         let mut finer = spans.to_vec();
@@ -343,7 +343,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         all
     }
 
-    /// That of the surface, and what it is a part of.
+    /// Inner planes of the surface, as those of a part of it.
     fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
         let inside = |[u, v]: [f64; 2]| {
             let w = self.inside(T::from(u), T::from(v));
@@ -361,7 +361,8 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         std::iter::once(own).chain(outer).collect()
     }
 
-    /// A side that is not given: the surface and the points that it lies straight between.
+    /// A side by default: the surface and the end points of the straight line in its parameter
+    /// plane.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         let SideLayout::Between([first, last]) = &self.layout else { return Vec::new() };
         if k.is_multiple_of(2) {
@@ -409,7 +410,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
 }
 
 impl<T: Real> SubPatch<T> {
-    /// Places of the sides, those of opposite ones together.
+    /// Parameters collected from the sides, opposite ones together.
     fn merged(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> [Vec<f64>; 2] {
         let places = |side: &Side<T>| match side {
             Side::Snake(snake) => of(&snake.curve),
@@ -427,8 +428,8 @@ impl<T: Real> SubPatch<T> {
         }
     }
 
-    /// The side that is not given, straight in the parameter plane between the ends `end` of two that
-    /// are: where it lies on an edge of the surface, a part of that.
+    /// A default side: straight in the parameter plane between the ends `end` of two given sides,
+    /// or a part of the surface's edge if it is on one.
     fn implied(&self, sides: [&Side<T>; 2], points: [Option<Key>; 2], end: f64) -> Edge<T> {
         let [p, q] = sides.map(|side| place(side, T::from(end)));
         for (k, on) in [0.0, 1.0, 1.0, 0.0].into_iter().enumerate() {

@@ -13,12 +13,12 @@ use moldloft_spline::{BSplineCurve, KnotVector};
 /// A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
 /// path(0)), with F(0) = 1, so that edge v = 0 is the profile.
 ///
-/// The frame "minimal" does not turn about the tangent of the path (rotation-minimising; Wang,
-/// Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed" does
-/// not turn at all, so that the profile is only moved, along a path that may have corners. `twist` and
-/// `scale` are laws along v: the coefficients of a clamped uniform B-spline of degree 3 or less, so
-/// that {a, b} goes linearly from a to b. The twist is right-handed about the tangent ("fixed": that
-/// at v = 0).
+/// Frames: "minimal" does not rotate about the tangent of the path (rotation-minimising; Wang,
+/// Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed"
+/// only translates the profile, along a path that may have corners. `twist` and `scale` are
+/// functions of v: coefficients of a clamped uniform B-spline of degree at most 3, so {a, b} is
+/// linear from a to b. The twist is right-handed about the tangent ("fixed": about the tangent at v
+/// = 0).
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -33,12 +33,12 @@ use moldloft_spline::{BSplineCurve, KnotVector};
 pub struct SweepSurf<T: Real> {
     /// The curve that is carried: edge v = 0.
     profile: CurveRef<T>,
-    /// The curve along which it is carried.
+    /// Path of the profile.
     path: CurveRef<T>,
     /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
-    /// The direction that stays upright with frame = "up"; z if not given.
+    /// Upright direction of frame = "up"; default: z.
     up: Option<Vec3<T>>,
     /// Angles about the tangent along v, in radians.
     #[field(angle)]
@@ -62,7 +62,7 @@ impl<T: Scalar> Build<T> for SweepSurf<T> {
     }
 }
 
-/// How a frame moves along a path.
+/// Motion of a frame along a path.
 #[derive(Clone, Copy)]
 pub enum FrameMode<T> {
     /// Without turning about the tangent.
@@ -173,7 +173,7 @@ impl<T: Real> MovingFrame<T> {
         Ok(())
     }
 
-    /// A number of the way the frame moves: 1 minimal, 2 up, 3 fixed.
+    /// Number of the mode: 1 minimal, 2 up, 3 fixed.
     pub fn number(&self) -> u8 {
         match self.mode {
             FrameMode::Minimal => 1,
@@ -222,8 +222,8 @@ impl<T: Real> MovingFrame<T> {
     fn minimal(&self, v: T) -> Vec3<T> {
         let at = v.re();
         let after = self.nodes.partition_point(|(node, _)| *node <= at);
-        // At least half a step away, so that the reflections are well conditioned; and never over
-        // a break, since a node stands at each.
+        // At least half a step away, for well-conditioned reflections, and never across a break,
+        // since each break is a node.
         let last = self.nodes.len() - 1;
         let (low, high) = (after.saturating_sub(1).min(last), after.min(last));
         let far = |k: usize| (self.nodes[k].0 - at).abs();
@@ -283,7 +283,7 @@ struct SweptSurface<T: Real> {
 }
 
 impl<T: Real> SweptSurface<T> {
-    /// The position on the path, and what the tangent, r and t x r of the frame at 0 become.
+    /// Position on the path, and images of the tangent, r and t x r of the frame at 0.
     fn station<J: Jet<T>>(&self, v: J) -> (Vec3<J>, [Vec3<J>; 3]) {
         let [t, r, s] = self.moving.frame(v);
         let value = |law: &BSplineCurve<T>| {
@@ -377,7 +377,7 @@ impl<T: Real> Surface<T> for SweptSurface<T> {
         [self.profile.breaks(), v]
     }
 
-    /// The profile, moved; or the way of one of its ends along the path.
+    /// The profile under the motion, or the path of one of its ends.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         if k.is_multiple_of(2) {
             return self.profile.made_of();
@@ -387,8 +387,8 @@ impl<T: Real> Surface<T> for SweptSurface<T> {
         made
     }
 
-    /// Edge v = 0 runs along the profile unless it is turned or scaled there; an edge u = const along
-    /// the path where the profile has its end in the path's first point object.
+    /// Edge v = 0 follows the profile unless it is rotated or scaled there; an edge u = const
+    /// follows the path if the profile ends at the path's first point object.
     fn edges(&self) -> Edges<T> {
         let (ends, path) = (self.profile.end_points(), self.moving.path.end_points());
         let value = |law: &Option<BSplineCurve<T>>, k: usize, usual: f64| match law {

@@ -1,4 +1,4 @@
-//! The surface that a curve describes while the bead it depends on runs along its curve.
+//! The surface swept by a curve as the bead on which it depends moves along its curve.
 
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
@@ -10,12 +10,12 @@ use moldloft_registry::{
     Build, CallError, Context, CurveRef, Kind, MovingCurve, SurfaceRef, Value,
 };
 
-/// The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
-/// place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
+/// The surface swept by a curve as a bead on which it depends moves along its curve: S(u, v) is the
+/// point u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
 ///
-/// Everything between bead and curve is evaluated anew at each place of the bead, as for `ProcCurve`:
-/// along v the surface is a chain of polynomials through such curves, halved until they agree with it
-/// to about 1e-12 of its size.
+/// Everything between bead and curve is evaluated at each sample of the bead, as for `ProcCurve`:
+/// along v the surface is a chain of polynomials through such curves, halved until they agree to
+/// about 1e-12 of its size.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -39,7 +39,7 @@ pub struct ProcSurf<T: Real> {
     t2: T,
 }
 
-/// The places u at which it is seen whether polynomials along v fit.
+/// Parameters u at which the polynomials along v are checked.
 const PROBES: [f64; 6] = [0.0, 0.17, 0.39, 0.61, 0.83, 1.0];
 
 impl<T: Real> Build<T> for ProcSurf<T> {
@@ -110,7 +110,7 @@ impl<T: Real> Column for SweptSkin<T> {
         [us, self.strips[1..].iter().map(|s| s.from).collect()]
     }
 
-    /// An edge at which all ribs are in one place is a pole.
+    /// An edge whose ribs all coincide in a point is a pole.
     fn edges(&self) -> Edges<T> {
         let mut edges = Edges::own();
         for (k, end) in [(3, 0.0), (1, 1.0)] {

@@ -12,11 +12,11 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, V
 ///
 /// It is the bicubically blended Coons patch (Coons 1967) of the curves and of slopes across them,
 /// with the twists of Gregory (1974), which need not agree at the corners. The slope across a snake
-/// lies in the tangent plane of its surface; its components along the snake and perpendicular to it go
-/// linearly from those of the one neighbouring edge to those of the other. Across a free edge it is
-/// that of the bilinear patch. A neighbour must leave a tangent edge in the tangent plane there, as
-/// snakes of the same surface do: otherwise no patch is tangent at that corner. Of three curves the
-/// edge u = 0 is the point where the first and the third begin.
+/// is in the tangent plane of its surface; its components along the snake and perpendicular to it
+/// vary linearly between those of the two neighbouring edges. Across a free edge it is the slope of
+/// the bilinear patch. A neighbour must leave a tangent edge in the tangent plane there, as snakes
+/// of the same surface do: otherwise no patch is tangent at that corner. With three curves the edge
+/// u = 0 is the point at which the first and the third begin.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -66,7 +66,7 @@ impl<T: Real> Build<T> for TanBoundary<T> {
 
 /// The slope across an edge.
 enum CrossDerivative<T: Real> {
-    /// That of the bilinear patch.
+    /// The slope of the bilinear patch.
     Free,
     /// In the tangent plane of the snake's surface: components along the snake and perpendicular to
     /// it at its ends.
@@ -75,7 +75,7 @@ enum CrossDerivative<T: Real> {
 
 struct TangentPatch<T: Real> {
     boundary: CoonsBoundary<T>,
-    /// Of the four edges v = 0, u = 1, v = 1, u = 0.
+    /// Slopes across the edges v = 0, u = 1, v = 1, u = 0.
     across: [CrossDerivative<T>; 4],
     /// The derivatives of the sides at their ends.
     leaving: [[Vec3<T>; 2]; 4],
@@ -90,7 +90,7 @@ fn basis<J: Real>(at: &SnakePoint<J>) -> [Vec3<J>; 2] {
     [along, at.normal.cross(along)]
 }
 
-/// The edges next to edge k at its begin and end, and whether that lies at their begin.
+/// The edges adjacent to edge k at its start and end, and true if they meet it with their start.
 const NEIGHBOURS: [([usize; 2], bool); 4] =
     [([3, 1], true), ([0, 2], false), ([3, 1], false), ([0, 2], true)];
 
@@ -186,7 +186,7 @@ impl<T: Real> TangentPatch<T> {
                 let (neighbours, at_begin) = NEIGHBOURS[k];
                 let end = usize::from(!at_begin);
                 let [a, b] = neighbours.map(|n| self.leaving[n][end].map(J::fixed));
-                // Towards the opposite edge, less what the corners' chords have too much.
+                // Towards the opposite edge, less the excess of the corners' chords.
                 let [low, high] = if k == 0 || k == 2 { [0, 2] } else { [3, 1] };
                 let chord = self.boundary.side(high, t) - self.boundary.side(low, t);
                 let ends = [0.0, 1.0].map(|t| {
@@ -230,8 +230,8 @@ impl<T: Real> SurfaceFormula for TangentPatch<T> {
             // The distances from the corner's edges u = i and v = j.
             let (a, b) = (if i == 0 { u } else { su }, if j == 0 { v } else { sv });
             let [p, q] = self.twists[c].map(fixed);
-            // On edge v = j only the slope along u = i counts, and the other way round. Squares keep
-            // their sum from vanishing outside the patch.
+            // On edge v = j only the slope across u = i counts, and conversely. With squares their
+            // sum does not vanish outside the patch.
             let (a, b) = (a * a, b * b);
             let sum = a + b;
             let twist =

@@ -17,7 +17,7 @@ use moldloft_registry::{CurveRef, Kind};
 pub struct TranSurf<T: Real> {
     /// The curve that is moved: edge v = 0.
     c1: CurveRef<T>,
-    /// The curve along which it is moved.
+    /// Path of the first curve.
     c2: CurveRef<T>,
 }
 
@@ -53,8 +53,8 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
         Rational { paces, weight }
     }
 
-    /// Edge v = 0 runs along the first curve; where both curves begin in one point object, edge
-    /// u = 0 runs along the second. A closed first curve closes the surface.
+    /// Edge v = 0 follows the first curve; if both curves begin in one point object, edge u = 0
+    /// follows the second. A closed first curve closes the surface.
     fn edges(&self) -> Edges<T> {
         let (a, b) = (self.c1.end_points(), self.c2.end_points());
         let mut edges = Edges::own().with(0, along(&self.c1));

@@ -1,4 +1,5 @@
-//! Parts of surfaces within loops of snakes, as triangles whose borders divide as their neighbours do.
+//! Parts of surfaces bounded by loops of snakes, as triangles with the divisions of their
+//! neighbours on the border.
 
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
@@ -15,21 +16,21 @@ use std::sync::{Arc, OnceLock};
 
 /// The part of a surface within loops of snakes on it, as triangles.
 ///
-/// Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
-/// itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-/// one is the boundary of the surface and all loops are holes. All vertices are on the surface. Where no divisions are
-/// stated, the border is divided by its own curvature and the interior by the surface's, until the area of the triangles
-/// is within 1e-3 of that of the surface; what they miss by more is a warning. With `nu` or `nv` the interior contains
-/// points of the surface's own nu x nv divisions that are not too near the border. The triangles are Delaunay's, in
-/// parameters stretched to lengths or by curvature.
+/// Consecutive snakes form a loop, in either direction; a closed snake is a loop on its own. The
+/// first loop is the outer one, the others are holes; with `whole = 1` the boundary of the surface
+/// is the outer loop and all given loops are holes. All vertices are on the surface. Without stated
+/// divisions the border is divided by its own curvature and the interior by the surface's, until
+/// the area of the triangles is within 1e-3 of that of the surface; a larger difference is a
+/// warning. With `nu` or `nv` the interior contains points of the surface's own nu x nv divisions
+/// at some distance from the border. The triangulation is Delaunay's, in parameters scaled to
+/// lengths or by curvature.
 ///
-/// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
-/// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
-/// by identity. Derivatives of vertices are at fixed parameters of their divisions: where curvature spaces these, vertices
-/// slide along the border besides. Divisions flow over such edges from the one to the other; `rim` states those of each
-/// snake, and a contradiction is reported.
+/// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours:
+/// patches, fillets and other trimmed surfaces whose edges follow the same snakes share its
+/// vertices by identity. Derivatives of vertices are at fixed parameters of their divisions. Divisions propagate across such edges; `rim` states those of each snake,
+/// and a contradiction is reported.
 ///
-/// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
+/// For two, three or four sides prefer `SubSurf`, which has a net of panels.
 #[derive(Kind)]
 #[kind(
     class = Mesh,
@@ -51,11 +52,12 @@ pub struct TrimSurf<T: Real> {
     /// 1 when the whole surface is kept but for holes.
     #[field(default = 0, min = 0, max = 1)]
     whole: u32,
-    /// Divisions of each snake. Not given: as many as its curvature and that of the surface ask for, and at least as its
-    /// neighbours have them.
+    /// Divisions of each snake; default: by its curvature and that of the surface, and at least
+    /// those of its neighbours.
     #[field(min = 1, max = 10_000)]
     rim: Option<usize>,
-    /// Divisions along u of the surface's grid inside the border. Not given: as the curvature of the surface asks for.
+    /// Divisions along u of the surface's grid inside the border; default: by the curvature of the
+    /// surface.
     #[field(min = 1, max = 1000)]
     nu: Option<usize>,
     /// Divisions of the surface along v.
@@ -63,10 +65,11 @@ pub struct TrimSurf<T: Real> {
     nv: Option<usize>,
 }
 
-/// How far apart, in u or v, ends that should meet may be.
+/// Maximum distance in u or v between adjacent ends.
 pub(crate) const MEETING: f64 = 1e-6;
 
-/// The area of the triangles is within this share of that of the surface, unless divisions are stated.
+/// Maximum relative difference between the area of the triangles and that of the surface, without
+/// stated divisions.
 const AREA_PROMISE: f64 = 1e-3;
 
 /// The turn along a panel, in radians, at first. A panel of turn h loses h^2 / 24 of an area and, on a tube, h^2 / 6 of
@@ -79,7 +82,7 @@ const SIDES: f64 = 12.0;
 /// Divisions of the surface along u or v where only the others are stated.
 const DIVISIONS: usize = 12;
 
-/// How often the turn is made smaller until the area is right.
+/// Maximum number of reductions of the turn until the area is right.
 const MAX_ROUNDS: usize = 6;
 
 /// The most points in the box of a part that is divided by curvature alone, and of one whose fineness is asked for.
@@ -165,7 +168,7 @@ fn coarse(context: &Context, panels: f64, area: f64) {
     );
 }
 
-/// How near panels are to be to the part within some curves.
+/// Accuracy of the panels for given curves.
 fn fineness<T: Real>(
     surface: &SurfaceRef<T>,
     curves: &[(CurveRef<T>, Option<usize>, Option<usize>)],
@@ -213,7 +216,7 @@ fn hem<T: Real>(
     }
 }
 
-/// The parameters of the divisions of a curve of the border by itself.
+/// The parameters of the divisions of one curve of the border.
 fn divisions<T: Real>(hem: &BorderCurve<T>) -> Vec<T> {
     hem.divisions().into_iter().map(T::from).collect()
 }
@@ -232,17 +235,17 @@ fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T>
     CurveRef::snake(shape, surface.clone(), nesting)
 }
 
-/// A surface and what is kept of it.
+/// A surface and the part of it that is kept.
 struct Trimmed<T: Real> {
     surface: SurfaceRef<T>,
     hems: Vec<BorderCurve<T>>,
-    /// The hems of each loop in order, and whether each runs against it.
+    /// The hems of each loop in order; true for those in the opposite direction.
     cycles: Vec<Vec<(usize, bool)>>,
-    /// The net of the surface whose points are inside; none where curvature says.
+    /// Divisions of the surface's net whose points are inside; `None`: by curvature.
     inside: Option<[usize; 2]>,
     fineness: Fineness,
     most_points: usize,
-    /// Its measures and an estimate of their error, once they have been asked for.
+    /// Its measures and an estimate of their error, computed on first use.
     exact: OnceLock<Option<(SheetMeasures<T>, f64)>>,
 }
 
@@ -297,7 +300,7 @@ impl<T: Real> Trimmed<T> {
         }
     }
 
-    /// Its measures, and an estimate of the share of the area by which they are wrong.
+    /// Its measures, and an estimate of the relative error of the area.
     fn exact(&self) -> Option<(SheetMeasures<T>, f64)> {
         *self.exact.get_or_init(|| {
             let at: Vec<Vec<T>> = self.hems.iter().map(divisions).collect();
@@ -320,7 +323,7 @@ impl<T: Real> Trimmed<T> {
     /// The triangles with vertices at these parameters of the hems, and which these vertices are.
     fn facets(&self, at: &[Vec<T>]) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
         let (cycles, turned, mut rims) = self.loops(at)?;
-        // What was turned round is counted from its other end.
+        // Reversed curves are counted from their other end.
         let mut first = 0;
         for (cycle, turned) in self.cycles.iter().zip(turned) {
             let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
@@ -355,8 +358,8 @@ impl<T: Real> Trimmed<T> {
         Ok((sheet(xyz, triangles), rims))
     }
 
-    /// The places of the vertices of each loop, the outer one counter-clockwise and the holes clockwise, which loops were
-    /// turned round for it, and the numbers of the vertices of each hem.
+    /// Parameters of the vertices of each loop (outer loop counter-clockwise, holes clockwise), a
+    /// flag for each reversed loop, and the vertex numbers of each hem.
     fn loops(&self, at: &[Vec<T>]) -> Result<DividedLoops<T>, CallError> {
         let mut rims: Vec<Vec<u32>> = at.iter().map(|ts| vec![0; ts.len()]).collect();
         let mut first = 0;
@@ -375,7 +378,7 @@ impl<T: Real> Trimmed<T> {
                 let n = at[hem].len() - 1;
                 for i in 0..=n {
                     let k = if backwards { n - i } else { i };
-                    // The last is the first of what comes next.
+                    // The last is the first of the next.
                     rims[hem][k] = (first + places.len() % total) as u32;
                     if i < n {
                         let curve = &self.hems[hem].curve;
@@ -400,7 +403,7 @@ impl<T: Real> Trimmed<T> {
     }
 }
 
-/// The places of each loop, which loops were turned round, and the vertices of each hem.
+/// Parameters of each loop, a flag for each reversed loop, and the vertices of each hem.
 type DividedLoops<T> = (Vec<Vec<Place<T>>>, Vec<bool>, Vec<Vec<u32>>);
 
 /// Twice the area of a polygon of parameters.
@@ -428,7 +431,7 @@ fn sheet<T: Real>(points: Vec<Vec3<T>>, triangles: Vec<[u32; 3]>) -> TriangleBod
     facets
 }
 
-/// The snakes of each loop in order, and whether each runs against it.
+/// The snakes of each loop in order; true for those in the opposite direction.
 fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, CallError> {
     let place = |s: &Snake<T>, t: f64| {
         let [w, ..] = s.path(T::from(t), Order::Zero);
@@ -459,7 +462,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Call
                 let text = format!("snake {} does not start where snake {k} ends", k + 1);
                 return gap(k, text, *at, from);
             }
-            // The first of a loop runs so that it ends where the next one goes on.
+            // The first snake of a loop is oriented to end where the next one begins.
             None => match snakes.get(k + 1).filter(|_| !meet(from, to)) {
                 Some(next) => {
                     let ends = [place(next, 0.0), place(next, 1.0)];

@@ -1,4 +1,4 @@
-//! How densely panels divide a trimmed face: along its rims and in its interior, by curvature.
+//! Density of the divisions of a trimmed face along its rims and in its interior, by curvature.
 
 use moldloft_num::{Fineness, Order, Real, SurfJet, Vec3, unit_normal};
 use moldloft_registry::{CurveRef, DivisionDensity, SurfaceRef};
@@ -6,13 +6,14 @@ use moldloft_registry::{CurveRef, DivisionDensity, SurfaceRef};
 /// Intervals of the first and of the finest sampling of a rim between two breaks.
 const SAMPLES: [usize; 2] = [16, 8192];
 
-/// Two samplings of a rim agree when their divisions differ by less than this share.
+/// Maximum relative difference of the divisions by two samplings of a rim that agree.
 const AGREEMENT: f64 = 0.02;
 
 /// Samples of the interior along u and along v, at least.
 const CELLS: usize = 24;
 
-/// A curve on a surface at a place: its first and second derivative, the unit normal of the surface and its derivative.
+/// A curve on a surface at a parameter: its first and second derivative, the unit normal of the
+/// surface and its derivative.
 struct RimJet {
     d: Vec3,
     dd: Vec3,
@@ -44,7 +45,7 @@ fn rim_jet<T: Real>(surface: &SurfaceRef<T>, curve: &CurveRef<T>, t: f64) -> Opt
     Some(RimJet { d, dd, turn })
 }
 
-/// How the divisions of a rim are spaced: equal parts of the integral of their density between breaks.
+/// Spacing of the divisions of a rim: equal parts of the integral of their density between breaks.
 pub(crate) fn rim_density<T: Real>(
     fineness: &Fineness,
     surface: &SurfaceRef<T>,
@@ -80,8 +81,8 @@ pub(crate) fn rim_density<T: Real>(
     density
 }
 
-/// The plane of parameters stretched so that panels have sides of about 1 in it. `inside` says which places of a line
-/// v = const count; `low` and `high` are the corners of their box.
+/// The plane of parameters, scaled to panels with sides of about 1. `inside` selects the parameters
+/// of a line v = const; `low` and `high` are the corners of their box.
 pub(crate) fn stretched<T: Real>(
     fineness: &Fineness,
     surface: &SurfaceRef<T>,
@@ -158,7 +159,8 @@ pub(crate) fn breaks_of<T: Real>(surface: &SurfaceRef<T>, curve: &CurveRef<T>) -
 /// Steps between two breaks of a curve within which one crossing of each line is found.
 const CROSSING_STEPS: usize = 48;
 
-/// The places t at which a path crosses lines u = const (axis 0) or v = const (axis 1), with axis and line.
+/// Parameters t at which a path crosses lines u = const (axis 0) or v = const (axis 1), with axis
+/// and line.
 pub(crate) fn crossings(
     lines: &[Vec<f64>; 2],
     breaks: &[f64],
@@ -207,14 +209,14 @@ pub(crate) fn crossings(
 pub(crate) struct Stretch {
     /// Parameters, ascending, between which it is linear.
     at: [Vec<f64>; 2],
-    /// What they become.
+    /// Images of these parameters.
     sum: [Vec<f64>; 2],
     /// The ends of the box and the breaks of the surface in it.
     stops: [Vec<f64>; 2],
 }
 
 impl Stretch {
-    /// Where a place of the parameters is.
+    /// Image of a point of the parameter plane.
     pub fn forward(&self, p: [f64; 2]) -> [f64; 2] {
         std::array::from_fn(|k| between(&self.at[k], &self.sum[k], p[k]))
     }

@@ -1,16 +1,18 @@
 //! Area, middle and cone volume of a part of a surface, by integrals over the part itself: Green's theorem along the
 //! loops, Gauss' rules across them. There are no triangles in it.
 //!
-//! The integral of f over a region is the loop integral of F dv, F the integral of f by u from a line u = const to the
-//! loop (or of -G du, with u and v exchanged). Loops are cut at their breaks and where they cross lines on which the
-//! surface may bend, and so is the way across; each piece is a polynomial or analytic. Rules along and across a piece are
-//! raised apart, and where they end the piece is halved (Sommariva, Vianello 2009, for the rule of one piece).
+//! The integral of f over a region is the loop integral of F dv, F the integral of f by u from a
+//! line u = const to the loop (or of -G du, with u and v exchanged). Loops are split at their
+//! breaks and at crossings with lines on which derivatives of the surface may jump, and so is the
+//! segment across; each piece is a polynomial or analytic. The orders of the rules along and across
+//! a piece are raised independently, and a piece at the maximum order is halved (Sommariva,
+//! Vianello 2009, for the rule of one piece).
 
 use crate::surface::trim_density::crossings;
 use moldloft_num::{Order, Real, Vec3, gauss_rule};
 use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef};
 
-/// Rules may differ by this share of the whole.
+/// Maximum difference between rules, relative to the total.
 const ACCURACY: f64 = 1e-10;
 
 /// Points of the rules along a piece and across it, one after another.
@@ -19,7 +21,7 @@ const RULES: [usize; 5] = [4, 6, 9, 13, 19];
 /// The most evaluations of the surface for one part.
 const MAX_EVALUATIONS: usize = 3_000_000;
 
-/// A curve of a loop, and whether the loop runs against it.
+/// A curve of a loop; true if its direction is opposite to the loop's.
 #[derive(Clone, Copy)]
 pub(crate) struct LoopCurve<'a, T: Real> {
     pub curve: &'a CurveRef<T>,
@@ -47,7 +49,7 @@ impl<T: Real> SurfaceSums<T> {
         }
     }
 
-    /// How far two are apart, in areas of a body of that size.
+    /// Distance between two measures, in areas of a body of that size.
     fn apart(&self, o: &Self, size: f64) -> f64 {
         let moment = (self.moment - o.moment).re().norm();
         let cone = (self.cone - o.cone).re().abs();
@@ -55,32 +57,32 @@ impl<T: Real> SurfaceSums<T> {
     }
 }
 
-/// Where the way across a piece ends.
+/// End of the segment across a piece.
 #[derive(Clone, Copy)]
 enum Far {
     Line(f64),
     Loop,
 }
 
-/// A part of a loop's curve, and a part of the way from the base line to it.
+/// A part of a loop's curve, and a part of the segment from the base line to it.
 #[derive(Clone, Copy)]
 struct LoopPiece<'a, T: Real> {
     of: LoopCurve<'a, T>,
     along: [T; 2],
     near: f64,
     far: Far,
-    /// Halvings of the way across, of which this is part `part`.
+    /// Halvings of the segment across; this is part `part`.
     halvings: u32,
     part: u32,
     rules: [usize; 2],
     sums: SurfaceSums<T>,
-    /// What the rules before leave, along and across.
+    /// Error estimates of the present rules, along and across.
     errors: [f64; 2],
 }
 
 struct SurfaceIntegral<'a, T: Real> {
     surface: &'a SurfaceRef<T>,
-    /// The parameter that runs across: 0 for u.
+    /// Parameter of the direction across: 0 for u.
     across: usize,
     size: f64,
     evaluations: usize,
@@ -126,7 +128,7 @@ impl<'a, T: Real> SurfaceIntegral<'a, T> {
         sums
     }
 
-    /// The piece by these rules, and what rules of fewer points leave.
+    /// The piece by these rules, and its error estimated from rules of fewer points.
     fn ruled(&mut self, mut piece: LoopPiece<'a, T>, rules: [usize; 2]) -> LoopPiece<'a, T> {
         piece.rules = rules;
         piece.sums = self.rule(&piece, rules);
@@ -163,7 +165,8 @@ impl<'a, T: Real> SurfaceIntegral<'a, T> {
     }
 }
 
-/// Where a path crosses a line, as a number of the model's scalar: moved with the path.
+/// Parameter at which a path crosses a line, as a scalar of the model with the derivatives of the
+/// path.
 fn moved<T: Real>(curve: &CurveRef<T>, t: f64, axis: usize, line: f64) -> T {
     let at = T::from(t);
     if T::PARTS == 1 {
@@ -178,8 +181,8 @@ fn moved<T: Real>(curve: &CurveRef<T>, t: f64, axis: usize, line: f64) -> T {
     at - (step - step.re())
 }
 
-/// The measures of the part within loops, the outer one counter-clockwise and the holes clockwise; and an estimate of the
-/// share of its area by which they are wrong.
+/// The measures of the part within loops, the outer one counter-clockwise and the holes clockwise;
+/// and an estimate of the relative error of its area.
 pub(crate) fn measured<'a, T: Real>(
     surface: &'a SurfaceRef<T>,
     loops: &[LoopCurve<'a, T>],
@@ -188,7 +191,7 @@ pub(crate) fn measured<'a, T: Real>(
         c.on_surface(T::from(t), Order::Zero).map(|[w, ..]| [w.x.re(), w.y.re()])
     };
     let lines = surface.breaks();
-    // Across in the direction in which the part is short; from the loop's lowest place.
+    // Across in the direction in which the part is short, from the loop's lowest point.
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for c in loops {
         for p in (0..=32).filter_map(|i| place(c.curve, f64::from(i) / 32.0)) {
@@ -223,7 +226,8 @@ pub(crate) fn measured<'a, T: Real>(
     (measures, if empty { 1.0 } else { error / sums.area.re() })
 }
 
-/// A loop's curve cut at its breaks and at the lines of the surface, with the way to it from the base line.
+/// A loop's curve split at its breaks and at the lines of the surface, with the segments to it from
+/// the base line.
 fn pieces_of<'a, T: Real>(
     of: LoopCurve<'a, T>,
     lines: &[Vec<f64>; 2],
@@ -281,7 +285,7 @@ fn settle<'a, T: Real>(integral: &mut SurfaceIntegral<'a, T>, pieces: &mut Vec<L
         if total <= goal || integral.evaluations > MAX_EVALUATIONS || !total.is_finite() {
             return;
         }
-        // All that are worse than their share, in their order.
+        // All pieces above their allowance, in order.
         let share = 0.5 * goal / pieces.len() as f64;
         let mut next = Vec::with_capacity(pieces.len());
         for piece in pieces.drain(..) {

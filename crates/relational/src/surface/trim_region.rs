@@ -7,10 +7,10 @@ use moldloft_num::{Fineness, Order, Real};
 use moldloft_registry::{CallError, SurfaceRef};
 use std::collections::HashMap;
 
-/// A place of the parameter plane.
+/// A point of the parameter plane.
 pub(crate) type Place<T> = [T; 2];
 
-/// Points inside keep this share of the smallest step of the net from the rim.
+/// Minimum distance of inner points from the rim, relative to the smallest step of the net.
 const NET_MARGIN: f64 = 0.35;
 
 /// Points inside keep this distance from the rim where the plane is stretched by curvature.
@@ -26,7 +26,7 @@ const MAX_FOLDS: usize = 32;
 /// The share of the sides beside an unfolded corner that its vertices take.
 const UNFOLDED: f64 = 1e-3;
 
-/// The parameter plane as it is triangulated, and the lines on which points of the interior are.
+/// The parameter plane for triangulation, and the lines of points of the interior.
 pub(crate) struct TrimPlane {
     stretch: Stretching,
     lines: [Vec<f64>; 2],
@@ -75,7 +75,8 @@ impl TrimPlane {
     }
 }
 
-/// Which of some ascending places on a line v = const are within polygons, by the rule of odd crossings.
+/// Flags of ascending points of a line v = const that are inside polygons, by the rule of odd
+/// crossings.
 fn rows(polygons: &[Vec<[f64; 2]>], us: &[f64], v: f64) -> Vec<bool> {
     let mut at = Vec::new();
     for polygon in polygons {
@@ -108,7 +109,7 @@ fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The distance of a place from a segment.
+/// The distance of a point from a segment.
 fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let size = dx * dx + dy * dy;
@@ -232,7 +233,7 @@ impl SideGrid {
         found.map(|(k, l)| [k, l].map(|k| self.sides[k as usize]))
     }
 
-    /// Whether all sides are at least `margin`, at most a cell, away.
+    /// True if all sides are at least `margin`, at most a cell, away.
     fn far(&self, p: [f64; 2], margin: f64) -> bool {
         let [x, y] = p.map(|x| (x / self.cell).floor() as i64);
         let near = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
@@ -294,7 +295,7 @@ impl TrimRegion {
             .in_field(TrimSurf::<f64>::LOOPS)
     }
 
-    /// Places inside, in parameters, and triangles between the vertices of the loops and them.
+    /// Inner points, in parameters, and triangles between them and the vertices of the loops.
     pub fn net(&self) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
         let mut points: Vec<[f64; 2]> = self.polygons.iter().flatten().copied().collect();
         let rim = points.len();

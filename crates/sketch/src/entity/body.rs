@@ -21,16 +21,16 @@ pub struct MeshBody<T: Real> {
     /// Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
     #[field(default)]
     triangles: Option<Vec<u32>>,
-    /// The exact volume, where it is known.
+    /// Exact volume, if known.
     #[field(default)]
     volume: Option<T>,
-    /// The exact area, where it is known.
+    /// Exact area, if known.
     #[field(default)]
     area: Option<T>,
-    /// The exact centroid, where it is known.
+    /// Exact centroid, if known.
     #[field(default)]
     centroid: Option<Vec3<T>>,
-    /// Corners of panels of four corners, as those of the triangles.
+    /// Corners of quadrilateral panels, numbered as for the triangles.
     #[field(default)]
     quads: Option<Vec<u32>>,
 }

@@ -429,8 +429,8 @@ fn text_width(text: &str) -> f64 {
     13.0 * 0.56 * text.chars().count() as f64
 }
 
-/// Where a text that should begin at `at` stands clear of those before it: there, else up to four lines
-/// lower or higher, whichever is nearest; where none is free, there all the same.
+/// Position for a text at `at` clear of those before it: there, else the nearest of up to four
+/// lines lower or higher; without a free one, there.
 pub fn apart(at: [f64; 2], text: &str, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
     const LINE: f64 = 15.0;
     let width = text_width(text);

@@ -451,7 +451,7 @@ pub fn quarter_turned(object: &SketchObject, about: CoordinateAxis) -> SketchObj
     mirrored(&out, a)
 }
 
-/// The picture drawn anew from positions.
+/// The picture redrawn from positions.
 pub fn redrawn(object: &SketchObject, at: &BTreeMap<PointId, Vec3>) -> SketchObject {
     let mut out = object.clone();
     if let Some(normal) = out.drawing.section {

@@ -1,9 +1,9 @@
 //! The gate: only a closed body that is outward and does not cross itself has a volume.
 //!
-//! Closedness and direction are counted; crossings are looked for between sides and facets whose boxes
-//! meet. What only looks crossed (a vertex on a face) and what is crossed is derived anew by the
-//! arrangement, which keeps what the surface winds around once or more: a hole that a dimension moves
-//! half out of the body becomes a notch, one that has left is gone.
+//! Closedness and direction are counted; intersections are sought between sides and facets whose
+//! boxes overlap. The arrangement decides doubtful cases (a vertex on a face) and reconstructs
+//! intersecting bodies: it keeps the volume of winding number one or more, so that a hole that a
+//! dimension moves half out of the body becomes a notch, and a hole outside it disappears.
 
 use super::combine::{CombineError, newell, resolved, unclear};
 use super::outline::Outline;
@@ -35,7 +35,7 @@ pub enum SolidDefect {
         /// A vertex of the hole.
         hole: PointId,
     },
-    /// It crosses itself and could not be derived anew.
+    /// It intersects itself and could not be reconstructed.
     Unresolved(CombineError),
     /// A coordinate is not finite, or so large that volumes or their derivatives are not.
     NotFinite,
@@ -44,7 +44,7 @@ pub enum SolidDefect {
 /// The largest coordinate of a body.
 const MAX_COORDINATE: f64 = 1e60;
 
-/// The body itself when it is valid, the one derived anew when it crosses itself.
+/// The body itself if it is valid, the reconstructed one if it intersects itself.
 ///
 /// # Errors
 /// [`SolidDefect`], with the place.

@@ -31,7 +31,7 @@ use tree::{BspTree, Containment, ConvexPiece, Divider, SideSurface, Tangled};
 
 /// How many cells a division may have, and primitives its set.
 const MOST: usize = 100_000;
-/// How many cells are looked at to tell whether one side contains the other.
+/// Number of cells sampled to decide whether one side contains the other.
 const LOOKS: usize = 4_000;
 /// How many in all: what is left undecided then makes the set longer, and stays right.
 const ALL_LOOKS: usize = 30_000;

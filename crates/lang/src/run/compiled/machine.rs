@@ -52,7 +52,7 @@ enum Departure<T> {
     },
 }
 
-/// The place that a subscript means, from 0; as the interpreter has it.
+/// Zero-based index of a subscript, rounded as in the interpreter.
 #[inline(always)]
 fn place(x: f64, count: usize) -> Option<usize> {
     // No array has more elements than an i32 counts.

@@ -35,7 +35,7 @@ use registers::RegisterMachine;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// So many times a region is compiled, and then no more.
+/// Maximum number of specialisations of a region.
 const MOST_OF_ONE: usize = 6;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {

@@ -80,7 +80,7 @@ pub(super) fn declared(
     !loads
 }
 
-/// The room that a variable needs.
+/// Storage class of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum RoomKind {
     /// A number; of no type when that depends on what is executed.

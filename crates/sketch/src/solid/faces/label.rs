@@ -10,7 +10,7 @@ use super::regions::SheetRegion;
 use super::wire::Wireframe;
 use moldloft_num::union_find::UnionFind;
 
-/// At most so many answers are kept.
+/// Maximum number of answers kept.
 pub(super) const MAX_ANSWERS: usize = 64;
 
 /// Search steps for one group of cells.
