@@ -384,10 +384,10 @@ def side(
 ) -> FieldShape:
     """The half-space behind a surface: the distance from it, positive on the side of its natural normal.
 
-    It is (p - q) . n for the point q of the surface nearest to p and the normal n there: beyond the edges the
-    half-space goes on along their tangent planes. Where those of two edges come together, and far behind a
-    surface that bends by more than half a turn, the nearest point jumps, and the side with it: cut it before.
-    Its ranges hold there, too.
+    Value: (p - q) . n for the point q of the surface nearest to p and the normal n there; beyond
+    the edges the half-space is continued along their tangent planes. The nearest point, and with it
+    the side, jumps where the planes of two edges meet and far behind a surface that bends by more
+    than half a turn: cut the surface before. The ranges are valid there too.
 
     Parameters
     ----------
@@ -431,7 +431,7 @@ def profile(
 ) -> FieldShape:
     """The signed distance from a closed plane curve, measured in its plane: a prism without ends, negative inside.
 
-    The curve must not cross itself; where it does, what an odd number of turns surrounds is inside.
+    The curve must not cross itself; if it does, regions of odd winding are inside.
 
     Parameters
     ----------
@@ -462,7 +462,7 @@ def extruded(
     curve : curve
         The closed plane curve.
     by : point
-        From its plane to the end.
+        Vector from its plane to the end.
 
     Returns
     -------
@@ -585,7 +585,7 @@ def thin(
     Parameters
     ----------
     set : set
-        The set, whose primitives meet.
+        The set with the intersections of its primitives.
 
     Returns
     -------
@@ -613,7 +613,7 @@ def everything() -> SetShape:
     """
     ...
 def nothing() -> SetShape:
-    """The empty set: where a union of many begins.
+    """The empty set: the start of a union in a loop.
 
     Returns
     -------
@@ -634,7 +634,7 @@ def attributes(
     tolerance: _Number | None = ...,
     tags: _Text | None = ...,
 ) -> SetShape:
-    """The same set with attributes; what its parts say of themselves stays.
+    """The same set with attributes; attributes of its parts take precedence.
 
     They reach every triangle, and the panels of each are a patch under the name.
 
@@ -651,7 +651,7 @@ def attributes(
     tolerance : number, optional
         Distance below which two of its points count as one. At least 0.
     tags : text, optional
-        What else is to be said, as `tag = text` parted by `;`.
+        Further attributes, as `tag = text` separated by `;`.
 
     Returns
     -------
@@ -691,9 +691,9 @@ def polyhedron(
 ) -> SetShape:
     """The set of a closed body of plane faces: exact half-spaces, one for each plane.
 
-    Triangles in one plane make a face. For bodies with thousands of faces, such as a ball of
-    triangles, take `set(inside(body))`. Faces in one plane share its half-space, also when a change of
-    a parameter would move them apart.
+    Coplanar triangles form a face. For bodies with thousands of faces, such as a triangulated ball,
+    use `set(inside(body))`. Coplanar faces share a half-space, even if a change of a parameter
+    would separate them.
 
     Parameters
     ----------
@@ -740,7 +740,7 @@ def turned(
     axis: _Curve,
     angle: _Number,
 ) -> AnyShape:
-    """A field or set turned about a line.
+    """A field or set rotated about a line.
 
     Parameters
     ----------
@@ -800,7 +800,7 @@ def scaled(
     factor : number
         The factor, not 0.
     centre : point, optional
-        The point that stays; the origin by default.
+        Fixed point; default: the origin.
 
     Returns
     -------
@@ -853,9 +853,9 @@ def liming(
     """The surface through the four curves in which two bodies meet two others:
     lambda L1 L2 - (1 - lambda) L3 L4. With one rail, L4 = L3, it touches both bodies where the rail does.
 
-    After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 -
-    (1 - lambda) |L3|^(n + 1). The rail must cut each body outside the other; with a box `low`, `high` that
-    is proved, or the place where it fails is reported.
+    After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 - (1 - lambda)
+    |L3|^(n + 1). The rail must cut each body outside the other; over a box `low`, `high` this is
+    proved, or the point at which it fails is reported.
 
     Parameters
     ----------
@@ -874,7 +874,7 @@ def liming(
     low : point, optional
         Low corner of a box over which the contact is checked.
     high : point, optional
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -900,8 +900,8 @@ def zhang(
     """The transition from one body, which it touches at its rail, to another, which it touches at its own:
     (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 
-    After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; with a box `low`, `high` that is proved,
-    or the place where it fails is reported.
+    After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; over a box `low`, `high` this is
+    proved, or the point at which it fails is reported.
 
     Parameters
     ----------
@@ -920,7 +920,7 @@ def zhang(
     low : point, optional
         Low corner of a box over which the contact is checked.
     high : point, optional
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -951,7 +951,7 @@ def setback(
     a : number
         Setback on the second body, measured by the first. At least 0.
     b : number, optional
-        Setback on the first body, measured by the second; the same by default. At least 0.
+        Setback on the first body, measured by the second; default: the same. At least 0.
 
     Returns
     -------
@@ -975,8 +975,8 @@ def fillet(
 ) -> SetShape:
     """The union of the solid sides of two fields with a fillet in their corner.
 
-    With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
-    place where it fails is reported.
+    For distance fields the widths are lengths. Over a box `low`, `high` the contact is
+    proved, or the point at which it fails is reported.
 
     Parameters
     ----------
@@ -987,14 +987,14 @@ def fillet(
     width : number
         Setback of the blend on both bodies. At least 0.
     other : number, optional
-        Setback on the first body, where it differs. At least 0.
+        Setback on the first body, if different. At least 0.
     lambda : number, optional
         Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
         perpendicular planes. Default 0.666667.
     low : point, optional
         Low corner of a box over which the contact is checked.
     high : point, optional
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -1018,8 +1018,8 @@ def rounded(
 ) -> SetShape:
     """The intersection of the solid sides of two fields with their edge rounded.
 
-    With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
-    place where it fails is reported.
+    For distance fields the widths are lengths. Over a box `low`, `high` the contact is
+    proved, or the point at which it fails is reported.
 
     Parameters
     ----------
@@ -1030,14 +1030,14 @@ def rounded(
     width : number
         Setback of the blend on both bodies. At least 0.
     other : number, optional
-        Setback on the first body, where it differs. At least 0.
+        Setback on the first body, if different. At least 0.
     lambda : number, optional
         Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
         perpendicular planes. Default 0.666667.
     low : point, optional
         Low corner of a box over which the contact is checked.
     high : point, optional
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -1081,7 +1081,7 @@ def transition(
     low : point, optional
         Low corner of a box over which the contact is checked.
     high : point, optional
-        Its high corner.
+        High corner of the box.
 
     Returns
     -------
@@ -1100,7 +1100,7 @@ def smooth_union(
     width: _Number,
     blend: _Text | None = ...,
 ) -> FieldShape:
-    """The union of two bodies with the edge between them filled.
+    """The union of two bodies with the edge between them filled smoothly.
 
     The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
     its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
@@ -1115,7 +1115,7 @@ def smooth_union(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+        Shape of the blend: "quadratic" (default), "cubic" or "circular".
 
     Returns
     -------
@@ -1134,7 +1134,7 @@ def smooth_intersection(
     width: _Number,
     blend: _Text | None = ...,
 ) -> FieldShape:
-    """What two bodies have in common, with its edge rounded.
+    """The intersection of two bodies with the edge between them rounded.
 
     The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
     its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
@@ -1149,7 +1149,7 @@ def smooth_intersection(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+        Shape of the blend: "quadratic" (default), "cubic" or "circular".
 
     Returns
     -------
@@ -1168,7 +1168,7 @@ def smooth_difference(
     width: _Number,
     blend: _Text | None = ...,
 ) -> FieldShape:
-    """One body without another, with the edge between them rounded.
+    """The difference of two bodies with the edge between them rounded.
 
     The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
     its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
@@ -1183,7 +1183,7 @@ def smooth_difference(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Its shape: "quadratic", "cubic" or "circular"; quadratic by default.
+        Shape of the blend: "quadratic" (default), "cubic" or "circular".
 
     Returns
     -------
@@ -1202,20 +1202,21 @@ def remapped(
     y: _Field,
     z: _Field,
 ) -> AnyShape:
-    """A field or set with its coordinates replaced: what was at (x, y, z) is where the three fields have these values.
+    """A field or set under a change of coordinates: its value at p is that of the shape at (x(p),
+    y(p), z(p)).
 
     Twists, bends, tapers and repetitions are such replacements.
 
     Parameters
     ----------
     shape : set
-        What is moved.
+        Field or set.
     x : field
-        What takes the place of x.
+        Field that replaces x.
     y : field
-        What takes the place of y.
+        Field that replaces y.
     z : field
-        What takes the place of z.
+        Field that replaces z.
 
     Returns
     -------
@@ -1237,9 +1238,9 @@ def twisted(
     Parameters
     ----------
     shape : set
-        What is twisted.
+        Field or set.
     rate : number
-        The angle by which each unit of z is turned.
+        Angle of rotation per unit of z.
 
     Returns
     -------
@@ -1288,9 +1289,9 @@ def repeated(
     set : set
         The set.
     by : point
-        From each copy to the next.
+        Vector from each copy to the next.
     count : integer
-        How many there are. 1 to 10000.
+        Number of copies. 1 to 10000.
 
     Returns
     -------
@@ -1309,7 +1310,7 @@ def circular_array(
     count: _Integer,
     angle: _Number | None = ...,
 ) -> SetShape:
-    """Copies of a set about an axis, each turned from the one before by the same angle.
+    """Copies of a set about an axis, each rotated from the one before by the same angle.
 
     Parameters
     ----------
@@ -1318,9 +1319,9 @@ def circular_array(
     axis : curve
         The axis, right-handed.
     count : integer
-        How many copies there are. 1 to 10000.
+        Number of copies. 1 to 10000.
     angle : number, optional
-        The angle from each copy to the next; a full turn by their number by default.
+        Angle from each copy to the next; default: a full turn divided by their number.
 
     Returns
     -------
@@ -1336,7 +1337,8 @@ def circular_array(
 def set_union(
     sets: Sequence[_Set] | _Any,
 ) -> SetShape:
-    """The union of any number of sets, in a balanced tree: what many sets have in common with a place is found fastest so.
+    """The union of any number of sets, in a balanced tree, which is the fastest to evaluate for many
+    sets.
 
     Parameters
     ----------
@@ -1357,7 +1359,7 @@ def set_union(
 def set_intersection(
     sets: Sequence[_Set] | _Any,
 ) -> SetShape:
-    """What any number of sets have in common, in a balanced tree.
+    """The intersection of any number of sets, in a balanced tree.
 
     Parameters
     ----------
@@ -1386,7 +1388,7 @@ def set_offset(
     set : set
         The set, of planes, balls, cylinders, cones and tori.
     distance : number
-        How far its faces move outward.
+        Outward displacement of the faces.
 
     Returns
     -------
@@ -1410,7 +1412,7 @@ def set_shell(
     set : set
         The set, of planes, balls, cylinders, cones and tori.
     thickness : number
-        How thick the wall is. At least 0.
+        Wall thickness. At least 0.
 
     Returns
     -------
@@ -1453,8 +1455,9 @@ def minkowski_sum(
 ) -> SetShape:
     """The Minkowski sum of two sets: all sums of a point of one and a point of the other.
 
-    With a ball it is the set grown by its radius, with round edges. Each set is a union of convex parts, as for
-    `convex_hull`; a cylinder or prism may be added to another of its axis, or to a ball.
+    With a ball it is the set grown by its radius, with round edges. Each set is a union of convex
+    parts, as for `convex_hull`; a cylinder or prism may be added to another with the same axis, or
+    to a ball.
 
     Parameters
     ----------
@@ -1493,13 +1496,12 @@ def set_fillet(
     width : number
         Setback of the blend on both. At least 0.
     other : number, optional
-        Setback on the first set, where it differs. At least 0.
+        Setback on the first set, if different. At least 0.
     lambda : number, optional
         Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
         perpendicular planes. Default 0.666667.
     edges : text, optional
-        The edges, by the names of a face of each set: "top, side; top, front". All of them by
-        default.
+        The edges, by the names of a face of each set: "top, side; top, front". Default: all.
 
     Returns
     -------
@@ -1530,7 +1532,7 @@ def set_round(
         Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
         perpendicular planes. Default 0.666667.
     edges : text, optional
-        The edges, by the names of both faces: "top, side; top, front". All of them by default.
+        The edges, by the names of both faces: "top, side; top, front". Default: all.
 
     Returns
     -------
@@ -1557,7 +1559,7 @@ def set_chamfer(
     width : number
         Setback of the chamfer on both faces. At least 0.
     edges : text, optional
-        The edges, by the names of both faces: "top, side; top, front". All of them by default.
+        The edges, by the names of both faces: "top, side; top, front". Default: all.
 
     Returns
     -------
@@ -1576,9 +1578,10 @@ def volume(
     high: _Point | None = ...,
     accuracy: _Number | None = ...,
 ) -> Expr:
-    """The volume of a set within a box: a best value of high order, whose bracket is `volume_bracket`.
+    """The volume of a set within a box, by a high-order rule; `volume_bracket` gives guaranteed bounds.
 
-    The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+    Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+    the set.
 
     Parameters
     ----------
@@ -1589,8 +1592,8 @@ def volume(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        How well two values, of a box divided once more, agree; by default 1e-8 of the box's
-        volume.
+        Maximum difference of two values at successive divisions of the box; default: 1e-8 of
+        the box's volume.
 
     Returns
     -------
@@ -1611,7 +1614,8 @@ def area(
 ) -> Expr:
     """The area of the surface of a set within a box, sheets counted once.
 
-    The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+    Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+    the set.
 
     Parameters
     ----------
@@ -1622,7 +1626,8 @@ def area(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        How well two values, of a box divided once more, agree; by default 1e-6 of the area.
+        Maximum difference of two values at successive divisions of the box; default: 1e-6 of
+        the area.
 
     Returns
     -------
@@ -1643,7 +1648,8 @@ def wire_length(
 ) -> Expr:
     """The length of the wires of a set within a box: curves in which two sheets meet.
 
-    The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+    Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+    the set.
 
     Parameters
     ----------
@@ -1654,7 +1660,8 @@ def wire_length(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        How well two values, of a box divided once more, agree; by default 1e-6 of the length.
+        Maximum difference of two values at successive divisions of the box; default: 1e-6 of
+        the length.
 
     Returns
     -------
@@ -1675,7 +1682,8 @@ def mass_centre(
 ) -> PointHandle:
     """The centre of mass of a set within a box.
 
-    The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+    Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+    the set.
 
     Parameters
     ----------
@@ -1686,8 +1694,8 @@ def mass_centre(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's
-        volume.
+        Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of
+        the box's volume.
 
     Returns
     -------
@@ -1708,7 +1716,8 @@ def inertia(
 ) -> AnyShape:
     """The rows of the matrix of inertia of a set of density 1 about its centroid.
 
-    The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+    Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
+    the set.
 
     Parameters
     ----------
@@ -1719,8 +1728,8 @@ def inertia(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's
-        volume.
+        Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of
+        the box's volume.
 
     Returns
     -------
@@ -1794,7 +1803,8 @@ def winner(
     set: _Set,
     point: _Point,
 ) -> AnyShape:
-    """The name of the primitive that decides at a point: where unions are least and intersections greatest.
+    """Name of the deciding primitive at a point: the least of a union, the greatest of an
+    intersection.
 
     Parameters
     ----------
@@ -1896,7 +1906,7 @@ def nearest(
 ) -> PointHandle:
     """The point of a set's surface that is nearest to a point.
 
-    The box is found when it is not given.
+    Default box: the bounds of the set.
 
     Parameters
     ----------
@@ -1909,7 +1919,7 @@ def nearest(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        Error bound of the distance; by default 1e-6 of the box.
+        Error bound of the distance; default: 1e-6 of the box.
 
     Returns
     -------
@@ -1939,7 +1949,7 @@ def hit(
     direction : point
         Its direction, of any length.
     length : number, optional
-        Its length; by default through the box of the set. At least 0.
+        Length of the ray; default: through the box of the set. At least 0.
 
     Returns
     -------
@@ -1961,7 +1971,7 @@ def distance(
 ) -> Expr:
     """The distance between two sets; 0 where they overlap or touch.
 
-    The box is found when it is not given.
+    Default box: the bounds of the set.
 
     Parameters
     ----------
@@ -1974,7 +1984,7 @@ def distance(
     high : point, optional
         High corner of the box.
     accuracy : number, optional
-        Error bound of the distance; by default 1e-5 of the box.
+        Error bound of the distance; default: 1e-5 of the box.
 
     Returns
     -------
@@ -2102,10 +2112,10 @@ def geometric(
     ds1: _Number,
     n: _Integer,
 ) -> AnyShape:
-    """`n` numbers from `start` to `end` whose steps grow by one ratio, the first step being `ds1`.
+    """`n` numbers from `start` to `end` with steps in geometric progression; the first step is `ds1`.
 
-    The ratio solves ds1 (r^N - 1) / (r - 1) = |end - start| for N = n - 1 steps; it is below 1 where
-    `ds1` is more than the mean step.
+    The ratio solves ds1 (r^N - 1) / (r - 1) = |end - start| for N = n - 1 steps; it is below 1 if
+    `ds1` exceeds the mean step.
 
     Parameters
     ----------
@@ -2136,8 +2146,8 @@ def geometric2(
     ds2: _Number,
     n: _Integer,
 ) -> AnyShape:
-    """`n` numbers from `start` to `end` whose steps grow by one ratio from both ends inward, the first
-    step being `ds1` and the last `ds2`.
+    """`n` numbers from `start` to `end` with steps that grow by one ratio from both ends inward; the
+    first step is `ds1`, the last `ds2`.
 
     The step at which the two progressions meet is chosen so that they meet as evenly as whole
     numbers of steps allow.
@@ -2247,11 +2257,12 @@ def d_tanhx(
     ds2: _Number,
     n: _Integer,
 ) -> AnyShape:
-    """`n` numbers from `start` to `end` by the hyperbolic tangent law whose first and last steps are
-    `ds1` and `ds2` to the bit.
+    """`n` numbers from `start` to `end` by the hyperbolic tangent law, with first and last steps of
+    exactly `ds1` and `ds2`.
 
-    0 leaves that end free, both 0 gives uniform spacing. On coarse rows `d_tanh`, whose spacings are slopes, misses
-    the asked cells by a third; this one solves for the slopes that give them.
+    A step of 0 leaves that end free; two give uniform spacing. On coarse rows `d_tanh`, whose `ds1`
+    and `ds2` are slopes, misses the requested cells by up to a third; this function solves for the
+    slopes that give them.
 
     Parameters
     ----------
@@ -2310,7 +2321,7 @@ def count_for(
     """The fewest numbers with which `d_tanhx(0, length, ds1, ds2, n)` grows by at most the factor
     `growth` from step to step; with 0 for a free end, as there.
 
-    A whole number: it has no derivatives.
+    The value is an integer and has no derivatives.
 
     Parameters
     ----------
@@ -2339,8 +2350,8 @@ def first_for(
     growth: _Number,
     n: _Integer,
 ) -> Expr:
-    """The first step of `n` numbers over `length` whose steps grow by the factor `growth`:
-    length (growth - 1) / (growth^(n-1) - 1).
+    """The first step of `n` numbers over `length` with steps that grow by the factor `growth`: length
+    (growth - 1) / (growth^(n-1) - 1).
 
     Parameters
     ----------
@@ -2437,16 +2448,16 @@ def makecc(
 ) -> CurveHandle:
     """The cubic spline through the points of a curve, as a pcurve.
 
-    `ends` says what holds at the ends: "natural" (no curvature), "quadratic" (the end piece is a
-    parabola), "specified" (the tangents `t1`, `t2`), "notaknot", "bessel", "periodic"; or one of each
-    as "natural,specified". `basis` is the parameter: "arc", the cumulative chord over the whole;
-    "index"; "centripetal"; "arclen", the true arc length; "arclen+breaks", true arc length of splines
-    that end wherever the curvature jumps, which a plain spline rounds off. It passes through every
-    point, the two ends to the bit.
+    `ends` gives the end conditions: "natural" (zero second derivative), "quadratic" (the end piece
+    is a parabola), "specified" (the tangents `t1`, `t2`), "notaknot", "bessel", "periodic"; or one
+    of each as "natural,specified". `basis` is the parameter: "arc", the cumulative chord over the
+    whole; "index"; "centripetal"; "arclen", the true arc length; "arclen+breaks", true arc length
+    of splines that end at jumps of curvature, which a plain spline rounds off. The curve
+    interpolates every point, the two ends exactly.
 
-    Tangents are dr/ds for the length-like bases and dr/d(index) for "index". Where curvature jumps is
-    found from the points: continued from both sides, the curvatures of circles through three neighbours
-    miss each other there by a quarter and more. `breaks` gives the points by their indices instead.
+    Tangents are dr/ds for the length-like bases and dr/d(index) for "index". Jumps of curvature are
+    detected from the points: the curvatures of circles through three neighbours, extrapolated from
+    both sides, differ there by a quarter or more. `breaks` gives them by indices of points instead.
 
     Parameters
     ----------
@@ -2459,11 +2470,11 @@ def makecc(
         The parameter: "arc", "index", "centripetal", "arclen", "arclen+breaks" or "arc+breaks".
         Default arc.
     t1 : vector, optional
-        Tangent at the start, where it is "specified".
+        Tangent at the start, for "specified".
     t2 : vector, optional
-        Tangent at the end, where it is "specified".
+        Tangent at the end, for "specified".
     breaks : list of integer, optional
-        Indices of the points at which the spline is split; found where not given. At least 1.
+        Indices of the points at which the spline is split; default: detected. At least 1.
 
     Returns
     -------
@@ -2506,8 +2517,8 @@ def makecs(
     basis: _Text | None = ...,
     ends_v: _Text | None = ...,
 ) -> SurfaceHandle:
-    """The bicubic spline surface through the points of a surface, as a psurface: u runs along the first
-    index, v along the second.
+    """The bicubic spline surface through the points of a surface, as a psurface, with u along the
+    first index and v along the second.
 
     `ends` as for `makecc`, without "specified"; `ends_v` for the lines along the second index. Parameters
     are means over the lines: "arc" chords, "index" or "centripetal". Lines that are one point (a nose,
@@ -2523,7 +2534,7 @@ def makecs(
     basis : text, optional
         The parameters: "arc", "index" or "centripetal". Default arc.
     ends_v : text, optional
-        End conditions of the lines along the second index, those of the first if not given:
+        End conditions of the lines along the second index (default: those of the first):
         "natural", "quadratic", "specified", "notaknot", "bessel" or "periodic".
 
     Returns
@@ -2876,7 +2887,7 @@ def dot(
     a : list of number
         Numbers.
     b : list of number
-        As many.
+        Second row, of equal length.
 
     Returns
     -------
@@ -2957,8 +2968,8 @@ def cumlen(
 def centroid(
     o: _Vectors,
 ) -> PointHandle:
-    """The centroid of a curve of points, its steps weighted by their length, or of a surface, its cells
-    by their area; of what has no extent, the mean of the points.
+    """The centroid of a curve of points (segments weighted by length) or of a surface (cells weighted
+    by area); for zero length or area, the mean of the points.
 
     Parameters
     ----------
@@ -3023,7 +3034,7 @@ def where(
     a: object,
     b: object,
 ) -> AnyShape:
-    """What is chosen by a mask: `a` where it holds, else `b`, element by element.
+    """Choice by a mask: `a` where the mask is true, else `b`, element by element.
 
     Numbers or vectors; each a single one or an array of the mask's shape. Both are computed before one is chosen.
 
@@ -3032,9 +3043,9 @@ def where(
     mask : value
         The mask.
     a : value
-        What is taken where it holds.
+        Value where the mask is true.
     b : value
-        What is taken where it does not.
+        Value where it is false.
 
     Returns
     -------
@@ -3054,7 +3065,7 @@ def clamp(
 ) -> AnyShape:
     """Numbers kept between two bounds, element by element; the bounds are numbers or arrays of the same shape.
 
-    The derivative is that of what the value is: of a bound, where it holds.
+    The derivative is that of the number or bound that is returned.
 
     Parameters
     ----------
@@ -3122,15 +3133,15 @@ def find(
     a: object,
     part: _Text | None = ...,
 ) -> AnyShape:
-    """The positions, from 1, at which a mask of a row holds; none when it holds nowhere. Of a text the position of the
-    first occurrence of a part, 0 where there is none.
+    """The positions, from 1, of the true elements of a row; empty if there are none. For a text: the
+    position of the first occurrence of a part, or 0.
 
     Parameters
     ----------
     a : value
         The mask, or the text.
     part : text, optional
-        What is looked for in a text.
+        Part of the text to find.
 
     Returns
     -------
@@ -3220,7 +3231,7 @@ def interp(
     xs : list of number
         Ascending.
     ys : list of number
-        As many.
+        Ordinates, one for each abscissa.
 
     Returns
     -------
@@ -3293,9 +3304,9 @@ def replace(
     text : text
         The text.
     part : text
-        What is replaced, at least one character.
+        Part to replace, at least one character.
     by : text
-        What takes its place.
+        Replacement.
 
     Returns
     -------
@@ -3319,7 +3330,7 @@ def split(
     text : text
         The text.
     separator : text, optional
-        What stands between the parts.
+        Separator of the parts.
 
     Returns
     -------
@@ -3406,7 +3417,7 @@ def append(
     items : value
         The list.
     value : value
-        What is added.
+        Item to append.
 
     Returns
     -------
@@ -3464,8 +3475,7 @@ def points(
 def join(
     *parts: object,
 ) -> AnyShape:
-    """Curves (or farrays) one after the other, as one; where one ends at the start of the next, that
-    point comes once.
+    """Curves (or farrays) joined end to end; a common point of two is kept once.
 
     Ends count as one when they differ by less than 1e-12 of the size: by rounding. The point of the
     first of the two stays.
@@ -3489,8 +3499,8 @@ def join(
 def stack(
     *parts: object,
 ) -> AnyShape:
-    """The surface whose lines s[1,], s[2,], ... are these curves, all equally long; of surfaces of one shape the block
-    whose layers b[,,1], b[,,2], ... they are.
+    """The surface with these curves, of equal length, as lines s[1,], s[2,], ...; or the block with
+    these surfaces, of equal shape, as layers b[,,1], b[,,2], ....
 
     Parameters
     ----------
@@ -3726,16 +3736,16 @@ def rotate(
     axis: object,
     angle: _Number | None = ...,
 ) -> AnyShape:
-    """A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
-    axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840). Quarter turns are
-    exact: those of multiples of PI/2.
+    """A vector, curve, surface or block rotated about an axis, right-handed: rotate(o, axis, angle)
+    about the axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues
+    1840). Rotations by multiples of PI/2 are exact.
 
     Parameters
     ----------
     o : value
         The points to turn.
     p : vector
-        A point of the axis, if an angle is the fourth argument; else the direction of the axis.
+        A point of the axis with four arguments; the direction of the axis with three.
     axis : value
         Direction of the axis; or the angle, in radians.
     angle : number, optional
@@ -3758,11 +3768,12 @@ def revolve(
     a1: _Number,
     n: _Integer,
 ) -> AnyShape:
-    """The surface of a curve turned about the x axis: line s[,j] at the j-th of `n` even angles from
-    `a0` to `a1`.
+    """The surface of revolution of a curve about the x axis: line s[,j] is at the j-th of `n` equally
+    spaced angles from `a0` to `a1`.
 
-    A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
-    exactly: the surface has a pole. Lines at multiples of PI/2 lie exactly in the planes of the axes.
+    A point (x, y, z) maps to (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay
+    there exactly: the surface has a pole. Lines at multiples of PI/2 are exactly in the coordinate
+    planes.
 
     Parameters
     ----------
@@ -3818,8 +3829,8 @@ def frame(
     `tangents(c)` and their vector product a frame at each point (double reflection: Wang and others,
     ACM Trans. Graph. 27, 2008).
 
-    The first normal is `n0` made normal to the first tangent; if not given, one normal to the tangent
-    and to the axis that is furthest from it.
+    The first normal is the component of `n0` normal to the first tangent; by default `n0` is the
+    coordinate axis with the largest angle to the tangent.
 
     Parameters
     ----------
@@ -3845,7 +3856,7 @@ def curvatures(
     """The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
     the inverse radius of the circle through them; at an end that of its neighbour.
 
-    Of curves with a parameter there are `curvc` and `curvature`.
+    For curves with a parameter use `curvc` and `curvature`.
 
     `curvature(c)` of a curve of points is the same; `curvature(c, t)` asks a parametric curve.
 
@@ -3920,7 +3931,7 @@ def mean(
     """The mean curvatures at the points of a surface, positive where it bends towards its natural
     normal s_i x s_j: H = (E N - 2 F M + G L) / (2 (E G - F^2)), of the bicubic spline through them.
 
-    Of numbers and vectors `mean` is their average: see `average`.
+    For numbers and vectors `mean` is their average: see `average`.
 
     Parameters
     ----------
@@ -3967,7 +3978,7 @@ def closest(
     """The parameter of the point of a curve that is nearest to a point; for each point of a curve of
     points, an farray.
 
-    Of equally near ones the first. Ends count.
+    With several at equal distance, the first. Ends are included.
 
     Parameters
     ----------
@@ -3992,11 +4003,11 @@ def project(
     surface: _Surface,
     dir: object,
 ) -> AnyShape:
-    """The points of a surface that are nearest to the points of an array ("closest"), or that lie behind
-    or before them along a direction.
+    """The points of a surface nearest to the points of an array ("closest"), or their projections
+    along a direction, either way.
 
-    Of several meetings along a direction the nearest counts. With "closest" edges count: a point
-    beyond an edge comes to lie on it.
+    Along a direction the nearest of several intersections counts. With "closest" a point beyond an
+    edge is projected to the edge.
 
     Parameters
     ----------
@@ -4084,11 +4095,12 @@ def tfi(
     """Transfinite interpolation: the surface with the four edges of `s`, to the bit, and its inside
     interpolated from them.
 
-    `s` is a surface whose edges are set (what is inside does not matter); or a list of four curves,
-    s[1,], s[m,], s[,1], s[,n], which must meet in the corners; or a list of six surfaces, the faces
-    i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is that block. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
-    length with cubic blending: blocks join smoothly) or "soni2" (arc lengths averaged rather than
-    intersected). An edge without length, a pole, takes the spacing of the opposite one.
+    `s` is a surface with its edges set (inner points are ignored); or a list of four curves, s[1,],
+    s[m,], s[,1], s[,n], which must meet at the corners; or a list of six surfaces, the faces i = 1,
+    i = ni, j = 1, j = nj, k = 1, k = nk of a block, for which the value is that block. `kind` is
+    "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc length with cubic
+    blending: blocks join smoothly) or "soni2" (averaged arc lengths instead of their intersection).
+    An edge of zero length, a pole, takes the spacing of the opposite one.
 
     Parameters
     ----------
@@ -4123,24 +4135,25 @@ def elliptic(
     """A grid smoothed by the elliptic equations
     a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.
 
-    `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (the spacing of the edges is carried
+    `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
     inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
-    1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one on the
-    surface `on`, or, if that is not given, on the spline surface through its own points. `n` sweeps are done
-    at most, fewer when no point moves by more than `tol` of the size and walls have what is asked; when they
-    are not enough, a remark says how far off the grid is. For "sorenson" `walls` names edges, "i1", "im", "j1",
-    "jn", blank-separated, `spacing` is the first cell there, `angle` the angle of the grid lines to
-    the wall. A result with folded cells is refused, unless `folded` is "allow".
+    1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one
+    on the surface `on`, by default on the spline surface through its own points. The iteration ends
+    after `n` sweeps, or once no point moves by more than `tol` of the size and the walls have the
+    requested spacing and angle; without convergence a remark gives the residual. For "sorenson"
+    `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
+    height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
+    error, unless `folded` is "allow".
 
     Parameters
     ----------
     s : curve or surface
         The grid.
     n : integer, optional
-        The most sweeps. 0 to 1e+06, default 5000.
+        Maximum number of sweeps. 0 to 1e+06, default 5000.
     tol : number, optional
-        Stops when no point moves by more than this share of the size. At least 0, default
-        1e-08.
+        Convergence: maximum displacement of a point in a sweep, relative to the size. At least
+        0, default 1e-08.
     method : text, optional
         "laplace", "middlecoff" or "sorenson". Default laplace.
     on : surface, optional
@@ -4148,9 +4161,9 @@ def elliptic(
     walls : text, optional
         Walls, for the method sorenson: "i1", "im", "j1", "jn".
     spacing : number, optional
-        Spacing off the walls. At least 0.
+        First cell height at the walls. At least 0.
     angle : number, optional
-        Angle to the walls; a right one if not given. Default 1.5708.
+        Angle to the walls; default: a right angle. Default 1.5708.
     omega : number, optional
         Over-relaxation. 0.01 to 1.99, default 1.3.
     folded : text, optional
@@ -4179,17 +4192,19 @@ def hyperbolic(
     """A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
     and Steger 1992): lines leave it at right angles, with the layers at given heights.
 
-    Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve, to the
-    left of its direction as seen against `normal`: the value is the surface whose line g[k,] is layer k; it
-    lies in the plane of the curve, or on the surface `on` (a collar). The first layer has its height
-    everywhere, at corners and sharp tails too; heights farther out are means. `sides` says what happens at
-    edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an edge that is one point, "symmetry x", "y"
-    or "z" for one in a plane of symmetry of constant x, y or z, "constant x", "y" or "z" for one that only
-    keeps that coordinate, "periodic" for two that are one line; edges that are not named are free. The ends of
-    a curve are "i1" and "im". Every cell is tested; what would fold is marched with less constraint and more
-    smoothing, or refused with the layer, the place and the cause. `stop` ends a march early: "keep" (below the
-    layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the first layer with a worse
-    cell), "isotropic" (with the first layer whose cells are as high as long).
+    Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
+    to the left of its direction for a view against `normal`: the value is the surface whose line
+    g[k,] is layer k, in the plane of the curve or on the surface `on` (a collar). The first layer
+    has its height everywhere, also at corners and sharp tails; heights farther out are means.
+    `sides` gives conditions at edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an
+    edge that is one point; "symmetry x", "y" or "z" for an edge in a symmetry plane of constant x,
+    y or z; "constant x", "y" or "z" for an edge that only keeps that coordinate; "periodic" for two
+    coincident edges; edges without a condition are free. The ends of a curve are "i1" and "im".
+    Every cell is tested; a layer that would fold is marched with weaker constraints and more
+    smoothing, or is an error with layer, position and cause. `stop` ends a march early: "keep"
+    (below the layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the
+    first layer with a worse cell), "isotropic" (with the first layer whose cells are as high as
+    long).
 
     Parameters
     ----------
@@ -4201,10 +4216,9 @@ def hyperbolic(
         Conditions at the edges: "i1", "im", "j1", "jn" with "pole", "free", "periodic",
         "symmetry x", "symmetry y", "symmetry z", "constant x", "constant y" or "constant z".
     smoothing : number, optional
-        How strongly converging lines are smoothed apart; 0 for not at all. 0 to 10, default 1.
+        Strength of the smoothing of converging lines; 0: none. 0 to 10, default 1.
     normal : vector, optional
-        Normal of the plane of a curve, z if not given; with `on`, the side of the surface that
-        is seen.
+        Normal of the plane of a curve, default z; with `on`, the visible side of the surface.
     stop : text, optional
         When the march ends early: "keep", "jacobian 0.1", "skew 0.9", "growth 1.5" or
         "isotropic".
@@ -4233,26 +4247,26 @@ def elliptic_block(
 ) -> AnyShape:
     """A block smoothed by the elliptic equations; its faces stay.
 
-    `method`: "laplace" evens lines out, "middlecoff" carries the spacing of the edges inward. `walls` names faces,
-    "i1", "in", "j1", "jn", "k1", "kn", blank-separated, off which lines leave at right angles with the first cell
-    `spacing` (by the iteration of Hilgenstock 1988). A remark says how far off the block is when `n` sweeps are not
-    enough; folded cells are refused.
+    `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
+    `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
+    lines are perpendicular with the first cell height `spacing` (by the iteration of Hilgenstock
+    1988). Without convergence in `n` sweeps a remark gives the residual; folded cells are an error.
 
     Parameters
     ----------
     b : block
         The block.
     n : integer, optional
-        The most sweeps. 0 to 1e+06, default 2000.
+        Maximum number of sweeps. 0 to 1e+06, default 2000.
     tol : number, optional
-        Stops when no point moves by more than this share of the size. At least 0, default
-        1e-08.
+        Convergence: maximum displacement of a point in a sweep, relative to the size. At least
+        0, default 1e-08.
     method : text, optional
         "laplace" or "middlecoff". Default middlecoff.
     walls : text, optional
         Walls: "i1", "in", "j1", "jn", "k1", "kn".
     spacing : number, optional
-        The first cell off the walls. At least 0.
+        First cell height at the walls. At least 0.
     omega : number, optional
         Over-relaxation. 0.01 to 1.99, default 1.
 
@@ -4272,12 +4286,12 @@ def o_grid(
     heights: _Numbers,
     base: _Integer | None = ...,
 ) -> AnyShape:
-    """An O-grid round a section in x and y: the surface whose line g[k,] is layer k, its first and last columns the same
-    line from the tail.
+    """An O-grid round a section in x and y: the surface whose line g[k,] is layer k; its first and
+    last columns coincide in a line from the tail.
 
-    The section is given once round, from the tail to the tail, either way; the gap of a blunt tail is closed with
-    `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its angle: a C-grid has better cells
-    there.
+    The section is a closed curve from tail to tail, in either direction; the gap of a blunt tail is
+    closed with `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its
+    angle: a C-grid has better cells there.
 
     Parameters
     ----------
@@ -4305,12 +4319,13 @@ def c_grid(
     wake: _Number,
     n: _Integer,
 ) -> AnyShape:
-    """A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end of the wake below
-    the section round its nose to the far end above it.
+    """A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end
+    of the wake below the section round its nose to the far end above it.
 
-    The section is given once round, from the tail to the tail, either way, the tail at its greatest x. The wake runs
-    along x for the length `wake` in `n` cells that grow from the cell at the tail; both its sides have the same
-    points, to the bit. A blunt tail is an error: close it, or make an O-grid.
+    The section is a closed curve from tail to tail, in either direction, with the tail at its
+    greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
+    cell at the tail; both its sides have identical points. A blunt tail is an error: close it, or
+    make an O-grid.
 
     Parameters
     ----------
@@ -4342,16 +4357,17 @@ def h_grid(
     n: _Integer,
     sweeps: _Integer | None = ...,
 ) -> AnyShape:
-    """An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
-    section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
-    last height below the lower and above the upper end of the section.
+    """An H-grid round a section in x and y: the list of two surfaces, below and above it. Their lines
+    g[,1] are the section's side between the stagnation line ahead of the nose and the wake; their
+    lines g[,n] are straight, at the last height below and above the section.
 
-    The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
-    greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the
-    section's own at nose and tail. Both surfaces share their points there to the bit; both are right-handed, so the
-    lower one runs upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
-    first height, at right angles; a remark says how far off it is when `sweeps` are not enough. With `sweeps` 0 the
-    grid is that of `tfi`.
+    The section is a closed curve from tail to tail, in either direction, with the nose at its least
+    x and a sharp tail at its greatest. The lines ahead and behind are parallel to x over `ahead`
+    and `behind`, with `n` cells each that grow from the section's own at nose and tail. Both
+    surfaces have identical points there; both are right-handed, so the lower one is directed
+    upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
+    first height, at right angles; without convergence in `sweeps` a remark gives the residual. With
+    `sweeps` 0 the grid is that of `tfi`.
 
     Parameters
     ----------
@@ -4385,15 +4401,16 @@ def quality(
 ) -> AnyShape:
     """The quality of the cells of a grid [m,n]: numbers [m-1,n-1]; of a block [l,m,n]: numbers [l-1,m-1,n-1].
 
-    "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
-    turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
-    "growth_i", "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the
-    corners from a plane over the size; "turn": the greatest angle by which grid lines turn there;
-    "area". Cells at poles count as triangles.
+    "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative at an inverted
+    corner; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best; "growth_i",
+    "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the corners
+    from a plane relative to the size; "turn": the greatest angle between consecutive segments of a
+    grid line; "area". Cells at poles count as triangles.
 
-    Of blocks: "sj", the least triple product of the unit edges at a corner, negative where it is turned over against
-    the block's own hand; "skew" of all angles of faces; "aspect" of the lines between the middles of opposite faces;
-    "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners at edges without length do not count.
+    Blocks: "sj", the least triple product of the unit edges at a corner, negative if opposite to
+    the block's own orientation; "skew" of all angles of faces; "aspect" of the lines between the
+    middles of opposite faces; "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners
+    at edges of zero length are ignored.
 
     Parameters
     ----------
@@ -4649,7 +4666,7 @@ def log(
 def log10(
     x: object,
 ) -> AnyShape:
-    """Logarithm to the base 10; of a power of ten its whole exponent.
+    """Logarithm to base 10; exact for powers of ten.
 
     Parameters
     ----------
@@ -4733,7 +4750,7 @@ def tanh(
 def abs(
     x: object,
 ) -> AnyShape:
-    """Absolute value; of a field its sheet, which has no solid side.
+    """Absolute value; for a field its zero set as a sheet, without a solid side.
 
     Parameters
     ----------
@@ -4775,7 +4792,7 @@ def s_sqrt(
 def floor(
     x: object,
 ) -> AnyShape:
-    """The greatest whole number that is not greater.
+    """The greatest integer not above x.
 
     Parameters
     ----------
@@ -4796,7 +4813,7 @@ def floor(
 def ceil(
     x: object,
 ) -> AnyShape:
-    """The least whole number that is not less.
+    """The least integer not below x.
 
     Parameters
     ----------
@@ -4817,7 +4834,7 @@ def ceil(
 def round(
     x: object,
 ) -> AnyShape:
-    """The nearest whole number; halves away from zero.
+    """The nearest integer; halves are rounded away from zero.
 
     Parameters
     ----------
@@ -4859,7 +4876,7 @@ def sign(
 def radians(
     x: object,
 ) -> AnyShape:
-    """An angle given in degrees, in radians.
+    """Converts degrees to radians.
 
     Parameters
     ----------
@@ -4880,7 +4897,7 @@ def radians(
 def degrees(
     x: object,
 ) -> AnyShape:
-    """An angle given in radians, in degrees.
+    """Converts radians to degrees.
 
     Parameters
     ----------
@@ -4974,7 +4991,7 @@ def div(
     a: object,
     b: object,
 ) -> AnyShape:
-    """Whole quotient of a / b, rounded down.
+    """Integer quotient of a / b, rounded down.
 
     Parameters
     ----------
@@ -5001,7 +5018,7 @@ def min(
     d: object | None = ...,
     axis: object | None = ...,
 ) -> AnyShape:
-    """The least number of an array; of several arguments the least, element by element.
+    """The least number of an array; with several arguments, the least element by element.
 
     Parameters
     ----------
@@ -5034,7 +5051,7 @@ def max(
     d: object | None = ...,
     axis: object | None = ...,
 ) -> AnyShape:
-    """The greatest number of an array; of several arguments the greatest, element by element.
+    """The greatest number of an array; with several arguments, the greatest element by element.
 
     Parameters
     ----------
@@ -5067,7 +5084,7 @@ def sum(
     d: object | None = ...,
     axis: object | None = ...,
 ) -> AnyShape:
-    """The sum of the numbers of an array; of several arguments the sum, element by element.
+    """The sum of the numbers of an array; with several arguments, the sum element by element.
 
     Parameters
     ----------
@@ -5156,7 +5173,7 @@ def open(
     mode : text, optional
         "r", "w" or "a"; "r" by default.
     unit : integer, optional
-        Number of the unit; it may stand first, as in open(7, name).
+        Number of the unit; may be the first argument, as in open(7, name).
 
     Returns
     -------
@@ -5229,7 +5246,7 @@ def read(
     f : file
         The file, or its unit.
     variables : list of variable
-        What is filled, in order: variables, elements and sections.
+        Variables, elements and sections to fill, in order.
 
     Returns
     -------
@@ -5314,14 +5331,14 @@ def rewind(
 def count(
     *args: object,
 ) -> Expr:
-    """The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.
+    """The number of items of a multiple argument or a list; for a mask, the number of true elements.
 
     Called as `count(c)`.
 
     Parameters
     ----------
     c : argument, list or mask
-        What is counted.
+        Multiple argument, list or mask.
 
     Returns
     -------
@@ -5367,7 +5384,7 @@ def ieee(
     Parameters
     ----------
     on : number, optional
-        0 makes them errors again; 1 by default.
+        0: errors again; default 1.
 
     Returns
     -------
@@ -5483,7 +5500,7 @@ def write_p3d(
         "3d" or "2d"; "whole" or "planes"; "little" or "big"; "iblank"; "mark8". The first of
         each by default.
     s : list of curve, surface or block
-        What is written; an farray of whole numbers behind one is its blanking.
+        Arrays to write; an farray of integers after one is its blanking.
 
     Returns
     -------
@@ -5508,7 +5525,7 @@ def write_vts(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        What is written; lists of them count as their members.
+        Arrays to write; a list stands for its members.
 
     Returns
     -------
@@ -5533,9 +5550,9 @@ def plot(
     name : text
         Name of the file, ending in .png or .svg.
     view : text, optional
-        "x", "y", "z", "-x", "-y", "-z" or "iso"; by default the one that shows most.
+        "x", "y", "z", "-x", "-y", "-z" or "iso"; default: the view with the largest image.
     s : list of curve, surface or block
-        What is drawn.
+        Curves, surfaces and blocks to draw.
 
     Returns
     -------
@@ -5562,7 +5579,7 @@ def write_stl(
     words : text, optional
         "flip" reverses the normals.
     s : list of curve, surface or block
-        What is written; lists of them count as their members.
+        Arrays to write; a list stands for its members.
 
     Returns
     -------
@@ -5587,7 +5604,7 @@ def write_cgns(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        What is written; lists of them count as their members.
+        Arrays to write; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
         faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
@@ -5616,7 +5633,7 @@ def write_su2(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        What is written: blocks, or surfaces in one plane; lists count as their members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5645,7 +5662,7 @@ def write_gmsh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        What is written: blocks, or surfaces in one plane; lists count as their members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5674,7 +5691,7 @@ def write_blockmesh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        What is written: blocks, or surfaces in one plane; lists count as their members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5703,7 +5720,7 @@ def write_csv(
     name : text
         Name of the file, beside the program.
     c : list of curve or surface
-        What is written.
+        Curves or surfaces to write.
 
     Returns
     -------
@@ -5728,7 +5745,7 @@ def read_p3d(
     name : text
         Name of the file, beside the program.
     block : integer, optional
-        Number of the block in the file; 1 by default.
+        Number of the block in the file; default 1.
 
     Returns
     -------
@@ -5753,7 +5770,7 @@ def iblank_p3d(
     name : text
         Name of the file, beside the program.
     block : integer, optional
-        Number of the block in the file; 1 by default.
+        Number of the block in the file; default 1.
 
     Returns
     -------
@@ -5801,7 +5818,7 @@ def read_cgns(
     name : text
         Name of the file, beside the program.
     zone : integer or text, optional
-        Number or name of the zone; 1 by default.
+        Number or name of the zone; default 1.
 
     Returns
     -------

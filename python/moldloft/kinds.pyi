@@ -131,7 +131,7 @@ def RelPoint(
     name : str
         The name of the object.
     point : point
-        The point it is relative to.
+        Reference point.
     dx : number, optional
         Offset along x. Default 0.
     dy : number, optional
@@ -219,19 +219,19 @@ def FramePoint(
 ) -> PointHandle:
     """A point at an offset from another, in the axes of a frame.
 
-    Type 0: the offset is (a, b, c) along the axes. Type 1: cylindrical, a the distance from the z
-    axis, b the angle from x toward y, c the height. Type 2: spherical, a the distance, b the
-    longitude, c the latitude. Without a point it is the frame's origin; a point in place of a frame
-    gives the axes of the world there.
+    Type 0: Cartesian offset (a, b, c). Type 1: cylindrical, with a the distance from the z axis, b
+    the angle from x toward y, c the height. Type 2: spherical, with a the distance, b the
+    longitude, c the latitude. The point defaults to the frame's origin. A point given as `frame`
+    stands for world axes at that point.
 
     Parameters
     ----------
     name : str
         The name of the object.
     point : point, optional
-        The point it is relative to.
+        Reference point; default: the frame's origin.
     frame : frame, optional
-        The frame whose axes are meant; those of the world when not given.
+        Frame of the axes; default: world axes.
     a : number, optional
         First coordinate. Default 0.
     b : number, optional
@@ -283,9 +283,9 @@ def PolarPoint(
     name : str
         The name of the object.
     point : point, optional
-        The point it is relative to; the frame's origin when not given.
+        Reference point; default: the frame's origin.
     frame : frame, optional
-        The frame whose axes are meant; those of the world when not given.
+        Frame of the axes; default: world axes.
     r : number
         Distance.
     theta : number, optional
@@ -411,7 +411,7 @@ def RotatPoint(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> PointHandle:
-    """A point turned about a line by an angle, right-handed (Rodrigues).
+    """A point rotated about a line by an angle, right-handed (Rodrigues).
 
     Parameters
     ----------
@@ -459,8 +459,8 @@ def CopyPoint(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> PointHandle:
-    """A point copied from one place to another, scaled along the axes:
-    X = to + (sx, sy, sz) (P - from), coordinate by coordinate.
+    """A point copied from one reference point to another and scaled along the axes: X = to + (sx, sy,
+    sz) (P - from), component by component.
 
     Parameters
     ----------
@@ -512,8 +512,8 @@ def BlendPoint(
 ) -> PointHandle:
     """The weighted sum of points: X = sum w_i P_i.
 
-    Weights that do not add up to 1 raise a warning: only with a sum of 1 the blend moves with its points. The weights 1, -1, 1 give
-    the fourth corner of a parallelogram. Equal weights when none are given.
+    By default the weights are equal. Weights whose sum is not 1 raise a warning: the blend would
+    not translate with its points. The weights 1, -1, 1 give the fourth corner of a parallelogram.
 
     Parameters
     ----------
@@ -557,8 +557,9 @@ def CentroidPoint(
     """The centroid of points, of curves by their length, of surfaces by their area, or of solids and closed
     bodies of triangles by their volume.
 
-    A list is of one class: a point has neither length nor area to weigh against a curve. Left-handed
-    solids count like right-handed ones; where a solid is folded, what is covered twice counts twice.
+    All entries have one class, since a point has neither length nor area to weigh against a curve.
+    Left-handed solids count as positive volume; where a solid is folded, volume covered twice
+    counts twice.
 
     Parameters
     ----------
@@ -650,8 +651,8 @@ def ProjPoint(
 
     On the zero set of a field it is the foot found by descent along the field.
 
-    On a surface it is the nearest foot; from a magnet of the surface the one that descent from
-    there leads to. A foot beyond an edge is clamped to the edge and reported.
+    On a surface it is the nearest foot; from a magnet of the surface, the foot found by descent
+    from there. A foot beyond an edge is clamped to the edge and reported.
 
     Parameters
     ----------
@@ -697,22 +698,22 @@ def IntPoint(
 ) -> PointHandle:
     """The point that three planes, surfaces or zero sets of fields have in common.
 
-    With magnets instead of surfaces it is the one that Newton's method from there leads to. Without
-    them all are looked for: the one nearest to `near` is taken, or that nearest to the middle of the
-    surfaces' parameters, and the others are reported.
+    With magnets instead of surfaces it is the point found by Newton's method from there. Without
+    them all points are sought: the one nearest to `near`, by default nearest to the middle of the
+    surfaces' parameters, is the result, and the others are reported.
 
     Parameters
     ----------
     name : str
         The name of the object.
     shape1 : target
-        A plane, a surface (or a magnet of it near the point that is meant), or a field.
+        A plane, a surface (or a magnet on it near the intended point), or a field.
     shape2 : target
         Another.
     shape3 : target
         A third.
     near : point, optional
-        Of several common points the one nearest to this is meant.
+        Selects the nearest of several common points.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -747,15 +748,15 @@ def AbsBead(
 ) -> BeadHandle:
     """A point on a curve at a given parameter: X = C(t).
 
-    Outside [0, 1] it is on the natural continuation of the curve's formula. On a snake it is a
-    ring: it knows its place on the surface too.
+    Outside [0, 1] it continues the curve's formula. On a snake the bead is a ring and has a
+    position on the surface too.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve
-        The curve it is on.
+        Host curve.
     t : number
         Its parameter.
     **attributes
@@ -800,7 +801,7 @@ def RelBead(
     name : str
         The name of the object.
     bead : bead
-        The bead it is relative to.
+        Reference bead.
     dt : number
         Difference of parameter.
     **attributes
@@ -835,8 +836,8 @@ def ArcLenBead(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> BeadHandle:
-    """The bead at a given length along a curve from another bead, or from its start; negative lengths
-    run backwards.
+    """The bead at a signed arc length along a curve from another bead or from the curve's start;
+    negative lengths run backwards.
 
     Parameters
     ----------
@@ -923,14 +924,14 @@ def AbsMagnet(
 ) -> MagnetHandle:
     """A point on a surface at given parameters: X = S(u, v).
 
-    Outside [0, 1] it is on the natural continuation of the surface's formula.
+    Outside [0, 1] it continues the surface's formula.
 
     Parameters
     ----------
     name : str
         The name of the object.
     surface : surface
-        The surface it is on.
+        Host surface.
     u : number
         Its first parameter.
     v : number
@@ -976,7 +977,7 @@ def RelMagnet(
     name : str
         The name of the object.
     magnet : magnet
-        The magnet it is relative to.
+        Reference magnet.
     du : number, optional
         Difference of the first parameter. Default 0.
     dv : number, optional
@@ -1057,7 +1058,7 @@ def AbsRing(
 ) -> RingHandle:
     """A point on a snake at a given parameter: X = S(w(t)).
 
-    It is a bead of the snake and a magnet of the surface at once.
+    It is both a bead of the snake and a magnet of the surface.
 
     Parameters
     ----------
@@ -1106,7 +1107,7 @@ def RelRing(
     name : str
         The name of the object.
     ring : ring
-        The ring it is relative to.
+        Reference ring.
     dt : number
         Difference of parameter.
     **attributes
@@ -1141,8 +1142,8 @@ def ArcLenRing(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RingHandle:
-    """The ring at a given length along a snake from another ring, or from its start: as an
-    arc-length bead.
+    """The ring at a signed arc length along a snake from another ring or from the snake's start;
+    negative lengths run backwards.
 
     Parameters
     ----------
@@ -1227,19 +1228,19 @@ def IntBead(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> BeadHandle:
-    """The point where a curve meets a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken and the others are reported.
+    """The intersection of a curve with a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one it is the intersection nearest to t = 0.5, and the others are reported.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve or bead
-        The curve, or a bead of it near the place that is meant.
+        The curve, or a bead on it near the intended point.
     target : target
         A plane, surface (or magnet), curve (or bead), or the centre of a sphere.
     point : point, optional
-        For a plane: the parallel plane through this point is meant. For a centre: the sphere
-        through this point.
+        With a plane: selects the parallel plane through this point. With a centre: a point of
+        the sphere.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1273,14 +1274,14 @@ def XYZBead(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> BeadHandle:
-    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken.
+    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one it is the point nearest to t = 0.5.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve or bead
-        The curve, or a bead of it near the place that is meant.
+        The curve, or a bead on it near the intended point.
     axis : text
         The coordinate: "x", "y" or "z".
     value : number
@@ -1317,14 +1318,14 @@ def ProjBead(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> BeadHandle:
-    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot that descent leads to; without one the nearest of all. Where the foot would lie beyond an end, the end is taken and reported.
+    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot found by descent; without one, the nearest of all. If the foot is beyond an end, the end is the result and is reported.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve or bead
-        The curve, or a bead of it near the place that is meant.
+        The curve, or a bead on it near the intended point.
     point : point
         The point to project.
     **attributes
@@ -1366,7 +1367,7 @@ def ProxBead(
     name : str
         The name of the object.
     curve : curve or bead
-        The curve, or a bead of it near the place that is meant.
+        The curve, or a bead on it near the intended point.
     point : point
         The point to be near to.
     **attributes
@@ -1405,7 +1406,7 @@ def ProjMagnet(
     """The projection of a point onto a surface: along the surface's normal (the foot of the
     perpendicular), along a direction, or away from a point.
 
-    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot
+    From a magnet it is the foot found by Newton's method; without one, the nearest of all. A foot
     beyond an edge is clamped to the edge and reported.
 
     Parameters
@@ -1415,10 +1416,10 @@ def ProjMagnet(
     point : point
         The point to project.
     surface : surface or magnet
-        The surface, or a magnet of it near the place that is meant.
+        The surface, or a magnet on it near the intended point.
     mirror : mirror, optional
-        Along what: a plane's normal, a line's direction, or away from a point. Not given: along
-        the surface's own normal.
+        Direction of projection: a plane's normal, a line's direction, or rays from a point.
+        Default: the surface's own normal.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1494,7 +1495,7 @@ def IntMagnet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> MagnetHandle:
-    """The point where a curve goes through a surface, as a point of the surface: C(t) = S(u, v).
+    """The intersection of a curve with a surface, as a point of the surface: C(t) = S(u, v).
 
     The bead names the curve and a start t, the magnet the surface and a start (u, v).
 
@@ -1548,7 +1549,7 @@ def XYZMagnet(
     name : str
         The name of the object.
     surface : surface or magnet
-        The surface, or a magnet of it near the place that is meant.
+        The surface, or a magnet on it near the intended point.
     axis1 : text
         The first coordinate: "x", "y" or "z".
     value1 : number
@@ -1599,7 +1600,7 @@ def TanMagnet(
     name : str
         The name of the object.
     magnet : magnet
-        The magnet it is relative to.
+        Reference magnet.
     a : number, optional
         Distance along u. Default 0.
     b : number, optional
@@ -1637,7 +1638,7 @@ def IntRing(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RingHandle:
-    """The point where a curve meets a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken and the others are reported.
+    """The intersection of a curve with a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one it is the intersection nearest to t = 0.5, and the others are reported.
 
     The same on a snake, as a ring.
 
@@ -1646,12 +1647,12 @@ def IntRing(
     name : str
         The name of the object.
     snake : snake or ring
-        The snake, or a ring of it near the place that is meant.
+        The snake, or a ring on it near the intended point.
     target : target
         A plane, surface (or magnet), curve (or bead), or the centre of a sphere.
     point : point, optional
-        For a plane: the parallel plane through this point is meant. For a centre: the sphere
-        through this point.
+        With a plane: selects the parallel plane through this point. With a centre: a point of
+        the sphere.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1685,7 +1686,7 @@ def XYZRing(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RingHandle:
-    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken.
+    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one it is the point nearest to t = 0.5.
 
     The same on a snake, as a ring.
 
@@ -1694,7 +1695,7 @@ def XYZRing(
     name : str
         The name of the object.
     snake : snake or ring
-        The snake, or a ring of it near the place that is meant.
+        The snake, or a ring on it near the intended point.
     axis : text
         The coordinate: "x", "y" or "z".
     value : number
@@ -1731,7 +1732,7 @@ def ProjRing(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RingHandle:
-    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot that descent leads to; without one the nearest of all. Where the foot would lie beyond an end, the end is taken and reported.
+    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot found by descent; without one, the nearest of all. If the foot is beyond an end, the end is the result and is reported.
 
     The same on a snake, as a ring.
 
@@ -1740,7 +1741,7 @@ def ProjRing(
     name : str
         The name of the object.
     snake : snake or ring
-        The snake, or a ring of it near the place that is meant.
+        The snake, or a ring on it near the intended point.
     point : point
         The point to project.
     **attributes
@@ -1784,7 +1785,7 @@ def ProxRing(
     name : str
         The name of the object.
     snake : snake or ring
-        The snake, or a ring of it near the place that is meant.
+        The snake, or a ring on it near the intended point.
     point : point
         The point to be near to.
     **attributes
@@ -1835,7 +1836,7 @@ def Line(
     p2 : point
         End.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1873,11 +1874,11 @@ def Arc(
 ) -> CurveHandle:
     """A circular arc, uniform in angle.
 
-    Six types (types 1 and 3 to 6 are our numbers for those of the catalogue): 1 through p1, p2 and
-    p3; 2 from p1 about the centre p2, the shorter way to the direction of p3; 3 from p1, tangent to
-    the line toward p2, to p3; 4 from p1 to p3, tangent there to the line that comes from p2; 5 the
-    semicircle from p1 to p2 on the side of p3; 6 the full circle from p1 about the centre p2,
-    setting out toward the side of p3.
+    Six types: 1 through p1, p2 and p3; 2 from p1 about the centre p2, along the shorter arc to the
+    direction of p3; 3 from p1, tangent to the line toward p2, to p3; 4 from p1 to p3, tangent there
+    to the line from p2; 5 the semicircle from p1 to p2 on the side of p3; 6 the full circle from p1
+    about the centre p2, starting toward the side of p3. The numbers of types 1 and 3 to 6 are
+    specific to this program.
 
     Points in line make types 1 to 4 a straight line, which the arc approaches smoothly.
 
@@ -1894,7 +1895,7 @@ def Arc(
     type : integer, optional
         One of the six types. 1 to 6, default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1943,7 +1944,7 @@ def BCurve(
     degree : integer, optional
         Polynomial degree: 1 is a polyline, 2 quadratic, 3 cubic. 1 to 25, default 3.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1983,8 +1984,8 @@ def CCurve(
     """An interpolating spline: the twice differentiable piecewise cubic through the points, with
     knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
 
-    With the default ends two points give a line, three a parabola, four or more the spline whose
-    first two and last two pieces are one polynomial each. Neighbouring points must differ.
+    With the default ends two points give a line, three a parabola, four or more a spline without
+    knots at the second and the last but one point (not-a-knot). Neighbouring points must differ.
 
     Parameters
     ----------
@@ -2002,7 +2003,7 @@ def CCurve(
     end : vector, optional
         Slope dC/dt at the end, for clamped ends.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2037,24 +2038,24 @@ def XCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """An explicit spline: one coordinate runs evenly with t, and the other two are cubic splines of
-    it through the points.
+    """An explicit spline: one coordinate is linear in t; the other two are cubic splines of that
+    coordinate through the points.
 
-    That coordinate must ascend or descend from point to point.
+    That coordinate increases or decreases strictly from point to point.
 
     Parameters
     ----------
     name : str
         The name of the object.
     axis : value
-        The coordinate that runs evenly: "x", "y" or "z", or 1, 2 or 3.
+        Coordinate linear in t: "x", "y" or "z", or 1, 2 or 3.
     points : list of point
         The points it passes through, two or more.
     ends : text, optional
         End conditions: "notaknot", "natural", "bessel", "quadratic" or "periodic". Default
         notaknot.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2092,9 +2093,8 @@ def NURBCurve(
 ) -> CurveHandle:
     """A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
 
-    The knots are all listed, end knots included: as many as points, plus the degree, plus one. They
-    may run over any range, which is brought to [0, 1]. Without knots they are clamped and uniform,
-    without weights the weights are 1.
+    The list contains all knots, end knots included: number of points + degree + 1. Their range is
+    mapped to [0, 1]. By default the knots are clamped and uniform and all weights are 1.
 
     Parameters
     ----------
@@ -2109,7 +2109,7 @@ def NURBCurve(
     weights : list of number, optional
         Weights of the points, positive.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2167,11 +2167,11 @@ def Conic(
     a1 : number, optional
         Start of the curve. Default 0.
     a2 : number, optional
-        End; a full turn when not given. Default 6.28319.
+        End angle; default: a full turn. Default 6.28319.
     type : integer, optional
         1 for an ellipse, 2 for a hyperbola, 3 for a parabola. 1 to 3, default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2217,11 +2217,12 @@ def FoilCurve(
     """A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
     between 3, 4 or 5 points.
 
-    Three points are nose, thickness point and tail of half a section, which runs from nose to tail.
-    Four are tail, thickness point, nose and lower tail of a symmetric section; five have a lower
-    thickness point before the lower tail, and half of what the two thickness points add up to is
-    the camber. These run from the tail along the upper side to the nose, at t = 1/2, and back. Only
-    the distance of a thickness point from the chord counts: it is half the nominal thickness.
+    Three points: nose, thickness point and tail of half a section, which runs from nose to
+    tail. Four: tail, thickness point, nose and lower tail of a symmetric section. Five: a lower
+    thickness point before the lower tail; the camber is half the sum of the two signed
+    thicknesses. Sections of four and five points run from the tail along the upper side to the
+    nose at t = 1/2, and back along the lower side. Only the distance of a thickness point from
+    the chord matters: it is half the nominal thickness.
 
     The parameter is the square root of the position along the chord, so that the nose is smooth; the
     speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the
@@ -2240,14 +2241,13 @@ def FoilCurve(
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
-        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+        Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
-        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
-        given.
+        Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
         Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
     thickness_at : number, optional
-        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+        Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
         "closed" draws the tail to its points, "open" leaves the thickness that the form has
         there. Default closed.
@@ -2259,7 +2259,7 @@ def FoilCurve(
     ordinates : list of vector, optional
         Ordinates {x, half thickness, camber} from nose to tail instead of a family.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2295,8 +2295,8 @@ def Helix(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A helix: the point turned about the line by t angle, right-handed, and moved along it by
-    t pitch angle / (2 pi), with pitch the advance per turn.
+    """A helix: the point rotated about the line by t angle, right-handed, and translated along it by t
+    pitch angle / (2 pi), with pitch the advance per turn.
 
     Parameters
     ----------
@@ -2311,7 +2311,7 @@ def Helix(
     pitch : number, optional
         Advance per turn. Default 0.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2345,11 +2345,11 @@ def PolyCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """Curves end to end: piece k of N is run from t = (k - 1) / N to k / N, or between the breaks
-    given.
+    """Curves end to end: piece k of N covers t = (k - 1) / N to k / N, or the interval between given
+    breaks.
 
-    Each piece begins where the one before ends, within the model's tolerance; a piece is never
-    turned round. Meshes join along the pieces.
+    Each piece begins where the one before ends, within the model's tolerance; the direction of a
+    piece is never changed. Meshes join along the pieces.
 
     Parameters
     ----------
@@ -2358,10 +2358,9 @@ def PolyCurve(
     curves : list of curve
         The curves, in order.
     breaks : list of number, optional
-        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
-        given.
+        Parameters of the joints, ascending between 0 and 1; default: equal intervals.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2396,13 +2395,13 @@ def Join(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A declared join: two edges of patches that lie in one place are one for meshes, though they are made
-    of different things. It is the first edge.
+    """A declared join: two coincident edges of patches count as one edge in meshes, though they come
+    from different objects. The result is the first edge.
 
-    Edges are spelled as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`; curves
-    and snakes that run along whole edges serve as well. They may run in opposite directions. What is made
-    of the same curves and points joins without. It is an error when the edges are farther apart than the
-    tolerance anywhere; the vertices are those of the patch declared first.
+    Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
+    Curves and snakes along whole edges are accepted too; the directions may be opposite. Patches on
+    the same curves and points join without a declaration. Edges farther apart than the tolerance at
+    any point are an error; the vertices are those of the patch declared first.
 
     Parameters
     ----------
@@ -2413,9 +2412,9 @@ def Join(
     second : curve
         The other edge.
     tolerance : number, optional
-        How far apart the two may be; the model's tolerance when not given. At least 0.
+        Maximum distance between the two edges; default: the model's tolerance. At least 0.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2449,8 +2448,8 @@ def SubCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the
-    curve and t1, t2 the parameters of the beads. It may run backwards.
+    """The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the curve
+    and t1, t2 the parameters of the beads. For t1 > t2 it runs backwards.
 
     Parameters
     ----------
@@ -2461,7 +2460,7 @@ def SubCurve(
     bead2 : bead
         End, on the same curve.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2495,8 +2494,8 @@ def BSubCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A curve run by a B-spline law: C(t) = P(b(t)), where P is the curve of the beads and b the
-    clamped uniform B-spline with their parameters as coefficients.
+    """A curve reparametrised by a B-spline: C(t) = P(b(t)), where P is the curve of the beads and b
+    the clamped uniform B-spline with their parameters as coefficients.
 
     It begins at the first bead and ends at the last; the others draw its divisions toward them.
     With N beads the degree is at most N - 1: a higher one is lowered to that.
@@ -2510,7 +2509,7 @@ def BSubCurve(
     degree : integer, optional
         Polynomial degree of the law. 1 to 25, default 3.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2554,13 +2553,13 @@ def RelCurve(
     name : str
         The name of the object.
     curve : curve
-        The curve it is relative to.
+        Reference curve.
     p1 : point
         Start.
     p2 : point
         End.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2598,8 +2597,8 @@ def CopyCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A curve copied from one place to another, scaled along the axes: C(t) = to + (sx, sy, sz)
-    (c(t) - from), coordinate by coordinate.
+    """A curve copied from one reference point to another and scaled along the axes: C(t) = to + (sx,
+    sy, sz) (c(t) - from), component by component.
 
     Parameters
     ----------
@@ -2618,7 +2617,7 @@ def CopyCurve(
     sz : number, optional
         Scale along z. Default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2653,7 +2652,7 @@ def RotatCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A curve turned about a line by an angle, right-handed.
+    """A curve rotated about a line by an angle, right-handed.
 
     Parameters
     ----------
@@ -2666,7 +2665,7 @@ def RotatCurve(
     angle : number
         The angle.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2705,9 +2704,9 @@ def OffsetCurve(
     the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
     positive side, if d is positive.
 
-    At an end without speed, such as a double control point, T is the limit from inside. It is refused
-    where the curve stands still inside, and where the distance exceeds the radius of curvature on that
-    side, since the offset has a cusp there.
+    At an end of zero speed, such as a double control point, T is the limit from inside. Zero speed
+    inside, or a distance beyond the radius of curvature on that side (a cusp of the offset), is an
+    error.
 
     Parameters
     ----------
@@ -2718,9 +2717,9 @@ def OffsetCurve(
     distance : number
         The distance.
     plane : plane
-        The plane in which, or parallel to which, it is offset.
+        Plane of the offset, or a plane parallel to it.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2759,9 +2758,8 @@ def BFitCurve(
     """A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
     curve, and the least sum of squared distances at equal parameters.
 
-    The number of control points decides how near it comes: its member `residual` is the greatest
-    distance between the two at equal parameters. With `accuracy` it is refused when it
-    comes no nearer than that.
+    The number of control points determines the accuracy. The member `residual` is the greatest
+    distance between curve and fit at equal parameters; a residual above `accuracy` is an error.
 
     Parameters
     ----------
@@ -2776,7 +2774,7 @@ def BFitCurve(
     accuracy : number, optional
         The greatest distance allowed between the two at equal parameters. At least 0.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2827,7 +2825,7 @@ def NUBFitCurve(
     accuracy : number, optional
         The greatest distance allowed between the two at equal parameters. At least 0.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2877,7 +2875,7 @@ def TabCurve(
     points : list of vector, optional
         The points, where there is no file.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2916,10 +2914,10 @@ def ProcCurve(
     """The locus of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
     `bead` at the parameter t1 + t (t2 - t1).
 
-    Everything between bead and point is evaluated anew at each place. The curve is a chain of
-    polynomials through such places, halved until they agree with it to about 1e-12 of its size;
-    derivatives by what the model depends on are those of the places. Where the bead itself is does not
-    matter.
+    Everything between bead and point is evaluated at each sample. The curve is a chain of
+    polynomials through such samples, halved until they agree to about 1e-12 of its size;
+    derivatives with respect to the model's variables are those of the samples. The bead's own
+    parameter has no influence.
 
     Parameters
     ----------
@@ -2934,7 +2932,7 @@ def ProcCurve(
     t2 : number, optional
         End. Default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -2971,18 +2969,18 @@ def TanCurve(
     """The curve of the points on the tangents of another at a distance from where they touch:
     C(t) = c(t) + d c'(t) / |c'(t)|, which is that of TanPoint for all beads.
 
-    Where the curve has a corner the tangent jumps, and with it this curve: such curves are refused.
+    A corner of the curve, where the tangent jumps, is an error.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve
-        The curve whose tangents count.
+        Curve of the tangents.
     distance : number
         The distance, in the direction of increasing parameter if positive.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3028,7 +3026,7 @@ def MirrCurve(
     mirror : mirror
         The mirror: a plane, line or point.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3074,7 +3072,7 @@ def ProjCurve(
     mirror : target
         The target of the projection.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3111,26 +3109,25 @@ def IntCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """The curve in space along which a surface meets a plane, another surface or the zero set of a
-    field, as [`IntSnake`], where the surface it is on does not matter.
+    """The intersection of a surface with a plane, another surface or the zero set of a field, as a
+    curve in space: [`IntSnake`] without its surface.
 
     Parameters
     ----------
     name : str
         The name of the object.
     surface : surface or magnet
-        The surface, or a magnet of it near the branch that is meant.
+        The surface, or a magnet on it near the intended branch.
     target : target
-        The plane, the other surface (or a magnet of it), or the field of which it is the zero
-        set.
+        The plane, the other surface (or a magnet on it), or the field with the zero set.
     start : magnet, optional
         Start: a magnet or ring of the intersection.
     end : magnet, optional
         End.
     point : point, optional
-        For a plane: the parallel plane through this point is meant.
+        With a plane: selects the parallel plane through this point.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3176,7 +3173,7 @@ def LineSnake(
     m2 : magnet
         End, on the same surface.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3224,7 +3221,7 @@ def BSnake(
     degree : integer, optional
         Polynomial degree of the path. 1 to 25, default 3.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3269,7 +3266,7 @@ def EdgeSnake(
     surface : surface
         The surface.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3305,10 +3302,11 @@ def ContactSnake(
 ) -> SnakeHandle:
     """The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
 
-    It runs as the fillet's u does. A part of the surface that ends in it (`SubSurf`, `TrimSurf`) has the
-    fillet's vertices there, by identity: rings at t = 0 and 1 are the corners. Over the seam of a closed
-    surface it runs on, its place going over from 1 to 0; where the way of a ball that rolls round
-    begins is chosen by the magnet given to the fillet, and at the seam the snake is without a jump.
+    Its parameter is the fillet's u. A part of the surface bounded by it (`SubSurf`, `TrimSurf`)
+    shares the fillet's vertices, which are the rings at t = 0 and 1. It crosses the seam of a
+    closed surface, where its parameter jumps from 1 to 0; the magnet of the fillet chooses the
+    start of the path of a ball that rolls round the whole surface, and a start at the seam avoids
+    the jump.
 
     Parameters
     ----------
@@ -3319,7 +3317,7 @@ def ContactSnake(
     side : integer
         1 for its first surface, 2 for its second. 1 to 2.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3356,7 +3354,7 @@ def UVSnake(
 ) -> SnakeHandle:
     """A parameter line of a surface: X(t) = S(value, t), or X(t) = S(t, value).
 
-    At the values 0 and 1 it is the edge of the surface itself, for meshes that join there.
+    At the values 0 and 1 it is the edge of the surface itself and joins in meshes.
 
     Parameters
     ----------
@@ -3365,11 +3363,11 @@ def UVSnake(
     surface : surface
         The surface.
     parameter : text
-        The parameter that is held: "u" or "v". The snake runs along the other.
+        Constant parameter, "u" or "v"; the snake runs along the other.
     value : number
-        The value at which it is held.
+        Value of the constant parameter.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3420,7 +3418,7 @@ def ArcSnake(
     type : integer, optional
         One of the six types. 1 to 6, default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3475,7 +3473,7 @@ def CSnake(
     end : vector, optional
         Slope {du/dt, dv/dt, 0} at the end, for clamped ends.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3525,12 +3523,12 @@ def NURBSnake(
     knots : list of number, optional
         Knots, end knots included, ascending.
     weights : list of number, optional
-        Weights of the magnets, positive; of `places` too, between those of the two magnets.
+        Weights of the magnets, positive; those of `places` between those of the two magnets.
     places : list of number, optional
         Control points that are no objects, as u, v, u, v, ...: they are between the first
         magnet and the second, and there are no other magnets.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3583,11 +3581,11 @@ def ConicSnake(
     a1 : number, optional
         Start of the snake. Default 0.
     a2 : number, optional
-        End; a full turn when not given. Default 6.28319.
+        End angle; default: a full turn. Default 6.28319.
     type : integer, optional
         1 for an ellipse, 2 for a hyperbola, 3 for a parabola. 1 to 3, default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3633,9 +3631,9 @@ def FoilSnake(
 ) -> SnakeHandle:
     """A foil section in the parameter plane of a surface, between 3, 4 or 5 magnets, as a foil curve.
 
-    It is a true foil in space only where the surface is a scaled plane; on a cylinder with u its
-    angle and v a length, `metric` = {radius^2, 0, 1} makes thickness perpendicular to the chord as
-    measured on the unrolled surface.
+    The section is a true foil in space only if the surface is a scaled plane. On a cylinder
+    with u the angle and v a length, `metric` = {radius^2, 0, 1} makes the thickness
+    perpendicular to the chord on the unrolled surface.
 
     Parameters
     ----------
@@ -3650,14 +3648,13 @@ def FoilSnake(
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
-        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+        Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
-        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
-        given.
+        Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
         Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
     thickness_at : number, optional
-        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+        Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
         "closed" draws the tail to its points, "open" leaves the thickness that the form has
         there. Default closed.
@@ -3669,9 +3666,9 @@ def FoilSnake(
     ordinates : list of vector, optional
         Ordinates {x, half thickness, camber} from nose to tail instead of a family.
     metric : vector, optional
-        Metric of the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
+        Metric of the parameter plane: {uu, uv, vv}; default: {1, 0, 1}.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3713,13 +3710,13 @@ def RelSnake(
     name : str
         The name of the object.
     snake : snake
-        The snake it is relative to.
+        Reference snake.
     m1 : magnet
         Start, on the same surface.
     m2 : magnet
         End, on the same surface.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3760,11 +3757,11 @@ def CopySnake(
     name : str
         The name of the object.
     snake : snake
-        The snake whose path is copied.
+        Snake with the path.
     surface : surface
         The target surface.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3810,10 +3807,9 @@ def PolySnake(
     snakes : list of snake
         The snakes, in order.
     breaks : list of number, optional
-        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
-        given.
+        Parameters of the joints, ascending between 0 and 1; default: equal intervals.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3852,10 +3848,10 @@ def ProjSnake(
     """The projection of a curve onto a surface, point by point, which is a snake: along the surface's
     normals, along a direction, or away from a point.
 
-    The foot of the start of the curve is found first, near the magnet if one is given; from there
-    the projection follows the curve without a jump. Each point of it is on the surface and is
-    the projection to rounding. Where the projection leaves the surface or grazes it, there is no
-    snake.
+    The foot of the start of the curve is found first, near the magnet if one is given; the
+    projection follows the curve from there continuously. Each of its points is on the surface and
+    is the projection to rounding. A projection that leaves the surface or is tangent to it is an
+    error.
 
     Parameters
     ----------
@@ -3866,12 +3862,12 @@ def ProjSnake(
     surface : surface or magnet
         The surface, or a magnet of it near the projection of the start of the curve.
     mirror : mirror, optional
-        Along what: a plane's normal, a line's direction, or away from a point. Not given: along
-        the surface's own normals.
+        Direction of projection: a plane's normal, a line's direction, or rays from a point.
+        Default: the surface's own normals.
     ends : list of magnet, optional
         Magnets at the two ends, which other snakes end in too, so that patches join there.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3908,38 +3904,37 @@ def IntSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """The curve along which a surface meets a plane or another surface, as a snake of the first; its
-    parameter is the share of its length.
+    """The intersection of a surface with a plane or another surface, as a snake on the first; its
+    parameter is the fraction of its length.
 
-    From a magnet the branch through the place nearest to it is taken; from a bare surface the one
-    that comes nearest to its middle (that of the surface declared first), and others are reported. The snake runs along n1 x n2, the
-    product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
-    lie on the intersection and give it their identity there, so that patches join. A closed branch
-    begins at the place nearest to the magnet or, without one, to S(0.3, 0.4) of the surface that is
-    declared first: so cuts of two surfaces, each of the other, are one curve. Each point of it lies on
-    both, to rounding. Across the seam of a closed surface it runs on: its place
-    on the surface goes over from u = 1 to u = 0 there.
+    A magnet selects the branch nearest to it; a bare surface, the branch nearest to its middle (of
+    the surface declared first). Other branches are reported. The snake has the direction n1 x n2,
+    the product of both normals, from edge to edge; or runs from the magnet `start` to the magnet
+    `end`, which must be on the intersection and keep their identity, so that patches join. A closed
+    branch begins at the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface
+    declared first: cuts of two surfaces by each other are one curve. Each of its points is on both
+    shapes, to rounding. It crosses the seam of a closed surface, where its parameter on the surface
+    changes from u = 1 to u = 0.
 
-    All branches longer than 2 % of the size are found that cross at an angle somewhere. Where the
-    shapes only touch there is none.
+    All branches longer than 2 % of the size with a transversal point are found. Shapes that only
+    touch have no intersection.
 
     Parameters
     ----------
     name : str
         The name of the object.
     surface : surface or magnet
-        The surface that the snake lies on, or a magnet of it near the branch that is meant.
+        The surface of the snake, or a magnet on it near the intended branch.
     target : target
-        The plane, the other surface (or a magnet of it), or the field of which it is the zero
-        set.
+        The plane, the other surface (or a magnet on it), or the field with the zero set.
     start : magnet, optional
         Start: a magnet or ring of the intersection.
     end : magnet, optional
         End.
     point : point, optional
-        For a plane: the parallel plane through this point is meant.
+        With a plane: selects the parallel plane through this point.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -3975,14 +3970,14 @@ def GeoSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """The shortest path on a surface between two magnets, or more exactly a geodesic: a curve that turns
-    neither left nor right on the surface. It is run evenly, so t is the share of its length.
+    """The shortest path on a surface between two magnets, more exactly a geodesic: a curve of zero
+    geodesic curvature. Its parameter t is the fraction of its length.
 
-    Of several geodesics it is the one that Newton's method leads to from the straight line of the
-    parameter plane: on surfaces that are not bent much between the magnets, the shortest. On a closed
-    surface those over its seam are tried, too, and the shortest is taken (of equal ones that which stays
-    within the seam); `turns_u` and `turns_v` ask for another. Its place on the surface goes over from 1
-    to 0 at the seam.
+    Of several geodesics it is the one found by Newton's method from the straight line of the
+    parameter plane: on surfaces with little curvature between the magnets, the shortest. On a
+    closed surface those across its seam are tried too, and the shortest is the result (of equal
+    ones, the one inside the seam); `turns_u` and `turns_v` select another. Its parameter on the
+    surface changes from 1 to 0 at the seam.
 
     Parameters
     ----------
@@ -3993,12 +3988,12 @@ def GeoSnake(
     m2 : magnet
         End, on the same surface.
     turns_u : integer, optional
-        Number of forward crossings of the seam u = 0; negative: backward. Not given: 0, or 1 or
-        -1 where that is shorter. -10 to 10.
+        Number of forward crossings of the seam u = 0; negative: backward. Default: the shortest
+        path with 0, 1 or -1. -10 to 10.
     turns_v : integer, optional
         The same for the seam v = 0. -10 to 10.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4043,7 +4038,7 @@ def SubSnake(
     ring2 : ring
         End, on the same snake.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4077,7 +4072,7 @@ def BSubSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """A snake run by a B-spline law, which is a snake again: as a B-sub-curve.
+    """A snake reparametrised by a B-spline; the counterpart of a B-sub-curve on a surface.
 
     Parameters
     ----------
@@ -4088,7 +4083,7 @@ def BSubSnake(
     degree : integer, optional
         Polynomial degree of the law. 1 to 25, default 3.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4133,7 +4128,7 @@ def RuledSurf(
     c2 : curve
         Edge v = 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4182,7 +4177,7 @@ def BLoftSurf(
     degree : integer, optional
         Polynomial degree across the masters. 1 to 25, default 3.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4245,7 +4240,7 @@ def CLoftSurf(
         A line about which the loft is made in cylinder coordinates, r, theta (within half a
         turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4302,7 +4297,7 @@ def XLoftSurf(
         A line about which the loft is made in cylinder coordinates, r, theta (within half a
         turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4338,12 +4333,12 @@ def ArcLoftSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
-    those of the curves at u.
+    """A surface of circular arcs by three curves: at each u the arc, of a type as for `Arc`, by the
+    three points of the curves at u.
 
-    Where the three points are in line types 1, 3 and 4 are straight when the second lies between the
-    others, and have no finite radius when it lies beyond; types 5 and 6 have no plane there. Such u
-    are refused and named.
+    If the three points are collinear, types 1, 3 and 4 are straight for a second point between the
+    others and have no finite radius for one outside, and types 5 and 6 have no plane: such u are an
+    error that names u.
 
     Parameters
     ----------
@@ -4358,7 +4353,7 @@ def ArcLoftSurf(
     type : integer, optional
         One of the six types of `Arc`. 1 to 6, default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4473,11 +4468,11 @@ def NURBSurf(
     degree_v : integer, optional
         Polynomial degree in v. 1 to 25, default 3.
     weights : list of number, optional
-        Positive weights in the order of the points; all 1 if not given.
+        Positive weights in the order of the points; default: all 1.
     knots_u : list of number, optional
-        Knots in u: nu + degree_u + 1 ascending numbers; uniform if not given.
+        Knots in u: nu + degree_u + 1 ascending numbers; default: uniform.
     knots_v : list of number, optional
-        Knots in v: nv + degree_v + 1 ascending numbers; uniform if not given.
+        Knots in v: nv + degree_v + 1 ascending numbers; default: uniform.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4523,11 +4518,11 @@ def FoilLoftSurf(
     """Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
     laid between the points of the curves at u. A wing, a keel, a blade.
 
-    Of three curves (nose, thickness, tail) v runs from nose to tail; of four (upper tail,
-    thickness, nose, lower tail) and five (a lower thickness before the lower tail) from the upper
-    tail to the nose, at v = 1/2, and back. The sections of the 6-series have the form of the
-    thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose and
-    tail are apart.
+    With three curves (nose, thickness, tail) v runs from nose to tail; with four (upper tail,
+    thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the
+    upper tail to the nose at v = 1/2, and back. Sections of the 6-series have the form of the
+    thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose
+    and tail must be distinct.
 
     Parameters
     ----------
@@ -4542,14 +4537,13 @@ def FoilLoftSurf(
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
-        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+        Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
-        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
-        given.
+        Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
         Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
     thickness_at : number, optional
-        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+        Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
         "closed" draws the tail to its points, "open" leaves the thickness that the form has
         there. Default closed.
@@ -4561,7 +4555,7 @@ def FoilLoftSurf(
     ordinates : list of vector, optional
         Ordinates {x, half thickness, camber} from nose to tail instead of a family.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4597,8 +4591,8 @@ def RevSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A curve turned about a line: S(u, v) is C(u) turned by a1 + v (a2 - a1), right-handed about the
-    direction from the line's start to its end (Rodrigues).
+    """A curve rotated about a line: S(u, v) is C(u) rotated by a1 + v (a2 - a1), right-handed about
+    the direction from the line's start to its end (Rodrigues).
 
     An end of the curve on the line gives a pole. A full turn closes the surface.
 
@@ -4607,15 +4601,15 @@ def RevSurf(
     name : str
         The name of the object.
     curve : curve
-        The curve that is turned.
+        Generating curve.
     line : curve
-        The line about which it is turned.
+        Axis of rotation.
     a1 : number, optional
         Angle at v = 0, in radians (degrees in model files). Default 0.
     a2 : number, optional
         Angle at v = 1, in radians (degrees in model files). Default 6.28319.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4657,7 +4651,7 @@ def TranSurf(
     c1 : curve
         The curve that is moved: edge v = 0.
     c2 : curve
-        The curve along which it is moved.
+        Path of the first curve.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4697,12 +4691,12 @@ def SweepSurf(
     """A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
     path(0)), with F(0) = 1, so that edge v = 0 is the profile.
 
-    The frame "minimal" does not turn about the tangent of the path (rotation-minimising; Wang,
-    Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed" does
-    not turn at all, so that the profile is only moved, along a path that may have corners. `twist` and
-    `scale` are laws along v: the coefficients of a clamped uniform B-spline of degree 3 or less, so
-    that {a, b} goes linearly from a to b. The twist is right-handed about the tangent ("fixed": that
-    at v = 0).
+    Frames: "minimal" does not rotate about the tangent of the path (rotation-minimising; Wang,
+    Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed"
+    only translates the profile, along a path that may have corners. `twist` and `scale` are
+    functions of v: coefficients of a clamped uniform B-spline of degree at most 3, so {a, b} is
+    linear from a to b. The twist is right-handed about the tangent ("fixed": about the tangent at v
+    = 0).
 
     Parameters
     ----------
@@ -4711,11 +4705,11 @@ def SweepSurf(
     profile : curve
         The curve that is carried: edge v = 0.
     path : curve
-        The curve along which it is carried.
+        Path of the profile.
     frame : text, optional
         Motion of the frame: "minimal", "up" or "fixed". Default minimal.
     up : vector, optional
-        The direction that stays upright with frame = "up"; z if not given.
+        Upright direction of frame = "up"; default: z.
     twist : list of number, optional
         Angles about the tangent along v, in radians.
     scale : list of number, optional
@@ -4754,8 +4748,8 @@ def BlendSurf(
     """A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
     parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
 
-    Of three curves the edge u = 0 is the point where the first and the third begin. Curves that do
-    not meet at the corners are errors; they are never reversed.
+    With three curves the edge u = 0 is the point at which the first and the third begin. Curves
+    that do not meet at the corners are errors; they are never reversed.
 
     Parameters
     ----------
@@ -4843,11 +4837,11 @@ def TanBoundary(
 
     It is the bicubically blended Coons patch (Coons 1967) of the curves and of slopes across them,
     with the twists of Gregory (1974), which need not agree at the corners. The slope across a snake
-    lies in the tangent plane of its surface; its components along the snake and perpendicular to it go
-    linearly from those of the one neighbouring edge to those of the other. Across a free edge it is
-    that of the bilinear patch. A neighbour must leave a tangent edge in the tangent plane there, as
-    snakes of the same surface do: otherwise no patch is tangent at that corner. Of three curves the
-    edge u = 0 is the point where the first and the third begin.
+    is in the tangent plane of its surface; its components along the snake and perpendicular to it
+    vary linearly between those of the two neighbouring edges. Across a free edge it is the slope of
+    the bilinear patch. A neighbour must leave a tangent edge in the tangent plane there, as snakes
+    of the same surface do: otherwise no patch is tangent at that corner. With three curves the edge
+    u = 0 is the point at which the first and the third begin.
 
     Parameters
     ----------
@@ -4894,11 +4888,11 @@ def DevSurf(
     rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
     = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 
-    Rulings run from that of both starts to that of both ends. Where those are no rulings of the plate,
-    fans complete it: cones about an end of a curve. By itself u is (s + t) / 2, and no edge is
-    divided as its curve is: build neighbours on an EdgeSnake of this surface. With `along` = "c1" (or
-    "c2") u is the parameter of that curve, so that meshes join along it; a fan about one of its ends
-    is refused then. It is refused where no pair of places has a common tangent plane, or rulings would
+    The rulings run from the ruling of both starts to that of both ends; cones about an end of a
+    curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and
+    no edge has the divisions of its curve: build neighbours on an EdgeSnake of this surface. With
+    `along` = "c1" (or "c2") u is the parameter of that curve and meshes join along it; a fan about
+    one of its ends is then an error. Errors: no pair of points has a common tangent plane; rulings
     cross between the curves.
 
     Parameters
@@ -4910,7 +4904,7 @@ def DevSurf(
     c2 : curve
         Edge v = 1.
     along : value, optional
-        Whose parameter u is: "both", "c1" or "c2". Default both.
+        Curve or curves whose parameter is u: "both", "c1" or "c2". Default both.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4943,14 +4937,14 @@ def ExpandedSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A developable surface laid flat: the plate before it is bent, with all lengths and angles as on the
+    """A developable surface unrolled: the plate before bending, with lengths and angles of the
     surface, at equal parameters.
 
-    Its lines u = const must be straight with one tangent plane along each, as those of DevSurf, of cones
-    and of cylinders are. The plate lies in the xy plane of `frame` (of the world when none is given), its
-    normal along z: the first ruling along y with its middle at the origin. From ruling to ruling the
-    direction turns as it does in the tangent plane, which turns along with the surface (parallel
-    transport; do Carmo 1976, section 4-4). The image of a snake is its CopySnake on the plate.
+    Its lines u = const must be straight with one tangent plane along each, like those of DevSurf,
+    cones and cylinders. The plate is in the xy plane of `frame` (default: world), its normal along
+    z, its first ruling along y with the middle at the origin. From ruling to ruling the direction
+    turns as in the tangent plane under parallel transport (do Carmo 1976, section 4-4). The image
+    of a snake is its CopySnake on the plate.
 
     Parameters
     ----------
@@ -4959,7 +4953,7 @@ def ExpandedSurf(
     surface : surface
         The surface to lay flat.
     frame : frame, optional
-        The frame in which it is laid.
+        Frame whose xy plane contains the plate; default: world axes.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4999,13 +4993,13 @@ def FilletSurf(
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
     """A fillet between two snakes, tangent to their surfaces: for each u a cubic from the first snake
-    at v = 0 to the second at v = 1, whose end tangents lie in the two tangent planes.
+    at v = 0 to the second at v = 1, with end tangents in the two tangent planes.
 
     The tangents are perpendicular to the snakes ("perpendicular"), along the chord between the two
-    snakes as seen in the tangent plane ("chord"), or along a parameter line of the surface ("u",
-    "v"); they are `m1` and `m2` times as long as the chord (1.17 comes closest to a circular quarter).
-    With `continuity = 2` it is a quintic whose curvature across equals that of both surfaces, too.
-    Where snakes are closed, `closed = 1` says that the edges u = 0 and u = 1 are one line.
+    snakes projected to the tangent plane ("chord"), or along a parameter line of the surface ("u",
+    "v"). Their lengths are `m1` and `m2` chords; 1.17 is closest to a circular quarter. With
+    `continuity = 2` it is a quintic that also has the curvature of both surfaces across the edges.
+    For closed snakes `closed = 1` declares the edges u = 0 and u = 1 as one line.
 
     Parameters
     ----------
@@ -5020,7 +5014,7 @@ def FilletSurf(
     m2 : number, optional
         Length of the tangent at v = 1, in chords between the snakes. At least 0, default 1.
     continuity : integer, optional
-        1 for common tangent planes, 2 for common curvature across, too. 1 to 2, default 1.
+        1: common tangent planes; 2: common curvature across the edges too. 1 to 2, default 1.
     direction1 : text, optional
         Direction at the first surface: "perpendicular", "chord", "u" or "v". Default
         perpendicular.
@@ -5068,23 +5062,23 @@ def RollFillet(
     """A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
     the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
 
-    The centre of the ball is where both surfaces, offset by the radius, meet; it rolls from edge to edge
-    or round, and u is the share of the way of its centre. Which way it goes and where among several is
-    as for IntSnake: the ball that touches nearest to a magnet, if one is given. With `radii` the radius
-    follows a law along u (the coefficients of a clamped uniform B-spline of degree 3 or less): there the
-    centre lies in the plane across the way of a ball of `radius`, and arcs are those through both points
-    of contact, which is still tangent to both surfaces. A ball larger than a radius of curvature of
-    either surface on its side would turn back, and is refused.
+    The centre of the ball is on the intersection of both surfaces offset by the radius; it runs
+    from edge to edge or round a closed path, and u is the fraction of the length of that path. The
+    direction and the choice among several paths follow IntSnake: a magnet selects the ball with the
+    nearest contact. With `radii` the radius is a function of u (coefficients of a clamped uniform
+    B-spline of degree at most 3): the centre is then in the plane across the path of a ball of
+    `radius`, and arcs pass through both points of contact, tangent to both surfaces. A ball larger
+    than a radius of curvature of either surface on its side is an error.
 
-    Where it touches, `ContactSnake` gives the snakes on both surfaces that are its edges v = 0 and
-    v = 1: parts of the surfaces that end in these (`SubSurf`, `TrimSurf`) join the fillet exactly.
+    `ContactSnake` gives the lines of contact on both surfaces, which are the edges v = 0 and v = 1.
+    Parts of the surfaces bounded by them (`SubSurf`, `TrimSurf`) join the fillet exactly.
 
     Parameters
     ----------
     name : str
         The name of the object.
     surface1 : surface or magnet
-        The first surface, or a magnet of it near where the ball is meant to touch.
+        The first surface, or a magnet on it near the intended contact.
     surface2 : surface or magnet
         The second surface, or a magnet of it.
     radius : number
@@ -5130,13 +5124,13 @@ def SubSurf(
     """The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
     and w a patch of its parameter plane.
 
-    Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the edges
-    v = 0, u = 1, v = 1, u = 0, in this order and each in increasing parameter, so the third and the
-    fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
-    the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
-    side without length. Sides that do not meet are refused, never turned round, and so are patches
-    that are folded. Two sides that end where they begin, at one point or at the seam of a closed
-    surface, make a closed band; a closed snake and a magnet within it a whole cap.
+    Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the
+    edges v = 0, u = 1, v = 1, u = 0 in this order, each in increasing parameter (the third and the
+    fourth are therefore opposite to a walk round the patch); w is the bilinear Coons patch (Coons
+    1967). Three sides: the same, with the edge u = 0 reduced to the point at which the first and
+    the third begin. A magnet is a side of zero length. Sides that do not meet are errors, never
+    reversed; so are folded patches. Two sides that each begin and end at one point, or at the seam
+    of a closed surface, bound a closed band; a closed snake and a magnet inside it, a cap.
 
     Parameters
     ----------
@@ -5182,20 +5176,21 @@ def TrimSurf(
 ) -> BodyHandle:
     """The part of a surface within loops of snakes on it, as triangles.
 
-    Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
-    itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-    one is the boundary of the surface and all loops are holes. All vertices are on the surface. Where no divisions are
-    stated, the border is divided by its own curvature and the interior by the surface's, until the area of the triangles
-    is within 1e-3 of that of the surface; what they miss by more is a warning. With `nu` or `nv` the interior contains
-    points of the surface's own nu x nv divisions that are not too near the border. The triangles are Delaunay's, in
-    parameters stretched to lengths or by curvature.
+    Consecutive snakes form a loop, in either direction; a closed snake is a loop on its own. The
+    first loop is the outer one, the others are holes; with `whole = 1` the boundary of the surface
+    is the outer loop and all given loops are holes. All vertices are on the surface. Without stated
+    divisions the border is divided by its own curvature and the interior by the surface's, until
+    the area of the triangles is within 1e-3 of that of the surface; a larger difference is a
+    warning. With `nu` or `nv` the interior contains points of the surface's own nu x nv divisions
+    at some distance from the border. The triangulation is Delaunay's, in parameters scaled to
+    lengths or by curvature.
 
-    Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
-    fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
-    by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
-    snake, and a contradiction is reported.
+    Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours:
+    patches, fillets and other trimmed surfaces whose edges follow the same snakes share its
+    vertices by identity. Derivatives of vertices are at fixed parameters of their divisions. Divisions propagate across such edges; `rim` states those of each snake,
+    and a contradiction is reported.
 
-    Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
+    For two, three or four sides prefer `SubSurf`, which has a net of panels.
 
     Parameters
     ----------
@@ -5208,11 +5203,11 @@ def TrimSurf(
     whole : integer, optional
         1 when the whole surface is kept but for holes. 0 to 1, default 0.
     rim : integer, optional
-        Divisions of each snake. Not given: as many as its curvature and that of the surface ask
-        for, and at least as its neighbours have them. 1 to 10000.
+        Divisions of each snake; default: by its curvature and that of the surface, and at least
+        those of its neighbours. 1 to 10000.
     nu : integer, optional
-        Divisions along u of the surface's grid inside the border. Not given: as the curvature
-        of the surface asks for. 1 to 1000.
+        Divisions along u of the surface's grid inside the border; default: by the curvature of
+        the surface. 1 to 1000.
     nv : integer, optional
         Divisions of the surface along v. 1 to 1000.
     **attributes
@@ -5250,9 +5245,9 @@ def TriMesh(
 ) -> BodyHandle:
     """Triangles between points of the model: a body where they close, else an open sheet.
 
-    With `levels` each triangle becomes four, so many times, and the vertices move as in Loop's
-    subdivision surfaces (Loop 1987): smooth within, cubic B-splines along open edges. Points of the
-    model stay the parents: moving one moves the sheet, with derivatives.
+    `levels` times, each triangle is divided into four and the vertices move as in Loop's
+    subdivision surfaces (Loop 1987): smooth inside, cubic B-splines along open edges. The vertices
+    keep points of the model as parents: a moved point moves the sheet, with derivatives.
 
     Parameters
     ----------
@@ -5263,7 +5258,7 @@ def TriMesh(
     triangles : list of integer
         Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
     levels : integer, optional
-        How often the triangles are divided. At most 8, default 0.
+        Number of subdivisions. At most 8, default 0.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5301,11 +5296,11 @@ def Blister(
 ) -> SurfaceHandle:
     """A bump on a surface inside a closed snake: a sonar dome, a blister of a fairing, a bulge round a shaft.
 
-    S(u, v) = P(w) + h b(v) n(w), with w on the straight line of the parameter plane from the snake at u
-    (v = 0) to the magnet (v = 1), n the unit normal of the surface P and b a polynomial from 0 to 1. At
-    the edge the bump is "sharp" (b' is not 0 there), "tangent" to the surface (b' = 0), or "curvature"
-    (b' = b'' = 0, the curvatures agree as well); its top is "round" (b' = 0 at v = 1) or "pointed". It
-    joins what else is built on the snake.
+    S(u, v) = P(w) + h b(v) n(w), with w on the straight line of the parameter plane from the snake
+    at u (v = 0) to the magnet (v = 1), n the unit normal of the surface P and b a polynomial from 0
+    to 1. Edge of the bump: "sharp" (b' non-zero), "tangent" to the surface (b' = 0), or "curvature"
+    (b' = b'' = 0, equal curvatures too). Top: "round" (b' = 0 at v = 1) or "pointed". It joins
+    other objects on the same snake.
 
     Parameters
     ----------
@@ -5355,8 +5350,7 @@ def MirrSurf(
 ) -> SurfaceHandle:
     """The mirror image of a surface in a plane, line or point, point by point.
 
-    A plane or point reverses the natural normal; panels keep the side of the original's all the
-    same.
+    A plane or point reverses the natural normal; panels keep the orientation of the original.
 
     Parameters
     ----------
@@ -5399,8 +5393,8 @@ def RotatSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface turned about a line, right-handed about the direction from the line's start to its end
-    (Rodrigues). Images of joined surfaces under the same turn are joined.
+    """A surface rotated about a line, right-handed about the direction from the line's start to its
+    end (Rodrigues). Images of joined surfaces under the same rotation are joined.
 
     Parameters
     ----------
@@ -5409,7 +5403,7 @@ def RotatSurf(
     surface : surface
         The surface to turn.
     line : curve
-        The line about which it is turned.
+        Axis of rotation.
     angle : number
         The angle, in radians (degrees in model files).
     **attributes
@@ -5448,10 +5442,11 @@ def CopySurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
+    """A copy of a surface, translated and scaled along the axes: p maps to `to` + diag(sx, sy, sz) (p
+    - `from`).
 
-    A negative product of the three factors reverses the natural normal; panels keep the side of
-    the original's all the same.
+    A negative product of the three factors reverses the natural normal; panels keep the orientation
+    of the original.
 
     Parameters
     ----------
@@ -5501,7 +5496,8 @@ def ProjSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface projected to a plane, along its normal: each point goes to its foot.
+    """A surface projected to a plane along its normal: each point maps to the foot of its
+    perpendicular.
 
     The image of a surface perpendicular to the plane degenerates; panels overlap there.
 
@@ -5548,8 +5544,8 @@ def RelSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface whose four corners are moved to given points: S plus the bilinear blend of the corners'
-    displacements. Between the corners each edge keeps its shape but for a linear change.
+    """A surface whose four corners are moved to given points: S plus the bilinear blend of the
+    corners' displacements, which is linear along each edge.
 
     Parameters
     ----------
@@ -5600,9 +5596,9 @@ def OffsetSurf(
     """A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
     n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
 
-    At a pole the normal is the limit along the parameter line that ends there. The offset is an error
-    where the distance exceeds a radius of curvature on that side, since it is folded there, and where
-    the surface has no normal.
+    At a pole the normal is the limit along the parameter line that ends there. Errors: a distance
+    beyond a radius of curvature on that side, which would fold the offset; a surface without a
+    normal.
 
     Parameters
     ----------
@@ -5661,8 +5657,7 @@ def PolySurf(
     along : value, optional
         The parameter along which they follow one another: "u" or "v". Default u.
     breaks : list of number, optional
-        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
-        given.
+        Parameters of the seams, ascending between 0 and 1; default: equal intervals.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5703,9 +5698,9 @@ def BFitSurf(
     of the surface.
 
     The lines v = const are fitted first, then their control points across, which is the fit of the
-    tensor product; each edge is the fit of the surface's edge. The member `residual` is the greatest
-    distance between the two at equal parameters. With `accuracy` it is refused when it comes no nearer
-    than that.
+    tensor product; each edge is the fit of the surface's edge. The member `residual` is the
+    greatest distance between surface and fit at equal parameters; a residual above `accuracy` is an
+    error.
 
     Parameters
     ----------
@@ -5813,8 +5808,8 @@ def TabSurf(
 ) -> SurfaceHandle:
     """A surface through the points of a table: a C-loft of the curves through its rows.
 
-    The rows of points come one after the other, as many points in each; u runs along them, v across.
-    Empty lines between the rows say how many there are, and so does a Plot3D file of one grid.
+    Consecutive rows with equal numbers of points; u runs along a row, v across the rows. Empty
+    lines between the rows, or the header of a Plot3D file with one grid, give their number.
 
     Parameters
     ----------
@@ -5863,12 +5858,12 @@ def ProcSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
-    place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
+    """The surface swept by a curve as a bead on which it depends moves along its curve: S(u, v) is the
+    point u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
 
-    Everything between bead and curve is evaluated anew at each place of the bead, as for `ProcCurve`:
-    along v the surface is a chain of polynomials through such curves, halved until they agree with it
-    to about 1e-12 of its size.
+    Everything between bead and curve is evaluated at each sample of the bead, as for `ProcCurve`:
+    along v the surface is a chain of polynomials through such curves, halved until they agree to
+    about 1e-12 of its size.
 
     Parameters
     ----------
@@ -5883,7 +5878,7 @@ def ProcSurf(
     t2 : number, optional
         End. Default 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5919,7 +5914,7 @@ def FaceSurf(
     """A face of a solid as a surface: 1 is u = 0, 2 is u = 1, 3 is v = 0, 4 is v = 1, 5 is w = 0, 6 is
     w = 1. Its parameters are the solid's other two, in order.
 
-    A solid that has it as a face shares the vertices of the first solid there.
+    Another solid with this surface as a face shares the vertices of the first solid there.
 
     Parameters
     ----------
@@ -5963,8 +5958,8 @@ def RuledSolid(
 ) -> SolidHandle:
     """A solid between two surfaces: X(u, v, w) = (1 - w) S1(u, v) + w S2(u, v).
 
-    Solids whose surfaces join along an edge join along the face over it, when they are divided
-    alike.
+    Solids whose surfaces join along an edge join along the face over it if they have equal
+    divisions.
 
     Parameters
     ----------
@@ -6161,9 +6156,9 @@ def BlendSolid(
     """A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
     ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
 
-    The parameters of a face are the solid's other two, in order: (v, w), (u, w), (u, v). A surface that
-    runs otherwise is turned by its number in `turns`: 1 if its u runs along the second of the two, plus
-    2 if its u and plus 4 if its v runs against the solid's. Faces must meet along the twelve edges.
+    The parameters of a face are the solid's other two, in order: (v, w), (u, w), (u, v). A surface
+    of another orientation has a number in `turns`: 1 if its u is the second of the two, plus 2 if
+    its u and plus 4 if its v is opposite to the solid's. Faces must meet along the twelve edges.
 
     Parameters
     ----------
@@ -6172,7 +6167,7 @@ def BlendSolid(
     surfaces : list of surface
         The six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1.
     turns : list of integer, optional
-        Orientation of each surface, 0 to 7; all 0 if not given.
+        Orientation of each surface, 0 to 7; default: all 0.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6214,7 +6209,7 @@ def TranSolid(
     surface : surface
         The face w = 0.
     curve : curve
-        The curve along which it is moved.
+        Path of the surface.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6260,11 +6255,11 @@ def SweepSolid(
     surface : surface
         The face w = 0.
     path : curve
-        The curve along which it is carried.
+        Path of the surface.
     frame : text, optional
         Motion of the frame: "minimal", "up" or "fixed". Default minimal.
     up : vector, optional
-        The direction that stays upright with frame = "up"; z if not given.
+        Upright direction of frame = "up"; default: z.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6301,10 +6296,10 @@ def Relabel(
     """A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
     clamped uniform knots (as a B-sub-curve has its beads' parameters).
 
-    The values run from 0 to 1 and ascend; with `partial = 1` they run from any value to a greater one,
-    and the law leaves the rest of the curve out, or goes on beyond its ends. With N values the degree is at most N - 1: a higher one
-    is lowered to that. Degree 1 is straight between its breaks, so parts of other curves stay parts
-    of them.
+    The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
+    the law covers a part of the curve or its continuation beyond the ends. The degree is at most N
+    - 1 for N values; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
+    other curves stay parts of them.
 
     Parameters
     ----------
@@ -6358,7 +6353,7 @@ def CosRelabel(
     dense : text, optional
         Dense end: "both", "start" or "end". Default both.
     weight : number, optional
-        Share w of the cosine, 0 to 1. 0 to 1, default 1.
+        Weight w of the cosine, 0 to 1. 0 to 1, default 1.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6479,7 +6474,7 @@ def TableRelabel(
     """A redistribution by a table: the monotone piecewise cubic through (parameter, value) pairs
     (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
 
-    The pairs run from (0, 0) to (1, 1); both columns ascend.
+    The pairs range from (0, 0) to (1, 1); both columns increase.
 
     Parameters
     ----------
@@ -6523,15 +6518,15 @@ def ArcLenRelabel(
     """A redistribution by length: R is the inverse of s(t) / L, with s the length along a curve and L
     all of it, so that equal steps of t are equal lengths.
 
-    It is meant as the relabel of a curve of the same shape: of a copy, a neighbour, or a curve on the
-    same points. The curve must move everywhere.
+    Intended as the relabel of a curve of the same shape: a copy, a neighbour, or a curve on the
+    same points. The curve must have non-zero speed everywhere.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve
-        The curve whose length counts.
+        Curve whose arc length is used.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6563,15 +6558,15 @@ def CopyRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """The law by which another curve's parameter was redistributed, so that neighbours match. Of a
-    curve without one it changes nothing; of an image it is its original's.
+    """The reparametrisation of another curve, so that neighbours match: the identity for a curve
+    without one, that of the original for an image.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curve : curve
-        The curve whose relabel is copied.
+        Curve whose relabel is copied.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6643,7 +6638,7 @@ def ComposeRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """Relabels one after another: of {a, b} it is R(t) = b(a(t)).
+    """Composition of relabels: {a, b} gives R(t) = b(a(t)).
 
     On a curve that is relabelled by b already, a relabel by a is the same.
 
@@ -6802,14 +6797,14 @@ def OffsetPlane(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> PlaneHandle:
-    """The plane at a given distance from another, on the side of its normal if positive.
+    """The plane at a signed distance from another, positive along its normal.
 
     Parameters
     ----------
     name : str
         The name of the object.
     plane : plane
-        The plane it is parallel to.
+        Reference plane.
     distance : number
         The distance.
     **attributes
@@ -6941,7 +6936,7 @@ def PlaneThroughPoint(
     point : point
         A point of the plane.
     plane : plane
-        The plane it is parallel to.
+        Reference plane.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7055,8 +7050,8 @@ def ThreePointFrame(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> FrameHandle:
-    """The frame of three points: its origin is the first, its x axis points to the second, and the
-    third lies in its xy plane on the side of positive y.
+    """The frame of three points: the first is the origin, the second is on the positive x axis, and
+    the third is in the xy plane with y > 0.
 
     Parameters
     ----------
@@ -7103,8 +7098,8 @@ def RPYFrame(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> FrameHandle:
-    """The frame at a point, turned from the axes of another (of the world when none is given) by yaw
-    about z, then by pitch about the new y, then by roll about the new x; all right-handed.
+    """The frame at a point, rotated from the axes of another frame (default: world) by yaw about z,
+    then pitch about the new y, then roll about the new x; all right-handed.
 
     Parameters
     ----------
@@ -7119,7 +7114,7 @@ def RPYFrame(
     yaw : number, optional
         Angle about the z axis. Default 0.
     frame : frame, optional
-        The frame whose axes are turned.
+        Frame of the initial axes; default: world axes.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7170,7 +7165,7 @@ def XContours(
     step : number
         Distance of neighbouring sections.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7221,7 +7216,7 @@ def YContours(
     step : number
         Distance of neighbouring sections.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7272,7 +7267,7 @@ def ZContours(
     step : number
         Distance of neighbouring sections.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7309,8 +7304,8 @@ def PlaneContours(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> ContoursHandle:
-    """Sections by planes parallel to a given one, at the distances start + i step from it along its
-    normal, for i from first to last: diagonals, cant frames.
+    """Sections by planes parallel to a given one, at the distances start + i step along its normal,
+    for i from first to last: diagonals, cant frames.
 
     Parameters
     ----------
@@ -7327,7 +7322,7 @@ def PlaneContours(
     step : number
         Distance of neighbouring sections.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7382,7 +7377,7 @@ def CylinderContours(
     step : number
         Difference of neighbouring radii.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7443,7 +7438,7 @@ def AngleContours(
     zero : point, optional
         A point in the half-plane of angle 0.
     surfaces : list of value, optional
-        The surfaces and bodies to cut; all that are shown when none are given.
+        Surfaces and bodies to cut; default: all visible ones.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7514,8 +7509,7 @@ def KnotList(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """A list of knots under a name: non-decreasing numbers, for use wherever a list of numbers is
-    asked for.
+    """A named list of knots: non-decreasing numbers, accepted as any list of numbers.
 
     The spline determines the number of knots and their multiplicity.
 
@@ -7784,7 +7778,7 @@ def FairCurve(
         plane of x and y), "volume" (of revolution about x) or "centroid" (of the control
         points). No derivatives.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7961,7 +7955,7 @@ def FairSnake(
     closed : integer, optional
         1 for a closed path, whose first magnet is not repeated. 0 to 1, default 0.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8280,7 +8274,7 @@ def NetCurve(
     index : integer
         The number of the curve in the list of the network, from 1. At least 1.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8444,7 +8438,7 @@ def Field(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """An implicit function under a name: what `field f = ...;` declares.
+    """A named implicit function: the declaration `field f = ...;`.
 
     Parameters
     ----------
@@ -8453,7 +8447,7 @@ def Field(
     field : field
         The function.
     of : list of value, optional
-        The objects that it was computed from.
+        Objects from which it is computed.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8486,7 +8480,7 @@ def Set(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """A set under a name: what `set s = ...;` declares.
+    """A named set: the declaration `set s = ...;`.
 
     Parameters
     ----------
@@ -8495,7 +8489,7 @@ def Set(
     set : set
         The set.
     of : list of value, optional
-        The objects that it was computed from.
+        Objects from which it is computed.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8532,14 +8526,15 @@ def FaceSet(
     """A closed body of plane and round faces as a set: half-spaces, cylinders and cones, all exact. The
     `body` of a sketch is one.
 
-    A round face goes straight from an arc to a copy of it, shifted and scaled. Its five vectors are,
-    for an arc of an ellipse, centre, half-diameter to the start, the one conjugate to it, shift of the
-    centre, and {angle, scale, number of the face}; for a parabola, start, point where the tangents of
-    its ends meet, end, shift, and {0, scale, number of the face}. The scale is 1 for cylinders and 0
-    for a cone whose apex is the shifted centre. Velocity x shift points outward.
+    A round face is ruled between an arc and a translated and scaled copy of it. Its five vectors
+    are, for an arc of an ellipse: centre; half-diameter to the start; conjugate half-diameter;
+    translation of the centre; {angle, scale, number of the face}. For a parabola: start;
+    intersection of the end tangents; end; translation; {0, scale, number of the face}. The scale is
+    1 for cylinders and 0 for a cone whose apex is the translated centre. Velocity x translation
+    points outward.
 
-    Of more than 200 faces, or where they cross too often for a list of half-spaces or round faces touch
-    each other, it is the set by distances from the triangles.
+    With more than 200 faces, with too many intersections for a list of half-spaces, or with round
+    faces in contact, the set is defined by distances from the triangles.
 
     Parameters
     ----------
@@ -8589,10 +8584,11 @@ def SetBody(
 ) -> BodyHandle:
     """The surface of a set as triangles: a mesh like any other.
 
-    Its panels are a patch for each primitive that shows, called after the set or field that it came from
-    (`part.pipe`), with its colour, and its material as a tag. Solids are closed, oriented and manifold; where the box cuts them, its
-    faces close them (`part.cap -x`). Sheets are open, wires are polylines and points are points. The
-    members `volume` and `centroid` are corrected for the distance of the triangles from the surface.
+    Each visible primitive gives a patch of panels, named after its set or field (`part.pipe`), with
+    its colour, and its material as a tag. Solids are closed, oriented and manifold; faces of the
+    box close a solid that it cuts (`part.cap -x`). Sheets are open, wires are polylines and points
+    are points. The members `volume` and `centroid` are corrected for the distance of the triangles
+    from the surface.
 
     Parameters
     ----------
@@ -8601,14 +8597,14 @@ def SetBody(
     set : set
         The set.
     low : point, optional
-        Low corner of the box; found around a set that has an end.
+        Low corner of the box; default: bounds of the set, if bounded.
     high : point, optional
         High corner of the box.
     depth : integer, optional
-        Number of halvings of the longest side of the box: cells of its 2^depth-th part. 6 when
-        no accuracy is asked. 1 to 16.
+        Number of halvings of the longest side of the box; the cells have 2^-depth of its
+        length. Default: 6, without an accuracy. 1 to 16.
     accuracy : number, optional
-        Largest distance of triangle centres from the surface: estimated by refining.
+        Maximum distance of triangle centres from the surface, estimated by refinement.
     simplify : number, optional
         Largest distance from the surface when triangles are merged; none are merged by default.
     **attributes
@@ -8668,7 +8664,7 @@ def ConjugateArc(
     end : point, optional
         The point object at t = 1, where there is one.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8712,7 +8708,7 @@ def CubicChain(
     points : list of point
         The Bézier points: 3 n + 1 of n pieces.
     relabel : relabel, optional
-        Reparametrisation of t (surfaces: v). Default: none.
+        Reparametrisation of t (surfaces: v).
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8807,13 +8803,13 @@ def MeshBody(
     triangles : list of integer, optional
         Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
     volume : number, optional
-        The exact volume, where it is known.
+        Exact volume, if known.
     area : number, optional
-        The exact area, where it is known.
+        Exact area, if known.
     centroid : vector, optional
-        The exact centroid, where it is known.
+        Exact centroid, if known.
     quads : list of integer, optional
-        Corners of panels of four corners, as those of the triangles.
+        Corners of quadrilateral panels, numbered as for the triangles.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8848,8 +8844,7 @@ def Model(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """The model's properties: the planes it is mirrored in, its unit, and the header of the
-    model file that it came from.
+    """The model's properties: its mirror planes, its unit, and the header of its model file.
 
     A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
     and hydrostatics count both.
@@ -8899,25 +8894,25 @@ def SolveSet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """Parameters and numbers of objects that are found so that as many other numbers become zero, by damped
-    Newton steps from the values that they are given.
+    """Solves for parameters and numbers of objects that make an equal number of expressions zero, by
+    damped Newton iteration from their given values.
 
-    An unknown is a parameter of the program, or a number that is written where an object is declared: the
-    `P21.y` of a point, the `b.t` of a bead. What is built on it is built on the solution; ranges of parameters and
-    arguments bound the search. The text keeps the number from which the search begins. The conditions are numbers computed from them, each zero when it
-    holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
-    condition left, `s.iterations` the number of steps.
+    An unknown is a parameter of the program, or a literal number in the declaration of an object:
+    `P21.y` of a point, `b.t` of a bead. Objects that depend on it use the solution; ranges of
+    parameters and arguments bound the search. The program text keeps the initial value. The
+    conditions are expressions, zero when satisfied: `hull.volume - 100`. `s.x` is the solution for
+    the unknown x, `s.residual` the largest remaining condition, `s.iterations` the number of steps.
 
     Parameters
     ----------
     name : str
         The name of the object.
     unknowns : list of number
-        What to find: parameters, and numbers of objects.
+        Unknowns: parameters, and numbers of objects.
     conditions : list of number
-        As many numbers that become zero.
+        Conditions, as many as unknowns: expressions that become zero.
     steps : integer, optional
-        The most steps. 1 to 1000, default 50.
+        Maximum number of steps. 1 to 1000, default 50.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8957,8 +8952,8 @@ def Weight(
 ) -> AnyHandle:
     """A mass and its centre: a part of a ship's weight.
 
-    Each weight counts as stated, also in a model that is mirrored (`Model info(symmetry = "y")`): `images = "y"` adds the
-    other side, which doubles the mass and moves the centre into the plane.
+    Masses are used as given, also in a mirrored model (`Model info(symmetry = "y")`): `images =
+    "y"` adds the mirror image, which doubles the mass and moves the centre into the plane.
 
     The mass is given, or follows from a mass per length of a curve, per area of a surface, per volume of a solid or
     body. `w.mass` is the mass with its margin, `w.centre`, `w.x`, `w.y`, `w.z` are the centre: numbers of the program.
@@ -8969,23 +8964,22 @@ def Weight(
     name : str
         The name of the object.
     at : value
-        Where it is: a point or {x, y, z}; or a curve, surface, solid or body whose centre it
-        has.
+        Position: a point or {x, y, z}; or a curve, surface, solid or body whose centroid is the
+        centre.
     mass : number, optional
         The mass.
     per : number, optional
-        Instead of the mass: mass per length of the curve, per area of the surface, per volume
-        of the solid.
+        Mass per length of the curve, per area of the surface or per volume of the solid;
+        replaces `mass`.
     group : text, optional
-        The group it is listed in.
+        Group in the list of weights.
     margin : number, optional
         A margin that is added to the mass, in percent. Default 0.
     status : text, optional
-        How the mass is known: "estimated", "calculated" or "weighed". Default estimated.
+        Source of the mass: "estimated", "calculated" or "weighed". Default estimated.
     images : text, optional
-        The planes in which it has mirror images that count as well: "y" for what is on both
-        sides of y = 0, "" for what is there once. A mass per area of one side of a symmetric
-        model needs it.
+        Mirror planes: "y" adds the mirror image in y = 0, "" adds no image. Required for a mass
+        per area of one half of a symmetric model.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.

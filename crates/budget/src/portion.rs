@@ -9,7 +9,8 @@ use std::time::Duration;
 /// Seconds that work on a set takes at most where no time is stated: its facets, a measure, a picture.
 ///
 /// They are of the clock or of the processor, whichever are fewer: neither other programs nor other threads use them up.
-pub const SET_SECONDS: f64 = 10.0;
+/// A development build is several times slower.
+pub const SET_SECONDS: f64 = if cfg!(debug_assertions) { 60.0 } else { 10.0 };
 
 /// How long after a look at the processor's time the next one is due.
 const LOOK: Duration = Duration::from_millis(20);

@@ -50,6 +50,18 @@ impl SparseRows {
         self.len() == 0
     }
 
+    /// The diagonal of P'P by unknowns.
+    pub(crate) fn gram_diagonal(&self, unknowns: usize) -> Vec<f64> {
+        let mut h = vec![0.0; unknowns];
+        for k in 0..self.len() {
+            let (columns, factors) = self.row(k);
+            for (&c, &a) in columns.iter().zip(factors) {
+                h[c as usize] += a * a;
+            }
+        }
+        h
+    }
+
     /// The columns and factors of row `k`.
     #[inline(always)]
     pub fn row(&self, k: usize) -> (&[u32], &[f64]) {

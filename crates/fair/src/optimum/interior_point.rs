@@ -4,7 +4,6 @@
 //! displacement is zero.
 
 use crate::optimum::band::Band;
-use crate::optimum::polish::diagonal;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
 use crate::optimum::schur::{LinearConstraint, Schur, met};
 use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
@@ -669,7 +668,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         let (value, gap) = self.certificate();
         let gap = self.refined.map_or(gap, |refined| refined.min(gap));
         let misses = self.misses();
-        let h = diagonal(&self.measure, self.unknowns());
+        let h = self.measure.gram_diagonal(self.unknowns());
         let pressed =
             self.halves.iter().map(|half| half.force / half.slack > half.own_stiffness(&h));
         let pressed = pressed.collect();

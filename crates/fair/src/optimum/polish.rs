@@ -20,18 +20,6 @@ const STIFF: f64 = 1e5;
 
 const MOST_ROUNDS: usize = 14;
 
-/// The diagonal of P'P by unknowns.
-pub(crate) fn diagonal(measure: &SparseRows, unknowns: usize) -> Vec<f64> {
-    let mut h = vec![0.0; unknowns];
-    for k in 0..measure.len() {
-        let (columns, factors) = measure.row(k);
-        for (&c, &a) in columns.iter().zip(factors) {
-            h[c as usize] += a * a;
-        }
-    }
-    h
-}
-
 /// How stiff the measure is against a move of a limit's row: that of the point that moves it most.
 fn own_stiffness(rows: &SparseRows, k: usize, h: &[f64]) -> f64 {
     let (columns, factors) = rows.row(k);
@@ -87,7 +75,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
     pub(crate) fn polish(&mut self, band: &mut Band, margin: f64) -> bool {
         let p = self.p;
         let limits = self.limits();
-        let h = diagonal(&self.measure, self.unknowns());
+        let h = self.measure.gram_diagonal(self.unknowns());
         let own: Vec<f64> = (0..limits)
             .map(|c| own_stiffness(&self.limit_rows, c / self.groups(), &h).max(f64::MIN_POSITIVE))
             .collect();
@@ -225,7 +213,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
         values: &[T],
     ) -> Vec<[T; D]> {
         let p = self.p;
-        let h = diagonal(&self.measure, self.unknowns());
+        let h = self.measure.gram_diagonal(self.unknowns());
         let mut rho = vec![0.0; self.limits()];
         for &c in &active.cones {
             rho[c as usize] =
