@@ -644,7 +644,9 @@ class Web:
         curves: list[tuple[list[int], bool, list[int]]],
         degree: int,
     ) -> Web: ...
-    def fair(self, options: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]: ...
+    def fair(
+        self, options: dict[str, Any]
+    ) -> tuple[NDArray[np.float64], list[tuple[Spline, Spline, float, float]], dict[str, Any]]: ...
 
 @final
 class Look:
