@@ -72,8 +72,8 @@ fn law<T: Real>(
 /// clamped uniform knots (as a B-sub-curve has its beads' parameters).
 ///
 /// The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
-/// the law covers a part of the curve or its continuation beyond the ends. The degree is at most N
-/// - 1 for N values; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
+/// the law covers a part of the curve or its continuation beyond the ends. For N values the degree
+/// is at most N - 1; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
 /// other curves stay parts of them.
 #[derive(Kind)]
 #[kind(
