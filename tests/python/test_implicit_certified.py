@@ -41,7 +41,7 @@ def test_what_is_too_thin_is_listed_or_refused():
     facets = plate.facets(depth=5)
     assert facets.unresolved and all(u.missed for u in facets.unresolved)
     with pytest.raises(moldloft.Error, match="depth = "):
-        plate.facets(accuracy=1e-5)
+        plate.facets(accuracy=1e-5, limit=100_000)
 
 
 def test_a_volume_that_is_not_known_as_well_as_asked_is_warned_of():

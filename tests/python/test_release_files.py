@@ -42,8 +42,11 @@ STEPS = re.compile(
     r"python -m pip install --require-hashes --requirement requirements/\w+\.txt$|"
     r"pip-audit --disable-pip --require-hashes --requirement requirements/test\.txt$|"
     r"npm audit --prefix web --audit-level=high$|"
+    # Coverage by crate, speed against kept figures.
+    r"python3 tools/coverage\.py |make optimised WEB=$|echo \"name=|"
+    r"\.venv/bin/python benches/watched\.py |"
     # What needs another toolchain than the house.
-    r"cargo (?:miri|llvm-cov|fuzz) |cargo test -Zbuild-std |for target in |"
+    r"cargo (?:miri|llvm-cov|fuzz|mutants) |cargo test -Zbuild-std |for target in |"
     # Other processors, emulated.
     r"sudo apt-get update && sudo apt-get install -y qemu-user |"
     r"cargo build -p moldloft --example bits|"
