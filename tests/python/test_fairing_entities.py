@@ -58,7 +58,7 @@ KINDS = {
     "FairNet": (
         network,
         {"tol": ("tolerance", "tolerances", "tolerances_at"), "points": ("curves",)},
-        {"original"},
+        {"original", "bound"},
     ),
     "FairPatches": (patches, {"degree": ("degree", "degree_v"), "goal": ("goal",)}, set()),
 }
