@@ -6297,8 +6297,8 @@ def Relabel(
     clamped uniform knots (as a B-sub-curve has its beads' parameters).
 
     The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
-    the law covers a part of the curve or its continuation beyond the ends. The degree is at most N
-    - 1 for N values; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
+    the law covers a part of the curve or its continuation beyond the ends. For N values the degree
+    is at most N - 1; a higher one is lowered. Degree 1 is linear between its breaks, so parts of
     other curves stay parts of them.
 
     Parameters
@@ -8176,7 +8176,7 @@ def FairNet(
     measure over all curves is the least; each curve then passes through its moved points, so that
     curves still meet where they did. A list that ends with its first point is a closed curve. The
     value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
-    Equal coordinates alone join nothing.
+    Equal coordinates alone join nothing. The limit is on the points: there is no `bound`.
 
     Parameters
     ----------

@@ -106,7 +106,8 @@ def test_a_network_beside_oracles():
         beam = gain(hull * (hull @ read[:, 1]) / (hull @ hull))
         gains.append((near, best, known, beam))
     near, best, known, beam = np.array(gains).T
-    assert np.median(near / best) > 0.99 and (near / best).min() > 0.25, gains
+    # Lines that are weighed one by one, with no more bends than they need, cost a tenth at most.
+    assert np.median(near / best) > 0.9 and (near / best).min() > 0.25, gains
     assert np.median(near / known) > 1, gains
     assert near.min() > 2, gains
     if SOAK:

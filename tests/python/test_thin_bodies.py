@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,6 +77,16 @@ def thin(seed: int) -> Body:
     return Body(kind, t, body, float(volume), euler)
 
 
+@pytest.fixture
+def unhurried() -> Iterator[None]:
+    """Time for development builds, which are many times slower."""
+    before = moldloft.limits()
+    moldloft.limits(seconds=900)
+    yield
+    moldloft.limits(**before._asdict())
+
+
+@pytest.mark.usefixtures("unhurried")
 @pytest.mark.parametrize("seed", range(500 if SOAK else 7))
 def test_the_volume_is_proved_or_refused_with_what_is_reached(seed: int) -> None:
     of = thin(seed)

@@ -896,7 +896,6 @@ class _Object(_Source):
     """An object of a model: a curve, a surface, or rows of points."""
 
     def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
-        from moldloft import _core
         from moldloft.fairing.objects import sampled
         from moldloft.loading import load
 
@@ -908,7 +907,7 @@ class _Object(_Source):
         if options.set:
             loaded.set(dict(options.set))
         self.title = f"{model}:{name}"
-        self.unit = _core.length_unit(loaded._document)[0]
+        self.unit = loaded.length_unit[0]
         self.made = sampled(loaded, name, options.tol)
         self.error = self.made.error
 

@@ -9,7 +9,7 @@ import numpy as np
 
 __all__ = ["outlines"]
 
-#: How far points may be off a plane, as a part of the outline's size: rough pictures are.
+#: Largest distance of points from a plane, as a part of the outline's size: pictures are rough.
 _FLAT = 0.03
 #: Longer outlines are no faces that a hand has just closed.
 _LONGEST = 40

@@ -37,7 +37,7 @@ shared_options! {
         /// measure over all curves is the least; each curve then passes through its moved points, so that
         /// curves still meet where they did. A list that ends with its first point is a closed curve. The
         /// value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
-        /// Equal coordinates alone join nothing.
+        /// Equal coordinates alone join nothing. The limit is on the points: there is no `bound`.
         #[derive(Kind)]
         #[kind(
             class = List,
