@@ -92,7 +92,8 @@ def test_python_is_limited_in_memory() -> None:
     with pytest.raises(moldloft.FileError, match="GiB of memory"), within_limits():
         while True:
             kept.append(os.urandom(1 << 20))
-            time.sleep(5e-3)
+            # Memory is looked at by the clock: a busy machine may be late by a second.
+            time.sleep(5e-2)
     # No more than a fifth beyond what is allowed.
     assert len(kept) < 1.2 * 120
     kept.clear()
