@@ -130,9 +130,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             # A terminal that has no letter for something shows its number.
             stream.reconfigure(errors="backslashreplace")
-    before, warnings.showwarning = warnings.showwarning, _show_warning
-    streams, sys.stdout, sys.stderr = _shown_streams()
+    before, streams = warnings.showwarning, (sys.stdout, sys.stderr)
     try:
+        warnings.showwarning = _show_warning
+        sys.stdout, sys.stderr = _shown_streams()
         status = _run(arguments)
         sys.stdout.flush()
     except KeyboardInterrupt:
@@ -161,12 +162,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-def _shown_streams() -> tuple[tuple[TextIO, TextIO], TextIO, TextIO]:
-    """Standard output and error, and both as they are safe for the texts of others."""
+def _shown_streams() -> tuple[TextIO, TextIO]:
+    """Standard output and error as they are safe for the texts of others."""
     from moldloft.cli.shown import ShownStream
 
-    out, error = sys.stdout, sys.stderr
-    return (out, error), cast("TextIO", ShownStream(out)), cast("TextIO", ShownStream(error))
+    return cast("TextIO", ShownStream(sys.stdout)), cast("TextIO", ShownStream(sys.stderr))
 
 
 def _show_warning(
