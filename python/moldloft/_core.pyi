@@ -387,6 +387,7 @@ class Document:
         by: Sequence[str],
         accuracy: float,
         of_weights: bool,
+        flooded: bool,
     ) -> list[dict[str, Any]]: ...
     def weights(
         self,

@@ -31,6 +31,22 @@ __all__ = ["Floating"]
 #: Beyond it an angle is one in degrees.
 _MOST_TURN = 2 * math.pi + 1e-9
 
+#: Figures that a skin has with water inside.
+_WHEN_FLOODED = frozenset(
+    [
+        "level",
+        "trim",
+        "heel",
+        "draft",
+        "draft_low_x",
+        "draft_mid",
+        "draft_high_x",
+        "freeboard",
+        "displacement",
+        "weight",
+    ]
+)
+
 
 class Floating:
     """Hydrostatics, weights and stability: the methods of a model that concern floating."""
@@ -292,7 +308,8 @@ class Floating:
         Returns
         -------
         RightingCurve
-            A row for each heel.
+            A row for each heel. Where the water enters over an open edge, such as the sheer of a
+            hull without deck, only the attitude and the freeboard are numbers; ``gz`` is NaN.
 
         Raises
         ------
@@ -311,7 +328,9 @@ class Floating:
             ("displacement", float(displacement), float(trim), float(heel), free_trim, False)
             for heel in heels
         ]
-        return RightingCurve(self._floating(rows, cg, density, gravity, "both", by, accuracy))
+        return RightingCurve(
+            self._floating(rows, cg, density, gravity, "both", by, accuracy, flooded=True)
+        )
 
     def _floating(
         self,
@@ -323,6 +342,7 @@ class Floating:
         by: Sequence[str],
         accuracy: float,
         of_weights: bool = False,
+        flooded: bool = False,
     ) -> list[Hydrostatics]:
         centre = None if cg is None else [float(x) for x in cg]
         if centre is not None and len(centre) != 3:
@@ -347,7 +367,7 @@ class Floating:
                 'help: give density="salt", "fresh", or mass per volume in the model\'s units'
             )
         answers = self._document.floating(
-            rows, water or 1.0, gravity, centre, sides, names_of(by), accuracy, of_weights
+            rows, water or 1.0, gravity, centre, sides, names_of(by), accuracy, of_weights, flooded
         )
         massive = ("displacement", "weight", "tpc", "mtc", "righting_moment")
         names, off = triangles_off(cast("Model", self))
@@ -357,7 +377,12 @@ class Floating:
         partial = self._document.partial() and not self._document.is_whole()
         inner = [found.message for found in self._document.inner_skins()]
         for answer in answers:
-            answer["partial"] = partial
+            if answer["open_edges"] and not self._document.partial():
+                lost = (k for k in set(answer) - _WHEN_FLOODED if isinstance(answer[k], float))
+                answer |= dict.fromkeys(lost, math.nan)
+                zero = dict.fromkeys(names_of(by), math.nan)
+                answer["derivatives"] = {name: dict(zero) for name in answer["derivatives"]}
+            answer["partial"] = partial or (answer["open_edges"] > 0 and self._document.partial())
             answer["inner_skins"] = inner
             answer["faceted"] = sets
             if names:

@@ -155,7 +155,8 @@ class Hydrostatics:
     """The same at its highest x."""
     freeboard: float | None = None
     """Height of the lowest open edge over the water, such as the sheer of a hull without deck;
-    negative where it is below: the other figures are then unreliable."""
+    negative where it is below: the water enters, and the other figures are NaN unless
+    ``Model.partial`` is set."""
     weight: float | None = None
     """Displacement times gravity."""
     tpc: float | None = None
@@ -225,7 +226,10 @@ class Hydrostatics:
             lines.append("the model is not whole: the figures are those of what was made")
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
-            lines.append(f"{count} of the skin below the water: results are unreliable")
+            lines.append(
+                f"{count} of the skin below the water, which enters there: the figures are not "
+                "those of a body"
+            )
         lines += self.inner_skins
         if self.on_triangles:
             named = ", ".join(f"`{name}`" for name in self.on_triangles[:3])

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.arguments import explain
-from moldloft.errors import Error
+from moldloft.errors import Error, ModelError
 
 if TYPE_CHECKING:
     from moldloft.models import Model
@@ -320,7 +321,12 @@ def lines_plan(
         raise Error(f"a scale has a positive denominator, not {scale}")
     lines = _Lines(model)
     mirrored = "y" in model.symmetry
-    flotation = model.hydrostatics(density=density) if lines.low[2] < 0 <= lines.high[2] else None
+    flotation = None
+    if lines.low[2] < 0 <= lines.high[2]:
+        try:
+            flotation = model.hydrostatics(density=density)
+        except ModelError as error:
+            warnings.warn(f"the sheet has no hydrostatics: {error}", stacklevel=2)
     if flotation is not None and flotation.waterline_low_x is not None:
         ends = (flotation.waterline_low_x, flotation.waterline_high_x or lines.high[0])
     else:

@@ -168,8 +168,8 @@ class Model(Floating, Writable, Adapted):
 
         ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
-        each other in their counts. With ``True`` they are those of what was made, and the remarks
-        of hydrostatics say so.
+        each other in their counts; hydrostatics also while the skin is open below the water. With
+        ``True`` they are those of what was made, and the remarks of hydrostatics say so.
 
         Examples
         --------

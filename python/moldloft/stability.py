@@ -201,6 +201,8 @@ class Stability:
     def area(self, low: float, high: float) -> float:
         """The area under the righting arm between two heels: a difference of energies.
 
+        NaN where the water enters over an open edge before (:meth:`deck_edge`).
+
         Parameters
         ----------
         low
@@ -208,6 +210,8 @@ class Stability:
         high
             The greater heel, radians.
         """
+        if high > self._afloat(high):
+            return math.nan
         return self.energy(high) - self.energy(low)
 
     def slope(self, heel: float) -> float:
@@ -272,6 +276,7 @@ class Stability:
         """
         if self.gmt >= 0:
             return None
+        most = self._afloat(most)
         heels = self.grid(0.0, most)
         low = heels[1]
         # A small angle of loll lies before the first heel of the grid.
@@ -295,7 +300,7 @@ class Stability:
         most
             The largest heel that is searched, radians.
         """
-        heels = self.grid(0.0, most)
+        heels = self.grid(0.0, self._afloat(most))
         k = max(range(len(heels)), key=lambda k: self.gz(heels[k]))
         low, high = heels[max(k - 1, 0)], heels[min(k + 1, len(heels) - 1)]
         if self.slope(low) > 0 > self.slope(high):
@@ -308,7 +313,8 @@ class Stability:
         """The angle of vanishing stability: the first heel at which the righting arm becomes zero.
 
         The arm falls to zero there, or jumps below where the body turns over its ends.
-        ``None`` when it was never righting, or stays so up to ``most``.
+        ``None`` when it was never righting, or stays so up to ``most`` or up to the heel at which
+        the water enters over an open edge (:meth:`deck_edge`).
 
         Parameters
         ----------
@@ -318,6 +324,7 @@ class Stability:
         start = 0.0 if self.gmt >= 0 else self.loll(most)
         if start is None:
             return None
+        most = self._afloat(most)
         heels = [start, *(heel for heel in self.grid(0.0, most) if heel > start)]
         for a, b in pairwise(heels):
             # At rest the arm is zero; from the angle of loll on it rights.
@@ -337,6 +344,7 @@ class Stability:
         """
         start = 0.0 if self.gmt >= 0 else self.loll(most)
         end = self.vanishing(most)
+        most = self._afloat(most)
         if start is None or (end is None and self.largest(most)[1] <= 0):
             return 0.0
         return (most if end is None else end) - start
@@ -358,7 +366,7 @@ class Stability:
             row = self.at(heel)
             return opening.height(heel, row.trim, row.level)
 
-        heels = self.grid(0.0, most, math.radians(2.0))
+        heels = self.grid(0.0, self._afloat(most), math.radians(2.0))
         if height(0.0) <= 0:
             return 0.0
         for a, b in pairwise(heels):
@@ -367,7 +375,7 @@ class Stability:
         return None
 
     def flooding(self, most: float = math.pi) -> tuple[float, str] | None:
-        """The least heel at which an opening reaches the water, and its name.
+        """The least heel at which an opening or an open edge reaches the water, and its name.
 
         ``None`` when none does, or there is none.
 
@@ -377,8 +385,14 @@ class Stability:
             The largest heel that is searched, radians.
         """
         found = [(self.immersed(o, most), o.name) for o in self.openings]
+        found.append((self.deck_edge(most), "open edge"))
         angles = [(angle, name) for angle, name in found if angle is not None]
         return min(angles) if angles else None
+
+    def _afloat(self, most: float) -> float:
+        """The largest heel up to ``most`` at which the skin keeps the water out."""
+        edge = self.deck_edge(most)
+        return most if edge is None else edge
 
     def deck_edge(self, most: float = math.pi / 2) -> float | None:
         """The heel at which the lowest open edge, such as the sheer, reaches the water.
@@ -396,8 +410,9 @@ class Stability:
         def height(heel: float) -> float:
             return self.at(heel).freeboard or 0.0
 
-        heels = self.grid(0.0, most, math.radians(2.0))
-        for a, b in pairwise(heels):
+        # Step by step: far beyond the edge there may be no attitude with this mass.
+        count = max(1, math.ceil(most / math.radians(2.0) - 1e-9))
+        for a, b in pairwise(most * k / count for k in range(count + 1)):
             if height(a) > 0 >= height(b):
                 return _root(height, a, b)
         return None
@@ -445,7 +460,8 @@ class Stability:
             return otherwise if value is None else f"{math.degrees(value):.4f} deg"
 
         heel, largest = self.largest()
-        flood = self.flooding()
+        flood, edge = self.flooding(), self.deck_edge()
+        none = "none up to 180 deg" if edge is None else "none before the open edge is immersed"
         lines = [
             "stability, trim free" if self.free_trim else "stability, trim kept",
             line("mass", f"{self.mass:.7g} {unit.mass}".rstrip()),
@@ -457,14 +473,14 @@ class Stability:
             lines.append(line("angle of loll", angle(self.loll(), "none up to 180 deg")))
         lines += [
             line("largest GZ", f"{largest:.6g} {arm} at {math.degrees(heel):.4f} deg"),
-            line("angle of vanishing stability", angle(self.vanishing(), "none up to 180 deg")),
+            line("angle of vanishing stability", angle(self.vanishing(), none)),
             line("range", f"{math.degrees(self.range()):.4f} deg"),
         ]
         for low, high in _AREAS:
             area = self.area(math.radians(low), math.radians(high))
             text = f"{area:.6g} {arm}·rad" if arm else f"{area:.6g}"
+            text = text if area == area else "the water enters over the open edge before"
             lines.append(line(f"area {low} to {high} deg", text))
-        edge = self.deck_edge()
         if edge is not None:
             lines.append(line("deck edge immersed", angle(edge, "")))
         if flood is not None:
@@ -598,8 +614,7 @@ def cross_curves(
     accuracy
         Relative accuracy of the integrals.
     """
-    lowest = model.hydrostatics(level=0.0, accuracy=accuracy)
-    keel = lowest.level - lowest.draft_mid if lowest.draft_mid is not None else 0.0
+    keel = model.hydrostatics(draft=0.0, accuracy=accuracy).level
     rows = []
     for volume in volumes:
         level = model.equilibrium(volume, density=1.0, free=(), accuracy=accuracy)
@@ -840,7 +855,9 @@ def _area_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
 
 def _arm_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
     s = context.stability
-    low, high = math.radians(clause["from"]), math.radians(clause.get("to", 90))
+    low, high = math.radians(clause["from"]), s._afloat(math.radians(clause.get("to", 90)))
+    if high < low:
+        return context.without(clause, "m", "fail", "the open edge of the skin floods before")
     heels = s.grid(low, high)
     best = max(map(s.gz, heels))
     heel, largest = s.largest(high)

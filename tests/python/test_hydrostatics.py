@@ -95,15 +95,64 @@ def test_a_wall_sided_righting_curve(barge):
     assert 0 < area < heels[-1] * expected[-1]
 
 
-def test_a_deck_edge_under_water_is_said(barge, cli, model_file):
+def test_where_the_water_enters_no_figure_is_given(barge, cli, model_file):
     curve = barge.righting_curve(np.radians([0, 30, 60]), L * B * T, cg=(6, 0, KG), density=1)
     assert [row.floods for row in curve] == [False, False, True]
+    assert np.isfinite(curve.gz).tolist() == [True, True, False]
+    assert math.isnan(curve.rows[2].volume) and curve.rows[2].freeboard < 0
     path = model_file(BARGE)
     mass = ["--displacement", L * B * T, f"--cg=6,0,{KG}", "--density", 1]
     done = cli("hydro", path, *mass, "--gz", "0,60,7", "--json")
     assert "open edge below the waterline" in done.stderr
     rows = json.loads(done.stdout)
-    assert len(rows) == 7 and rows[-1]["freeboard"] < 0
+    assert len(rows) == 7 and rows[-1]["freeboard"] < 0 and rows[-1]["gz"] is None
+    # The levels of a table are given: those above the sheer are errors.
+    with pytest.raises(moldloft.ModelError, match="open below the water"):
+        barge.hydrostatic_table([T, H + 0.5])
+    draft = 1.6
+    s = barge.stability(L * B * draft, cg=(6, 0, KG), density=1)
+    edge = s.deck_edge()
+    # The sheer comes down on one side as B / 2 tan(heel), in a box that keeps its draft.
+    assert edge == pytest.approx(math.atan(2 * (H - draft) / B), rel=1e-9)
+    assert s.flooding() == (edge, "open edge") and s.vanishing() is None
+    assert s.range() == pytest.approx(edge) and s.largest()[0] <= edge
+    assert math.isnan(s.area(0, edge + 0.1)) and math.isfinite(s.area(0, edge))
+    assert "none before the open edge is immersed" in s.summary()
+    assert "the water enters over the open edge" in s.summary()
+
+
+BOTTOMLESS = """Model info(symmetry = "y", units = "m");
+AbsPoint a(0,0,0.3); AbsPoint b(4,0,0.3); AbsPoint c(0,0,-0.5); AbsPoint d(4,0,-0.5);
+AbsPoint e(2,0.8,0.3); AbsPoint f(2,0.8,-0.5);
+BCurve u({a,e,b}, degree = 2); BCurve l({c,f,d}, degree = 2);
+RuledSurf side(u, l, divisions = {40, 10});
+"""
+
+
+def test_a_hull_without_a_bottom_has_no_figures(cli, model_file):
+    model = moldloft.loads(BOTTOMLESS)
+    asked = [
+        model.hydrostatics,
+        lambda: model.hydrostatics(draft=0.2),
+        lambda: model.eval("hydrostatics.volume"),
+        lambda: model.derivatives(["hydrostatics.volume"], by=["a.z"]),
+        lambda: moldloft.loads(BOTTOMLESS + "float v = hydrostatics.volume;"),
+    ]
+    for ask in asked:
+        with pytest.raises(moldloft.ModelError, match=r"(?s)open below the water.*`side`"):
+            ask()
+    model.partial = True
+    state = model.hydrostatics()
+    assert state.partial and state.open_edges == 1 and state.bounds == {}
+    assert "not those of a body" in " ".join(state.remarks)
+    path = model_file(BOTTOMLESS)
+    assert "open below the water" in cli("hydro", path, status=1).stderr
+    assert "not those of a body" in cli("hydro", path, "--keep-going").stdout
+    assert "no hydrostatics" in cli("build", path).stdout
+    closed = "BCurve m({c, d}, degree = 1); RuledSurf bottom(l, m, divisions = {40, 10});\n"
+    whole = moldloft.loads(BOTTOMLESS + closed)
+    # Both sides: twice the height times the parabola's area, 2/3 of 4 by 0.4.
+    assert whole.hydrostatics().volume == pytest.approx(0.5 * 2 * 2 / 3 * 4 * 0.4, rel=1e-9)
 
 
 def test_a_cone_by_closed_forms():
@@ -267,7 +316,8 @@ def test_what_is_known_less_well_than_asked_for_is_remarked(barge):
     assert max(state.bounds[name] for name in ("volume", "waterplane_area")) < 1e-6
     worse = replace(state, bounds={**state.bounds, "volume": 3e-5 * state.volume}, open_edges=2)
     assert worse.remarks == [
-        "2 open edges of the skin below the water: results are unreliable",
+        "2 open edges of the skin below the water, which enters there: the figures are not "
+        "those of a body",
         "volume is known to 3e-05 of itself; 1e-06 was asked for",
     ]
     assert "volume is known to 3e-05" in worse._repr_html_()

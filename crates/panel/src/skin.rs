@@ -20,6 +20,8 @@ pub struct Skin {
     /// About the diagonal.
     size: f64,
     on_panels: Vec<String>,
+    /// The patches with an edge that nothing closes.
+    open: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -49,6 +51,7 @@ impl Skin {
             rims: Vec::new(),
             size: mesh.bounds().diagonal(),
             on_panels: Vec::new(),
+            open: Vec::new(),
         };
         let mut in_parts: HashSet<usize> = HashSet::new();
         let shared = shared_edges(panelling, mesh);
@@ -69,6 +72,9 @@ impl Skin {
                 |edge: EdgeName| matches!(edge, EdgeName::Side(n) if shared.contains(&(k, n)));
             let bare = |e: &&OpenEdge| e.closes == Closes::Nothing && !closed(e.edge);
             for edge in open.open.iter().filter(|e| e.patch == k).filter(bare) {
+                if skin.open.last() != Some(&patch.info.name) {
+                    skin.open.push(patch.info.name.clone());
+                }
                 match (edge.edge, side) {
                     (EdgeName::Side(n), Some((_, block))) => {
                         let count = if n % 2 == 0 { block.nu } else { block.nv } - 1;
@@ -112,6 +118,11 @@ impl Skin {
     /// The patches that are measured on their panels: they have no surface, or it has very many pieces.
     pub fn on_panels(&self) -> &[String] {
         &self.on_panels
+    }
+
+    /// The patches with an edge that nothing closes: neither a neighbour nor a mirror image.
+    pub fn open(&self) -> &[String] {
+        &self.open
     }
 
     /// True when nothing bounds a body.

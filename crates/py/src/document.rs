@@ -654,7 +654,7 @@ impl PyDocument {
     /// Hydrostatics: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
     /// heel, whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (rows, density, gravity, centre, sides, by, accuracy, of_weights))]
+    #[pyo3(signature = (rows, density, gravity, centre, sides, by, accuracy, of_weights, flooded))]
     fn floating<'py>(
         &self,
         py: Python<'py>,
@@ -666,6 +666,7 @@ impl PyDocument {
         by: Vec<String>,
         accuracy: f64,
         of_weights: bool,
+        flooded: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         if !(1e-12..=0.1).contains(&accuracy) {
             return Err(plain_error(format!(
@@ -704,6 +705,7 @@ impl PyDocument {
             centre,
             one_side,
             of_weights,
+            flooded,
             accuracy,
         };
         let names = by.clone();

@@ -27,7 +27,7 @@ from moldloft.cli.console import (
     water,
 )
 from moldloft.display import worst_panel
-from moldloft.errors import Error
+from moldloft.errors import Error, ModelError
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
 from moldloft.models import Model
@@ -188,11 +188,16 @@ def _build(
         mesh = model.mesh(tags=options.tag)
         progress.stage("measuring")
         patches = mesh.patches
-        floating = None
+        floating, leaks = None, ""
         if patches:
-            floating = model.hydrostatics(
-                level=options.level, density=options.density, sides=options.sides
-            )
+            try:
+                floating = model.hydrostatics(
+                    level=options.level, density=options.density, sides=options.sides
+                )
+            except ModelError as error:
+                if error.diagnostics[0].id != "open-below-water":
+                    raise
+                leaks = f"{error.diagnostics[0].message} at z = {_number(options.level)}"
 
         outputs: list[Output] = []
         halves: list[str] = []
@@ -256,6 +261,8 @@ def _build(
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
     data["one_side"] = halves
+    if leaks:
+        data["no_hydrostatics"] = leaks
     missing = _missing(model)
     if model.has_errors:
         data["ok"] = False
@@ -386,6 +393,11 @@ def summary(
         lines += _openings(mesh, data)
     if floating is not None and (verbose or _floats(floating)):
         lines += ["", _floating(floating) if verbose else _main_figures(floating)]
+    if "no_hydrostatics" in data:
+        lines += [
+            "",
+            f"no hydrostatics: {data['no_hydrostatics']} (moldloft hydro names the edges)",
+        ]
     if data["files"]:
         lines.append("")
         lines += [f"wrote {file['path']} ({_bytes(file['bytes'])})" for file in data["files"]]

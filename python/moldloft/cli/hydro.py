@@ -128,6 +128,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--by", metavar="NAME", action="append", default=[], help="differentiate by a parameter"
     )
     parser.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="figures of what was made, though objects failed or the skin is open below the water",
+    )
+    parser.add_argument(
         "--json", action="store_true", help="figures as data with their units; angles in degrees"
     )
     parser.add_argument(
@@ -193,8 +198,9 @@ def run(options: argparse.Namespace) -> int:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         report(model.diagnostics)
-        if model.has_errors:
+        if model.has_errors and not options.keep_going:
             return 1
+        model.partial = options.keep_going
         progress.stage("floating")
         if options.weights and options.displacement is None:
             _take_weights(model, options)
@@ -418,8 +424,8 @@ def _warn(rows: list[Hydrostatics]) -> None:
         heels = sum(row.heel != 0 for row in wet)
         where = f" in {len(wet)} of {len(rows)} rows" if len(rows) > 1 else ""
         note = ", heeled" if heels else ""
-        text = f"warning: the skin has an open edge below the waterline{where}{note}; "
-        print(text + "results are unreliable", file=sys.stderr)
+        text = f"warning: the skin has an open edge below the waterline{where}{note}, where water "
+        print(text + "enters: no figures of a body", file=sys.stderr)
     lost = sum(row.status == "not-converged" for row in rows)
     if lost:
         print(f"warning: {lost} of {len(rows)} attitudes did not come to rest", file=sys.stderr)

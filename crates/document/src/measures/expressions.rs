@@ -54,7 +54,8 @@ impl Document {
         let numbers = if group == "mesh" {
             mesh_numbers(&self.entire_panels()?.mesh)
         } else {
-            body_numbers(&self.bodied(USUAL_ACCURACY)?.body, &symmetry)
+            let bodied = self.bodied(USUAL_ACCURACY)?;
+            body_numbers(&bodied.body, &bodied.skin, &symmetry, self.partial())?
         };
         self.whole.insert(group, Whole { clock, symmetry, numbers: numbers.clone() });
         Ok(numbers)
@@ -142,7 +143,9 @@ impl Document {
                             let graph = &evaluation.graph;
                             let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
                             let body = body.ok_or_else(|| vec![document.or_spent(not_finite())])?;
-                            body_numbers(&body, &document.symmetry())
+                            let (symmetry, partial) = (document.symmetry(), document.partial());
+                            body_numbers(&body, &bodied.skin, &symmetry, partial)
+                                .map_err(|d| vec![d])?
                         };
                         one_of(found, group, number).map_err(|d| vec![d])?
                     }

@@ -8,7 +8,7 @@ use moldloft_hydro::{
     Water, bottom, bounds, equilibrium, flotation, section_area,
 };
 use moldloft_lang::run::weight::mass_and_centre;
-use moldloft_lang::run::whole::not_finite;
+use moldloft_lang::run::whole::{not_finite, open_below_water};
 use moldloft_lang::source::fault_location::unplaced;
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
@@ -60,6 +60,9 @@ pub struct FlotationOptions {
     pub one_side: bool,
     /// The mass that floats and the centre of gravity are those of the model's weights.
     pub of_weights: bool,
+    /// Attitudes in which the skin is open below the water are answered, marked by
+    /// [`FloatAnswer::open_edges`], where they are errors otherwise.
+    pub flooded: bool,
     /// The relative accuracy of the figures.
     pub accuracy: f64,
 }
@@ -116,6 +119,12 @@ impl Document {
             .map(|solved| Ok(answer(&solved?)))
             .collect::<Result<Vec<FloatAnswer>, FloatError>>()
             .map_err(cannot_float)?;
+        for answer in answers.iter_mut().filter(|a| a.open_edges > 0) {
+            if !(options.flooded || self.partial()) {
+                return Err(vec![open_below_water(&bodied.skin)]);
+            }
+            answer.bounds.clear();
+        }
         if by.is_empty() {
             return Ok(answers);
         }

@@ -4,7 +4,7 @@ use crate::Document;
 use crate::measures::bodied::Bodied;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
-use moldloft_lang::run::whole::not_finite;
+use moldloft_lang::run::whole::{not_finite, open_below_water};
 use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
 use moldloft_panel::Skin;
 use std::sync::Arc;
@@ -36,14 +36,17 @@ impl Document {
     /// The hydrostatics of the model.
     ///
     /// # Errors
-    /// When there is no skin.
+    /// When there is no skin, or it is open below the water and a part is not allowed.
     pub fn hydrostatics(
         &mut self,
         options: &HydrostaticsOptions,
     ) -> Result<Hydrostatics<f64>, Diagnostic> {
         let bodied = self.bodied(USUAL_ACCURACY)?;
-        let level = options.level;
-        Ok(hydrostatics(&bodied.body, level, options.symmetry(), options.density))
+        let found = hydrostatics(&bodied.body, options.level, options.symmetry(), options.density);
+        match found.open_edges {
+            1.. if !self.partial() => Err(open_below_water(&bodied.skin)),
+            _ => Ok(found),
+        }
     }
 
     /// The skin of all shown surfaces and bodies, remembered until something changes.

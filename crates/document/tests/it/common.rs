@@ -88,5 +88,6 @@ pub const WATER: FlotationOptions = FlotationOptions {
     centre: None,
     one_side: false,
     of_weights: false,
+    flooded: false,
     accuracy: 1e-6,
 };

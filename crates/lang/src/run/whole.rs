@@ -39,11 +39,38 @@ pub fn mesh_numbers<T: Real>(mesh: &Mesh<T>) -> Vec<(&'static str, Value<T>)> {
 }
 
 /// The hydrostatics of a body in water at z = 0; `symmetry` holds the letters of the planes that mirror it.
-pub fn body_numbers<T: Real>(body: &Body<T>, symmetry: &str) -> Vec<(&'static str, Value<T>)> {
+///
+/// # Errors
+/// When the skin is open below the water and `partial` figures are not allowed.
+pub fn body_numbers<T: Real>(
+    body: &Body<T>,
+    skin: &Skin,
+    symmetry: &str,
+    partial: bool,
+) -> Result<Vec<(&'static str, Value<T>)>, Diagnostic> {
     let lengthwise = symmetry.contains('x').then(|| body.with_mirror_image(0));
     let body = lengthwise.as_ref().unwrap_or(body);
     let shown = if symmetry.contains('y') { Symmetry::MirroredTwice } else { Symmetry::None };
-    named(&hydrostatics(body, T::zero(), shown, 1.0))
+    let found = hydrostatics(body, T::zero(), shown, 1.0);
+    match found.open_edges {
+        1.. if !partial => Err(open_below_water(skin)),
+        _ => Ok(named(&found)),
+    }
+}
+
+/// The water enters: the skin encloses no volume below it.
+pub fn open_below_water(skin: &Skin) -> Diagnostic {
+    const MOST_NAMES: usize = 3;
+    let named = skin.open().iter().take(MOST_NAMES).map(|name| format!("`{name}`"));
+    let mut names = named.collect::<Vec<_>>().join(", ");
+    if skin.open().len() > MOST_NAMES {
+        names += ", ...";
+    }
+    Diagnostic::error("open-below-water", "the skin is open below the water")
+        .expected("a skin that is closed up to the water")
+        .found(format!("edges that nothing closes: of {names}"))
+        .help("close it with a bottom, a transom or a deck, hide surfaces that are no skin, or allow partial figures \
+               (`--keep-going`, `Model.partial = True`)")
 }
 
 /// The number of that name among those of a group.
@@ -131,7 +158,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             mesh_numbers(&panelling.mesh(graph).ok_or_else(no_mesh)?)
         } else {
             let body = skin.body(panelling, graph, USUAL_ACCURACY).ok_or_else(not_finite)?;
-            body_numbers(&body, &symmetry)
+            body_numbers(&body, skin, &symmetry, false)?
         };
         self.measured = Some((count, group.to_string(), numbers.clone()));
         Ok(numbers)
