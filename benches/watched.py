@@ -89,7 +89,7 @@ def rows() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "yacht opened", lambda: moldloft.load(yacht)
     yield "yacht after a change", edits(moldloft.load(yacht))
     merchant = moldloft.load(GALLERY / "merchant.sdl")
-    mass = merchant.hydrostatics(density=1.025).mass
+    mass = merchant.hydrostatics(density=1.025).displacement
     heels = np.radians(np.arange(0, 61, 5.0))
     yield (
         "righting arms at 13 heels, free trim",

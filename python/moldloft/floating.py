@@ -391,7 +391,7 @@ class Floating:
                 for name, scale in scales.items():
                     more = off["area" if name == "wetted_area" else "volume"] * images * scale
                     bounds[name] = bounds.get(name, 0.0) + more
-            if sets:
+            if sets or answer["open_edges"]:
                 answer["bounds"] = {}
             if water is None:
                 for name in massive:

@@ -210,9 +210,8 @@ class Stability:
         high
             The greater heel, radians.
         """
-        if high > self._afloat(high):
-            return math.nan
-        return self.energy(high) - self.energy(low)
+        dry = high <= self._afloat(high)
+        return self.energy(high) - self.energy(low) if dry else math.nan
 
     def slope(self, heel: float) -> float:
         """The exact derivative of the righting arm by the heel.
@@ -344,10 +343,9 @@ class Stability:
         """
         start = 0.0 if self.gmt >= 0 else self.loll(most)
         end = self.vanishing(most)
-        most = self._afloat(most)
         if start is None or (end is None and self.largest(most)[1] <= 0):
             return 0.0
-        return (most if end is None else end) - start
+        return (self._afloat(most) if end is None else end) - start
 
     def immersed(self, opening: Opening, most: float = math.pi) -> float | None:
         """The least positive heel at which an opening reaches the water.
@@ -395,9 +393,7 @@ class Stability:
         return most if edge is None else edge
 
     def deck_edge(self, most: float = math.pi / 2) -> float | None:
-        """The heel at which the lowest open edge, such as the sheer, reaches the water.
-
-        ``None`` for a closed skin.
+        """The heel at which the lowest open edge reaches the water; ``None`` for a closed skin.
 
         Parameters
         ----------

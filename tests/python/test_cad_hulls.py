@@ -94,6 +94,11 @@ def drawn(rng: Generator) -> Drawn:
     return Drawn(poles, (knots[0], knots[1]), deck / (deck + draft))
 
 
+def is_open(hull: Drawn) -> bool:
+    """True if the forward end has a breadth."""
+    return bool(hull.poles[0, :, 1].max() > 1e-9 * np.ptp(hull.poles[..., 0]))
+
+
 def face(hull: Drawn, metre: float, *, other_side: bool = False) -> Any:
     """The hull as a face of OCCT, whose unit is the millimetre."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
@@ -192,10 +197,13 @@ def test_a_hull_is_measured_and_built_upon(seed: int, tmp_path: Path) -> None:
     volume = 2 * abs(float((y * cross[..., 1] * weights).sum()))
     first = 2 * abs(float((points[..., 0] * y * cross[..., 1] * weights).sum()))
     wetted = 2 * float((np.linalg.norm(cross, axis=-1) * weights).sum())
+    transom = is_open(hull)
+    # Twice the moment across has no share of an open transom; the program states that it is open.
+    model.partial = transom
     figures = model.hydrostatics(density="salt")
+    assert (figures.open_edges > 0) == transom
     assert figures.volume == pytest.approx(volume, rel=1e-6)
     assert figures.lcb == pytest.approx(first / volume, rel=1e-6)
-    transom = hull.poles[0, :, 1].max() > 1e-9 * length
     if not transom:
         assert figures.wetted_area == pytest.approx(wetted, rel=1e-4)
     places = np.linspace(0, 1, 20_001)
@@ -260,15 +268,19 @@ def test_a_hull_of_several_faces_is_one_hull(seed: int, tmp_path: Path) -> None:
     points, cross, weights = hull.below()
     volume = 2 * abs(float((points[..., 1] * cross[..., 1] * weights).sum()))
     wetted = 2 * float((np.linalg.norm(cross, axis=-1) * weights).sum())
+    model.partial = is_open(hull)
     figures = model.hydrostatics(density="salt")
     # Surfaces within snakes are measured on their triangles, of at most forty divisions, which is
     # said; what these miss is in the bounds.
     trimmed = [p.name for p in mesh.patches if model[p.name].kind == "TrimSurf"]
     assert figures.on_triangles == trimmed
     assert bool(trimmed) == any("measured on the triangles" in r for r in figures.remarks)
-    slack = figures.bounds["volume"] if trimmed else 0.0
-    assert abs(figures.volume - volume) <= slack + 1e-6 * volume
-    assert slack < 1e-2 * volume
-    if hull.poles[0, :, 1].max() <= 1e-9 * hull.poles[-1, 0, 0]:
+    if is_open(hull):
+        # The skin of an open body has no bounds.
+        assert not figures.bounds and figures.volume == pytest.approx(volume, rel=1e-2)
+    else:
+        slack = figures.bounds["volume"] if trimmed else 0.0
+        assert abs(figures.volume - volume) <= slack + 1e-6 * volume
+        assert slack < 1e-2 * volume
         slack = figures.bounds["wetted_area"] if trimmed else 0.0
         assert abs(figures.wetted_area - wetted) <= slack + 1e-4 * wetted
