@@ -257,7 +257,7 @@ class Floating:
         Returns
         -------
         HydrostaticTable
-            A row for each draft.
+            A row for each draft. Where the water enters over an open edge the figures are NaN.
 
         Raises
         ------
@@ -275,7 +275,9 @@ class Floating:
         2.0
         """
         rows = [("draft", float(draft), float(trim), 0.0, False, False) for draft in drafts]
-        return HydrostaticTable(self._floating(rows, cg, density, gravity, sides, by, accuracy))
+        return HydrostaticTable(
+            self._floating(rows, cg, density, gravity, sides, by, accuracy, flooded=True)
+        )
 
     def righting_curve(
         self,

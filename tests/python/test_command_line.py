@@ -101,7 +101,7 @@ def test_no_abbreviations(cli) -> None:
 
 def test_negative_numbers_are_values(cli) -> None:
     for words in (
-        ["--cg", "-1,0,2", "--displacement", "100", "--density", "1"],
+        ["--cg", "-1,0,2", "--displacement", "100", "--density", "1", "--fixed", "both"],
         ["--level", "-0.2"],
         ["--table", "-0.5,1,4", "--sections", "0,30,4"],
         ["--displacement", "100", "--cg", "15,0,0", "--density", "1", "--gz", "-10,10,3"],

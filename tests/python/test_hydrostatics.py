@@ -106,9 +106,10 @@ def test_where_the_water_enters_no_figure_is_given(barge, cli, model_file):
     assert "open edge below the waterline" in done.stderr
     rows = json.loads(done.stdout)
     assert len(rows) == 7 and rows[-1]["freeboard"] < 0 and rows[-1]["gz"] is None
-    # The levels of a table are given: those above the sheer are errors.
+    table = barge.hydrostatic_table([T, H + 0.5])
+    assert np.isfinite(table.column("volume")).tolist() == [True, False]
     with pytest.raises(moldloft.ModelError, match="open below the water"):
-        barge.hydrostatic_table([T, H + 0.5])
+        barge.hydrostatics(draft=H + 0.5)
     draft = 1.6
     s = barge.stability(L * B * draft, cg=(6, 0, KG), density=1)
     edge = s.deck_edge()
