@@ -45,7 +45,7 @@ impl SparseRows {
         self.starts.len() - 1
     }
 
-    /// True when there are none.
+    /// True without rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

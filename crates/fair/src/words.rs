@@ -12,11 +12,11 @@ use std::fmt;
 pub struct WordError {
     /// The kind of fault: "unknown-name", "no-share" or "other-mode".
     pub id: &'static str,
-    /// What the word is of.
+    /// Name of the option.
     pub noun: &'static str,
     /// The word.
     pub found: String,
-    /// What was expected.
+    /// Allowed words.
     pub expected: String,
 }
 
@@ -92,7 +92,7 @@ pub fn spacing(word: &str) -> Result<PointSpacing, WordError> {
     }))
 }
 
-/// What an open end keeps.
+/// Conditions at open ends.
 pub const ENDS: [&str; 4] = ["free", "position", "tangent", "curvature"];
 
 /// The end condition called `word`, or a number of control points.
@@ -119,10 +119,10 @@ pub fn measure(word: &str) -> Result<Measure, WordError> {
     Measure::named(word).ok_or_else(|| WordError::unknown("measure", word, &all))
 }
 
-/// The directions in which points move: `word` is none, "across" or "box".
+/// Directions of motion; `word` is `None`, "across" or "box".
 ///
 /// # Errors
-/// Of an unknown word, and of one that needs a direction or has none.
+/// For an unknown word, and for one that needs a direction or excludes one.
 pub fn motion(along: Option<Vec3<f64>>, word: Option<&str>) -> Result<Motion, WordError> {
     let with = |word: &str, expected: &str| WordError {
         id: "other-mode",

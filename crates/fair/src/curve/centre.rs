@@ -12,7 +12,7 @@ use moldloft_num::Vec3;
 const STEPS: usize = 120;
 const CENTRED: f64 = 0.25;
 
-/// How far a level is from the largest residual where it says no more.
+/// Relative distance between level and largest residual at convergence.
 const CLOSE: f64 = 1e-6;
 
 /// Residuals above this share of the level cannot be kept.
@@ -150,7 +150,7 @@ impl CentreSearch<'_> {
             }
             by *= 0.5;
         }
-        // What is left is rounding.
+        // The rest is rounding.
         0.0
     }
 }

@@ -72,8 +72,8 @@ impl Chain {
         self.pieces[last].at(s)
     }
 
-    /// The arc length of the foot of a point near part `near`, and its distance. The first part
-    /// goes on before its start and the last beyond its end.
+    /// Arc length of the foot of a point near part `near`, and its distance. The first part is
+    /// extended before its start, the last beyond its end.
     pub fn foot(&self, p: P<f64>, near: usize) -> (f64, f64) {
         let last = self.pieces.len() - 1;
         let mut best = (0.0, f64::INFINITY);

@@ -8,7 +8,7 @@ use moldloft_num::{Order, Real, Vec3};
 pub struct Condition {
     /// Control points and factors.
     pub entries: Vec<(usize, Vec3<f64>)>,
-    /// What the sum must be.
+    /// Required value of the sum.
     pub value: f64,
 }
 

@@ -12,7 +12,7 @@ pub struct FitWithCorners<T> {
     pub fit: Fit,
     /// Its control points.
     pub points: Vec<Vec3<T>>,
-    /// The control points that are breaks: they stand at the data points of that name.
+    /// Control points that are breaks; they coincide with the data points of the breaks.
     pub marks: Vec<usize>,
     /// The parameter of each given point, in their order.
     pub at: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What a curve is to meet at a parameter, or to keep.
+//! Conditions on a curve at a parameter, and quantities that it preserves.
 
 use crate::{Condition, FairError, Space};
 use moldloft_num::Vec3;
@@ -22,7 +22,7 @@ pub enum Demand {
 }
 
 impl Demand {
-    /// What can be kept, by name.
+    /// Quantity to preserve, by name.
     pub fn kept(name: &str) -> Option<Self> {
         Some(match name {
             "area" => Self::Area,
@@ -32,8 +32,8 @@ impl Demand {
         })
     }
 
-    /// The conditions on control points that are at `control` before; the parameter is a share of
-    /// the domain.
+    /// Linear conditions on control points, linearised at `control`; `share` is the parameter
+    /// relative to the domain.
     ///
     /// # Errors
     /// Those of [`Condition::join`].

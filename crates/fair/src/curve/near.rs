@@ -1,12 +1,12 @@
-//! The curve near its data: no fairer than noise of the tolerance's size asks for, and never with
-//! more inflections than the fairest, nor with more than two monotone pieces of curvature more.
+//! The curve near its data: residuals up to the level of noise that fills the tolerance, no more
+//! inflections than the fairest curve, and at most two more monotone pieces of curvature.
 //!
-//! Third derivatives may buy smoothness with a bend, parameters by curvature may follow the
-//! noise's, and a budget leaves some ripples of the data's. On the way from the goal's curve to the
-//! fairest (whose budget rises to what the fairest takes, and whose parameters then go back to the
-//! lengths) these disappear. How far it goes is an integral of counts in which a ripple counts by
-//! its persistence (Edelsbrunner, Letscher and Zomorodian 2002), so it is a continuous function of
-//! the data: no count flips the result.
+//! Third derivatives may trade smoothness for a turn, parameters by curvature may follow the
+//! curvature of noise, and a budget leaves ripples of the data. These disappear along a path from
+//! the goal's curve to the fairest: the budget rises to what the fairest takes, then the parameters
+//! return to chord lengths. The position on the path is an integral of counts in which a ripple
+//! counts by its persistence (Edelsbrunner, Letscher and Zomorodian 2002); it is therefore a
+//! continuous function of the data.
 
 use crate::curve::bends::{BendCounter, BendCounts};
 use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
@@ -18,22 +18,23 @@ use crate::optimum::goal::Goal;
 use crate::{FairError, InterpolationSpace, SparseRows};
 use moldloft_num::Vec3;
 
-/// Steps of the integral from the goal's budget to what the fairest takes, and back to the lengths.
+/// Steps of the integral from the goal's budget to that of the fairest, and back to chord lengths.
 const BUDGET_STEPS: usize = 20;
 const PARAMETER_STEPS: usize = 4;
 
-/// The step of the last search, which goes by the counts themselves.
+/// Step of the final search by exact counts.
 const COUNTED_STEP: f64 = 0.05;
 
 /// Monotone pieces that the curve near its data may have more than the fairest.
 const MORE_PIECES: f64 = 2.0;
 
-/// The fairest takes so many times the goal's budget at least: the way has a length.
+/// Minimum ratio of the fairest curve's squares to the goal's budget, so that the path has a
+/// length.
 const LEAST_WAY: f64 = 1.05;
 
-/// Where a ripple begins to count and where it counts whole, in those that are counted: of a curve
-/// on the way it counts early, of the fairest late, so that what is within the soft limits is
-/// within the limits.
+/// Persistences at which a ripple starts to count and counts fully. Ripples of the curve count
+/// earlier than those of the fairest, so that a curve within the soft limits is within the exact
+/// ones.
 const EARLY: [f64; 2] = [0.8, 1.0];
 const LATE: [f64; 2] = [1.0, 1.25];
 
@@ -48,7 +49,7 @@ const SHAPED_STEPS: usize = 5;
 /// A curve with the spline that it is on, where that is not the data's own.
 pub(super) type Relaid = (Option<InterpolationSpace>, DataFit);
 
-/// What a curve may have: the counts of the fairest and some pieces more.
+/// Limits of a curve: the counts of the fairest plus some pieces.
 struct CountLimits {
     soft: SoftCounts,
     signs: usize,
@@ -69,7 +70,7 @@ impl CountLimits {
         }
     }
 
-    /// How far a curve is beyond the limits, at most 1.
+    /// Excess of a curve over the limits, from 0 to 1.
     fn beyond(&self, samples: &[Sample]) -> f64 {
         let own = SoftCounts::of(samples, EARLY);
         let signs = own.inflections - self.soft.inflections;
@@ -82,8 +83,7 @@ impl CountLimits {
     }
 }
 
-/// How many pieces more than the fairest the curve of a goal may have: as many as it likes where a
-/// budget was named.
+/// Monotone pieces allowed beyond those of the fairest; unlimited for goals other than `near`.
 fn more_pieces(goal: Goal) -> f64 {
     if matches!(goal, Goal::Near(_)) { MORE_PIECES } else { f64::INFINITY }
 }
@@ -106,7 +106,7 @@ struct FairingPath<'a> {
     pull: SparseRows,
     goal: DataFit,
     fairest: Vec<Vec3<f64>>,
-    /// The least of the measure, and how far the goal's curve is from the data to the optimum.
+    /// Minimum of the measure, and the optimality gap of the goal's curve.
     least: f64,
     share: f64,
     /// The budgets of the goal's curve and of the fairest.
@@ -214,7 +214,7 @@ impl FairingPath<'_> {
         }
     }
 
-    /// A curve that is between optima, with what it measures more than the least for its gap.
+    /// A curve between optima; its gap is its excess over the minimum.
     fn measured(&self, points: Vec<Vec3<f64>>) -> Result<DataFit, FairError> {
         let options = &self.plain;
         let rows = options.measure.rows(&self.data.layout.space)?;
@@ -282,7 +282,7 @@ impl Data {
             turned,
             counter,
         };
-        // The least of what is too many so far, so that the way ends where nothing is.
+        // Running minimum of the excess: the path ends where it is 0.
         let (mut x, mut over) = (0.0, 1.0_f64);
         // Few knots have few ripples, and many data take long.
         let steps = if self.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };

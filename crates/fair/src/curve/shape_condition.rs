@@ -32,7 +32,7 @@ pub enum ShapeCondition {
         /// The first and the last datum.
         between: [usize; 2],
     },
-    /// At most so many pieces of monotone curvature.
+    /// Maximum number of pieces of monotone curvature.
     Pieces(usize),
     /// The whole curve stays where `direction . x` is at most `most`.
     Within {
@@ -48,7 +48,7 @@ pub enum ShapeCondition {
     },
 }
 
-/// How shapes are written, for messages.
+/// Syntax of shapes, for messages.
 const GRAMMAR: &str = "convex, concave, one-way, straight or arc with points (convex=4-10; alone the \
                        whole curve), straight=4-10:0,1 in a direction, pieces=2, within=0,1:4.6, \
                        side=0,-1";
@@ -59,7 +59,7 @@ impl ShapeCondition {
     /// `pieces=2`, `within=0,1:4.6`, `side=0,-1`.
     ///
     /// # Errors
-    /// What was expected.
+    /// The expected syntax.
     ///
     /// # Example
     /// ```

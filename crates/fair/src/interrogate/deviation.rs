@@ -1,4 +1,4 @@
-//! How far a faired curve is from its original.
+//! Deviation of a faired curve from its original.
 
 use crate::{Job, shape};
 use moldloft_num::Vec3;

@@ -1,8 +1,8 @@
 //! Knuckles of short lists, and neighbours in the wrong order.
 //!
-//! A station of a boat has seven to twelve points: too few for a scale that others have. Here a
-//! hinge in a cubic is set against a cubic without, by what both leave of the points, and against a
-//! polynomial of two degrees more, which follows a smooth curve better than a hinge does.
+//! A station of a boat has seven to twelve points, too few for a scale from other points. A hinge
+//! in a cubic is compared with a cubic by their residuals, and with a polynomial of two degrees
+//! more, which follows a smooth curve better than a hinge does.
 
 use crate::interrogate::outliers::{DOUBLES_BACK, DataFinding, STANDS_OUT, ThinQr};
 use moldloft_num::{Real, Vec3};
@@ -19,20 +19,20 @@ const SIDE: usize = 2;
 /// places of a list.
 const SCORES: [f64; 6] = [32.0, 13.0, 9.0, 7.5, 6.7, 6.2];
 
-/// How many times more a smooth polynomial with one coefficient more leaves of the points, in
-/// squares.
+/// Minimum ratio of the squared residuals of a smooth polynomial with one more coefficient to those
+/// of the hinge.
 const SMOOTHER: f64 = 4.0;
 
-/// The turn, in radians, beyond which a hinge stands between sides that turn by less than this
-/// share of it: else a nose is as sharp.
+/// Turn, in radians, beyond which both sides of a hinge must turn by less than `BESIDE` of it;
+/// otherwise it can be a nose.
 const SHARP: f64 = 0.44;
 const BESIDE: f64 = 0.5;
 
-/// Turns beside a nose, in radians, and how many times those farther off they are at least.
+/// Turns beside a nose: minimum in radians, and minimum ratio to those next to them.
 const LEADS: f64 = 0.02;
 const GROWS: f64 = 1.3;
 
-/// What columns leave of points, in squares, and their coefficients.
+/// Squared residual of a least-squares fit, and its coefficients.
 fn left<const C: usize>(
     rows: Vec<[f64; C]>,
     points: &[Vec3<f64>],
@@ -135,9 +135,9 @@ pub(super) fn short_knuckles(points: &[Vec3<f64>], floor: f64) -> Vec<DataFindin
     out
 }
 
-/// The share of a step back, in that of its neighbours, from which on it is none of noise; how much
-/// shorter the way is the other way round; and the share of a list at most whose steps run back:
-/// noise is larger than the steps else.
+/// Reversed order of points: the minimum backward step relative to its neighbours, the maximum
+/// length of the reordered path relative to the given one, and the maximum fraction of backward
+/// steps in a list; with more of them noise exceeds the steps.
 const BACK: f64 = 0.25;
 const SHORTER: f64 = 0.8;
 const FEW: f64 = 0.1;

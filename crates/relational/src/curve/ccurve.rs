@@ -10,8 +10,8 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline};
 
-/// An interpolating spline: the twice differentiable piecewise cubic through the points, with
-/// knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
+/// The twice differentiable piecewise cubic interpolating spline through points, with knots at the
+/// cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
 ///
 /// With the default ends two points give a line, three a parabola, four or more a spline without
 /// knots at the second and the last but one point (not-a-knot). Neighbouring points must differ.

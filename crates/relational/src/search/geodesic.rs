@@ -1,10 +1,10 @@
 //! Geodesics between two magnets.
 //!
-//! A path X(t) = S(w(t)) is a geodesic run evenly when its second derivative is normal to the
-//! surface: S_u . X'' = S_v . X'' = 0. X is the polynomial through its places at Chebyshev's nodes, and
-//! the equations are asked for at the inner ones (collocation; Trefethen 2000, Spectral Methods in
-//! MATLAB, chapters 6 and 7). They need no more than second derivatives of the surface for Newton's
-//! method, and so for the exact derivatives of its solution.
+//! A path X(t) = S(w(t)) of constant speed is a geodesic if its second derivative is normal to the
+//! surface: S_u . X'' = S_v . X'' = 0. X is the polynomial through its points at Chebyshev nodes,
+//! and the equations hold at the inner ones (collocation; Trefethen 2000, Spectral Methods in
+//! MATLAB, chapters 6 and 7). Newton's method, and the exact derivatives of its solution, need
+//! second derivatives of the surface only.
 
 use crate::arguments::{Magnet, common_surface};
 use crate::snake::OnSurface;
@@ -15,10 +15,10 @@ use moldloft_registry::{
     Build, CallError, Context, CurveRef, Kind, SearchReport, SearchStatus, SurfaceRef, Value,
 };
 
-/// Numbers of spans between nodes that are tried until the path no longer changes.
+/// Successive numbers of spans between nodes, until the path has converged.
 const SPANS: [usize; 5] = [8, 16, 24, 36, 54];
 
-/// More of them for paths of several turns, and how many there are for a turn at least.
+/// Further numbers for paths of several turns, and minimum number of spans per turn.
 const MORE_SPANS: [usize; 3] = [80, 120, 180];
 const SPANS_A_TURN: f64 = 12.0;
 
@@ -28,7 +28,7 @@ const SETTLED: f64 = 1e-11;
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// How far outside of the surface a path may run, in u and v.
+/// Maximum distance of a path beyond the surface, in u and v.
 const OUTSIDE: f64 = 1e-9;
 
 /// The shortest path on a surface between two magnets, more exactly a geodesic: a curve of zero
@@ -90,7 +90,7 @@ impl<T: Real> Build<T> for GeoSnake<T> {
     }
 }
 
-/// A surface that goes on beyond its seams.
+/// A surface continued across its seams.
 struct SeamlessSurface<'s, T: Real> {
     surface: &'s SurfaceRef<T>,
     round: [bool; 2],
@@ -102,8 +102,8 @@ impl<T: Real> SeamlessSurface<'_, T> {
     }
 }
 
-/// The turns by which ways lead over the seams: those asked for, else none and the way round the
-/// other side.
+/// Candidate turns across the seams: the given ones; by default none, and one in the opposite
+/// direction.
 fn ways<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -138,7 +138,7 @@ fn ways<T: Real>(
 /// A way has to be shorter by this share to count as such.
 const SHORTER: f64 = 1e-6;
 
-/// What was found: how far the last refinement moved the places, steps, places.
+/// Change in the last refinement, number of iterations, and parameters of the nodes.
 type Solved = (f64, usize, Vec<[f64; 2]>);
 
 /// The shortest of some ways, with its turns.
@@ -432,8 +432,8 @@ impl<T: Real> GeodesicPath<T> {
         let ends = [from, [last[0] + turns[0], last[1] + turns[1]]];
         let places = derived(sheet, ends, plain).ok_or_else(super::outcome::tangent)?;
         let [from, to] = ends;
-        // p at node k is what is beyond the line over sin^2 / 4; its coefficients follow from the
-        // orthogonality of sines.
+        // The polynomial p at node k is the deviation from the line over sin^2 / 4; its
+        // coefficients follow from the orthogonality of sines.
         let coefficient = |j: usize| {
             (1..n).fold([T::zero(); 2], |sum, k| {
                 let (t, theta) = (node(k, n), angle(k, n));
@@ -456,8 +456,8 @@ impl<T: Real> GeodesicPath<T> {
     }
 }
 
-/// The places with what they owe to the model's parameters: one step of Newton's method in T, of
-/// which the real part is left out.
+/// Parameters of the nodes with derivatives with respect to the model's parameters: one step of
+/// Newton's method in T, without its real part.
 fn derived<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[T; 2]; 2],

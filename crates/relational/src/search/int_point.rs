@@ -73,7 +73,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
             });
         }
         let near = self.near.map(|p| p.xyz.re());
-        // The surfaces first; which comes when does not change what they have in common.
+        // Surfaces first; the order does not affect the intersection.
         shapes.sort_by_key(|shape| !matches!(shape, IntersectedShape::Surface(_)));
         let point = match starts.len() {
             0 => planes(&shapes, near)?,
@@ -131,7 +131,7 @@ fn planes<T: Real>(
         let length = back.norm();
         if length <= 1e-15 * (1.0 + x.norm()) || length >= last && length <= 1e-9 * (1.0 + x.norm())
         {
-            // One step in T: what the place owes to the model's parameters.
+            // One step in T adds the derivatives with respect to the model's parameters.
             let back = step(Vec3::lifted(x))?;
             return Ok(Point::free(Vec3::lifted(x) - back.map(|b| b - b.re())));
         }

@@ -53,7 +53,7 @@ pub(super) fn foot<T: Real>(
     Ok((uv, found(&solution.report, ANOTHER)))
 }
 
-/// How far on both sides of a knuckle its place is looked at.
+/// Offset in the parameter on both sides of a knuckle.
 pub(super) const BESIDE: f64 = 1e-9;
 
 fn foot_refined<T: Real>(
@@ -82,7 +82,7 @@ fn foot_refined<T: Real>(
     refined(&system, at, T::zero()).ok_or_else(tangent)
 }
 
-/// Where the line through a point meets the surface.
+/// Intersection of the surface and the line through a point.
 pub(super) fn on_ray<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,

@@ -10,18 +10,18 @@ use moldloft_num::{Order, Real, Vec3};
 /// that they do not depend on where the stations are.
 const SPEED_ACCURACY: f64 = 1e-12;
 
-/// The unknowns along a piece may be off by this share of the size in space: so they lie on both
+/// Maximum error of the unknowns along a piece, relative to the size in space: points are on both
 /// shapes to rounding.
 const PLACE_ACCURACY: f64 = 1e-13;
 
 /// A stretch between stations is halved this many times at most.
 const MOST_HALVINGS: u32 = 8;
 
-/// Where a fit is compared besides at its ends.
+/// Points besides the ends at which a fit is checked.
 const CHECKS: [f64; 3] = [-0.95, -0.1, 0.9];
 
-/// A place at which pieces end: a station, and the joint of a surface that it lies on, as the number
-/// of an unknown and its value there.
+/// End of pieces: a station and, at a joint of a surface, the number of the unknown and its value
+/// there.
 #[derive(Clone, Copy)]
 pub(super) struct PieceEnd {
     pub station: TracePoint,
@@ -64,7 +64,7 @@ pub(super) struct PieceFit {
     exact: bool,
 }
 
-/// The length per y at a point of the intersection across from the guide's: with (X - c) . c' = 0,
+/// Derivative of the length with respect to y at the point of the intersection opposite to the guide's: with (X - c) . c' = 0,
 /// X' . c' = c' . c' - (X - c) . c''. `None` where the point is so far from the guide that it moves
 /// back as the guide goes on; the tangent may have either sense.
 fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> Option<T> {
@@ -139,7 +139,8 @@ impl PieceFit {
     }
 }
 
-/// The unknowns in powers of y, from those in the middle: so rounding is a share of what changes.
+/// Coefficients of the unknowns in powers of y, relative to the middle, so that rounding is
+/// relative to the variation.
 fn powers(matrix: &Matrix, at: &[Unknowns; NODES]) -> [Unknowns; NODES] {
     let base = at[NODES / 2];
     let each: [[f64; NODES]; 4] = std::array::from_fn(|k| {
@@ -157,7 +158,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
     let mut all: Vec<PieceFit> = Vec::with_capacity(stops.len());
     let mut seam = false;
     for pair in stops.windows(2) {
-        // Nothing lies between the two stations at a seam or a crease.
+        // At a seam or a crease the stations coincide.
         let [a, b] = [&pair[0].station, &pair[1].station];
         if at_seam(a, b) || a.x == b.x {
             seam = true;
@@ -222,8 +223,8 @@ pub(super) fn laid<T: Real>(
     let mut length = polynomial(&run, 1.0)[0];
     run[0] = -polynomial(&run, -1.0)[0];
     length += run[0];
-    // How far the joint is beyond the end of the piece, as far as it is due to the parameters. On its
-    // own side of the joint: the surface may be bent there.
+    // Distance of the joint beyond the end of the piece, as far as it depends on parameters; on its
+    // own side of the joint, since the surface may have a crease there.
     let beyond = |k: usize| -> Option<T> {
         let at = fit.ends[k].joint.filter(|_| T::PARTS > 1)?;
         let place = joint(&fit.ends[k].station.q, at)?;

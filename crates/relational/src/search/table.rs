@@ -3,13 +3,13 @@
 
 use moldloft_num::Real;
 
-/// Points that a polynomial goes through.
+/// Number of interpolation points of a polynomial.
 const NODES: usize = 10;
 
 /// Stretches are halved this many times at most.
 const MOST_HALVINGS: u32 = 5;
 
-/// Where polynomials are compared with solutions, in a stretch from -1 to 1.
+/// Positions in a piece, from -1 to 1, at which polynomials are compared with solutions.
 const CHECKS: [f64; 4] = [-1.0, -0.3, 0.62, 1.0];
 
 /// N unknowns along a parameter from 0 to 1.

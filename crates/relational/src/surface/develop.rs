@@ -64,7 +64,6 @@ pub enum Phase {
     Fan {
         /// True if s is constant.
         first: bool,
-        /// Where.
         end: f64,
     },
     /// The curves are coplanar: any pairing is developable, so equal parameters are paired.

@@ -20,16 +20,15 @@ use moldloft_registry::{
 use moldloft_spline::{BSplineCurve, CircularArc};
 use std::sync;
 
-/// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
-/// the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
+/// The fillet of a ball that rolls along two surfaces: circular arcs from its contact with the
+/// first, at v = 0, to its contact with the second, at v = 1; tangent to both.
 ///
-/// The centre of the ball is on the intersection of both surfaces offset by the radius; it runs
-/// from edge to edge or round a closed path, and u is the fraction of the length of that path. The
-/// direction and the choice among several paths follow IntSnake: a magnet selects the ball with the
-/// nearest contact. With `radii` the radius is a function of u (coefficients of a clamped uniform
-/// B-spline of degree at most 3): the centre is then in the plane across the path of a ball of
-/// `radius`, and arcs pass through both points of contact, tangent to both surfaces. A ball larger
-/// than a radius of curvature of either surface on its side is an error.
+/// The centre of the ball is on the intersection of both surfaces offset by `radius`, which extends
+/// from edge to edge or is closed; u is the fraction of its length. The direction and the selection
+/// among several paths follow IntSnake: a magnet selects the ball with the nearest contact. With
+/// `radii` the radius is a function of u: the centre is in the normal plane of the path for the
+/// constant `radius`, and the arcs pass through both contacts, tangent to both surfaces. A radius
+/// larger than a radius of curvature of either surface on its side is an error.
 ///
 /// `ContactSnake` gives the lines of contact on both surfaces, which are the edges v = 0 and v = 1.
 /// Parts of the surfaces bounded by them (`SubSurf`, `TrimSurf`) join the fillet exactly.
@@ -162,7 +161,7 @@ fn spine<T: Scalar>(
 /// A ball that touches two surfaces.
 struct Ball<T: Real> {
     surfaces: [SurfaceRef<T>; 2],
-    /// Which parameters of both run round.
+    /// For both surfaces, true if u or v is closed.
     round: [[bool; 2]; 2],
     sides: [f64; 2],
     /// Path of the centre of a ball of `radius`.

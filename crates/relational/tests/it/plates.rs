@@ -315,7 +315,8 @@ fn a_ball_in_a_corner_leaves_a_cylinder() {
             Vec3::of(x, 1.5 + 0.5 * angle.sin(), 0.5 - 0.5 * angle.cos()),
             1e-12,
         );
-        // Planes across the way of the centre, so x is the same; the radius goes from 1/4 to 3/4.
+        // The planes are normal to the path of the centre, so x is the same; the radius is from 1/4
+        // to 3/4.
         let r = 0.25 + 0.5 * u;
         let p = Vec3::of(x, 2.0 - r + r * angle.sin(), r - r * angle.cos());
         near(at(scene.surface("cone"), u, v), p, 1e-12);

@@ -45,7 +45,7 @@ fn projections_onto_a_cylinder() {
     assert_eq!(status(&p), SearchStatus::EdgeClamped);
     let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProxMagnet q(P, S);"), "q");
     assert_eq!(status(&p), SearchStatus::Ok);
-    // Along y the line goes through both sides: the nearer is taken, the other is reported.
+    // The line along y meets both sides: the nearer is the result, the other is reported.
     let p = point(&format!("{TUBE} AbsPoint P(1, 9, 1); ProjMagnet q(P, S, \"y=0\");"), "q");
     near(p.xyz, 1.0, 3f64.sqrt(), 1.0);
     assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
