@@ -1,4 +1,4 @@
-//! Implicit solids: primitives by arithmetic, and what can be asked of them.
+//! Implicit solids: primitives from arithmetic, sets, and queries to them.
 //!
 //! `planes, reals -> Primitive -> Set -> tape -> values, gradients, ranges -> facets`
 //!

@@ -1,4 +1,4 @@
-//! Surfaces with common edges: what runs on across these, what is refused.
+//! Surfaces with common edges: continuity across these, and refusals.
 
 use crate::fixtures::*;
 use moldloft_fair::{
@@ -113,7 +113,7 @@ fn tangents_and_curvature_run_on_across_a_seam() {
     }
 }
 
-/// The seam may lie along any edge, in either direction; a third sheet joins the second.
+/// The seam may be any edge, in either direction; a third sheet joins the second.
 #[test]
 fn seams_are_found_wherever_they_are() {
     let straight = sheets(4e-3, 2e-2);

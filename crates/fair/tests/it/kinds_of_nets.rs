@@ -1,4 +1,4 @@
-//! The kinds of nets and networks: what is shared, what is kept, what is refused.
+//! The kinds of nets and networks: common points, conditions, refusals.
 
 use crate::fixtures::*;
 use moldloft_fair::rows;

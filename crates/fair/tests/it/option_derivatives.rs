@@ -17,7 +17,7 @@ enum Given {
 }
 
 impl Given {
-    /// The value, the number `at` of it being what `seed` makes of it.
+    /// The value with its number `at` seeded by `seed`.
     fn value<T: Real>(&self, at: Option<usize>, seed: impl Fn(f64) -> T) -> Value<T> {
         let one = |k: usize, x: f64| if at == Some(k) { seed(x) } else { T::from(x) };
         let vector = |k: usize, p: &Vec3<f64>| {
@@ -207,7 +207,7 @@ fn case(g: &mut Random) -> Case {
     Case { tolerance: 8e-4, moving: 1 + g.below(n - 2), points, options, seeded }
 }
 
-/// What came of all directions of a case.
+/// Counts over all directions of a case.
 #[derive(Debug, Default)]
 struct Count {
     refused: usize,

@@ -268,7 +268,8 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
                 let here = format!("{shape} {kind} seed {seed}");
                 assert!(fit.residuals.iter().all(|&r| r <= a * (1.0 + 1e-12)), "{here}");
                 assert!(i <= inflections, "{here}: {i} inflections");
-                // Random places may leave out what is beside a nose: what was not read cannot be known.
+                // Random points may miss the part beside a nose, which then cannot be
+                // reconstructed.
                 let known = *shape != "naca0012" || kind != "random";
                 assert!(!known || off <= 0.5, "{here}: rms {off} of the noise");
                 more += usize::from(p > pieces + 2);
@@ -332,7 +333,7 @@ fn parameters_by_curvature_turn_scale_and_are_the_datas() {
             }
         }
     }
-    // Exact points, and those that may not move, have what they had.
+    // Exact points, and those that may not move, keep their curve.
     let circle: Vec<_> =
         (0..20).map(|k| 0.2 * f64::from(k)).map(|t| Vec3::of(t.cos(), t.sin(), 0.0)).collect();
     let (data, _) = data_near(&circle, 1e-3);
@@ -465,7 +466,7 @@ fn data_without_tolerance_and_repeated_data() {
         assert!(fit.residuals[10] <= 1e-7 * a, "{goal:?} {}", fit.residuals[10]);
         assert!((0..points.len()).all(|k| k == 30 || fit.residuals[k] <= a * (1.0 + 1e-9)));
     }
-    // The same point twice is one datum; places too far apart are none.
+    // A repeated point is one datum; points too far apart are not.
     let mut twice = points.clone();
     twice.insert(5, points[5]);
     let one = merged(&twice, &vec![a; twice.len()], false).unwrap();

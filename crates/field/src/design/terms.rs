@@ -1,9 +1,10 @@
 //! A body as a union of intersections of half-spaces, each as large as the body allows.
 //!
-//! A formula may hold faces that its body does not show: parts face to face, a cutter's own ends, a boss let in. The terms of its
-//! disjunctive form are prime implicants over the combinations of sides that exist in space (Quine 1952): a term without
-//! points is left out, and so is every face of a term without which it still is part of the body. What grows a body, or cuts
-//! its edges, does so term by term.
+//! A formula may contain faces that are not on its body's surface: parts face to face, a cutter's
+//! own ends, a recessed boss. The terms of its disjunctive form are prime implicants over the
+//! combinations of sides that exist in space (Quine 1952): a term without points is left out, and
+//! so is every face of a term that is a part of the body without it. Offsets and cuts of edges are
+//! applied term by term.
 
 use crate::expr::interval::{Interval, octants, sides as sides_of};
 use crate::expr::tape::ExprTape;
@@ -26,8 +27,8 @@ const MOST_BOXES: usize = 1500;
 /// A point is in a term when it is deeper in it than this share of the box.
 const DEEP: f64 = 1e-9;
 
-/// Intersections of literals; a literal is a surface with the side of it that is solid: 2 k for the negative side of
-/// surface k, 2 k + 1 for its positive one.
+/// Intersections of literals; a literal is the number of a surface and its solid side: 2 k for the
+/// negative side of surface k, 2 k + 1 for the positive one.
 type LiteralTerm = Vec<u32>;
 
 /// The terms of a body.
@@ -35,14 +36,14 @@ pub(super) struct BodyTerms<T: Real> {
     /// Of every literal the half-space, with the attributes of the leaf that it comes from.
     literals: Vec<Option<Leaf<T>>>,
     pub(super) terms: Vec<LiteralTerm>,
-    /// True when what is far outside of the box around the body may be missing.
+    /// True if parts far outside the box around the body may be missing.
     pub(super) near_only: bool,
     /// A box around the body.
     pub(super) over: Box3,
 }
 
 impl<T: Real> BodyTerms<T> {
-    /// Of the body, or of what is outside of it.
+    /// Terms of the body or of its complement.
     pub(super) fn of(set: &Set<T>, outside: bool) -> Result<Self, FieldError> {
         let compiled = set.compiled();
         let all = set.traversal();
@@ -107,7 +108,7 @@ impl<T: Real> BodyTerms<T> {
         self.literals[code as usize].as_ref().expect("a literal of a leaf or of its complement")
     }
 
-    /// The union of the terms, each the intersection of what `leaf` makes of its literals.
+    /// The union of the terms, each the intersection of its literals as mapped by `leaf`.
     pub(super) fn set(
         &self,
         leaf: &dyn Fn(&Leaf<T>) -> Result<Set<T>, FieldError>,
@@ -154,7 +155,7 @@ fn bits(flags: impl Iterator<Item = bool>) -> SampleBits {
     out
 }
 
-/// Where terms are looked for.
+/// Region in which terms are searched.
 struct TermSpace {
     over: Box3,
     wide: Box3,
@@ -252,7 +253,7 @@ impl TermSpace {
         term.iter().fold(Set::everything(), |s, &code| s & self.literals[code as usize].clone())
     }
 
-    /// Whether a set has points; `false` for what only touches.
+    /// True if a set has interior points.
     fn holds(&self, set: &Set) -> bool {
         if set.is_nothing() || is_void(set) {
             return false;
@@ -268,7 +269,7 @@ impl TermSpace {
         term.is_empty() || self.is_seen(term, None) || self.holds(&self.region(term))
     }
 
-    /// What both unions of terms have in common.
+    /// The intersection of two unions of terms.
     fn product(&self, a: &[LiteralTerm], b: &[LiteralTerm]) -> Vec<LiteralTerm> {
         let mut out = Vec::new();
         for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
@@ -279,7 +280,7 @@ impl TermSpace {
             if contradicts || !self.has_points(&term) {
                 continue;
             }
-            // Without faces that do not cut what the others leave.
+            // Removes faces that do not cut the intersection of the others.
             let mut k = 0;
             while k < term.len() {
                 let mut other = term.clone();

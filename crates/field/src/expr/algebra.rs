@@ -173,7 +173,7 @@ impl Unary {
 
 /// A number on which formulas can be computed.
 pub(crate) trait Algebra<T: Real>: Copy {
-    /// Where the formula is computed.
+    /// Type of the position.
     type At;
     fn real(x: T) -> Self;
     fn plane(normal: Vec3<T>, offset: T, at: &Self::At) -> Self;

@@ -15,7 +15,7 @@ pub trait Oracle<T: Real>: Field<T> {
         [Interval::ENTIRE; 3]
     }
 
-    /// Whether its surface may have an edge of its own in a box, on which no vertex is put.
+    /// True if its surface may have an edge in the box on which no vertex is placed.
     fn creased_in(&self, _over: &Box3) -> bool {
         false
     }
@@ -116,7 +116,7 @@ impl<T: Real> Oracle<T> for Constant {
 pub struct Affine<T> {
     /// Rows of the matrix.
     pub rows: [Vec3<T>; 3],
-    /// What is added after it.
+    /// Translation after it.
     pub shift: Vec3<T>,
 }
 

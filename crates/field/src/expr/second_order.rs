@@ -1,12 +1,12 @@
-//! Ranges of second derivatives: what a Taylor form of second order needs to bound its remainder.
+//! Ranges of second derivatives, which bound the remainder of a Taylor form of second order.
 
 use super::algebra::{Algebra, Unary};
 use super::interval::Interval;
 use super::oracle::{Affine, Oracle};
 use moldloft_num::{Box3, Vec3};
 
-/// The ranges of a value, its slopes and its second derivatives over a box. Where the function has a kink the
-/// second derivatives are everything.
+/// Ranges of value, gradient and second derivatives over a box. With a kink in the box the second
+/// derivatives are unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HessianRange {
     pub value: Interval,

@@ -1,5 +1,5 @@
-//! What facets to an accuracy must not lack: parts of the set of which no triangle is near, and places between bodies that
-//! may be one.
+//! Content that facets to an accuracy must not miss: parts of the set without a triangle nearby,
+//! and possible bridges between bodies.
 //!
 //! Places that stay unresolved are joined to clusters where they touch. A cluster is lost when no vertex is as near as the
 //! accuracy, when the triangles about it belong to several bodies, or when a place of it is larger than the accuracy; all are when
@@ -12,7 +12,7 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// What all places together may hold, as a part of the body.
+/// Maximum content of all such regions, relative to the body.
 const HELD: f64 = 1e-3;
 
 pub(super) fn side(b: &Box3) -> f64 {

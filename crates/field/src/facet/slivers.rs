@@ -31,7 +31,7 @@ struct Surroundings<'a> {
     left: FxHashMap<(u32, u32), usize>,
     /// The triangles of each corner of a sliver.
     round: FxHashMap<u32, Vec<usize>>,
-    /// What has been changed in this round: its surroundings are not known any more.
+    /// Changed in this round: its neighbourhood is outdated.
     stale: FxHashSet<u32>,
     gone: FxHashSet<usize>,
 }
@@ -74,8 +74,9 @@ impl Surroundings<'_> {
         true
     }
 
-    /// Moves a corner of a sliver onto another of its corners and leaves out what is between, where all other triangles
-    /// keep their sides: `same` says that both are one point, else `from` lies on a straight edge that goes on.
+    /// Merges a corner of a sliver into another of its corners and removes the triangles between,
+    /// if all other triangles keep their sides. `same`: both are one point; otherwise `from` is on
+    /// a straight edge that continues.
     fn merge(&mut self, from: u32, to: u32, same: bool) -> bool {
         let (Some(own), Some(others)) = (self.round.get(&from), self.round.get(&to)) else {
             return false;
@@ -122,8 +123,8 @@ impl Surroundings<'_> {
 }
 
 impl Surroundings<'_> {
-    /// A vertex of three triangles, two of which lie on each other between it and two vertices in one place, is drawn onto
-    /// one of these: then they can become one.
+    /// A vertex of three triangles, two of which coincide between it and two vertices at one point,
+    /// is merged into one of these, so that they can be merged too.
     fn flap(&mut self, from: u32, to: u32) -> bool {
         let Some(own) = self.round.get(&from).filter(|all| all.len() == 3) else { return false };
         let gone: Vec<usize> =
@@ -147,7 +148,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// How many triangles of a mesh have no area.
+/// Number of triangles of a mesh without area.
 pub(super) fn count(mesh: &Mesh) -> usize {
     let at =
         |f: &&[u32; 4]| height([f[0], f[1], f[2]].map(|v| mesh.positions()[v as usize])) <= FLAT;

@@ -1,10 +1,12 @@
 //! Several vertices for a piece of surface in a cell through which several edges or corners pass.
 //!
-//! The crossings round the piece show its primitives in turn. A cut from one run of crossings of the same
-//! primitive to another parts the ring in two, each with a vertex on all the primitives of its part; both have
-//! those of the cut, so that the edge between the two vertices lies on what was cut. With runs A B A C there
-//! are two edges: cut through both runs of A, their vertices lie on A and B and on A and C. With A B C D there are two
-//! corners; the cut through A and C, or B and D, has them. Parts are cut again while they have no common point.
+//! The crossings around the piece show its primitives in turn. A cut from one run of crossings of a
+//! primitive to another run of the same primitive divides the ring in two, each with a vertex on
+//! all the primitives of its part; both have the primitives of the cut, so that the edge between
+//! the two vertices is on the cut primitive. With runs A B A C there are two edges: with a cut
+//! through both runs of A, their vertices are on A and B and on A and C. With A B C D there are two
+//! corners; the cut through A and C, or B and D, has them. Parts are divided again while they have
+//! no common point.
 
 use super::place_vertices::VertexPlacer;
 use super::types::{EdgeCrossing, Ring, Split};
@@ -16,12 +18,13 @@ use smallvec::SmallVec;
 const MOST_RUNS: usize = 8;
 const MOST_SEARCHES: usize = 60;
 
-/// Neighbouring crossings of one primitive; none of a primitive that shows between two edges only.
+/// Neighbouring crossings of one primitive; empty for a primitive that shows between two edges
+/// only.
 struct CrossingRun {
     leaf: u32,
     /// Places in the ring.
     places: std::ops::Range<usize>,
-    /// Where it changes into the next.
+    /// Its change into the next.
     change: Option<Vec3>,
 }
 

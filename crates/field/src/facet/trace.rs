@@ -1,7 +1,8 @@
 //! Edges of a set, followed from point to point: each on two surfaces, from corner to corner.
 //!
-//! Whether the line of two surfaces is an edge of the set, and which way it bends, is seen beside it: in which of the four
-//! sectors between the surfaces there is solid. Where that changes another surface passes, and there is a corner.
+//! The line of two surfaces is an edge of the set, convex or concave, by the solid in the four
+//! sectors between the surfaces beside it. A change of these marks a corner, where another surface
+//! passes.
 
 use super::refine::Tapes;
 use super::vertex::{Solver, Surfaces};
@@ -24,7 +25,7 @@ const BENT: f64 = 0.96;
 const MOST_POINTS: usize = 400;
 const MOST_EDGES: usize = 300;
 
-/// How the solid lies between two surfaces: where both have it, or where one has.
+/// Solid sectors between two surfaces: where both are solid, or where one is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum EdgeBend {
     Convex,
@@ -55,7 +56,7 @@ pub(super) struct TraceNode {
 pub(super) struct TracedEdge {
     pub(super) ends: [usize; 2],
     pub(super) points: Vec<Vec3>,
-    /// What shows on the left of it, seen from outside, and on the right.
+    /// Surfaces on the left and on the right, seen from outside.
     pub(super) sides: [u32; 2],
 }
 
@@ -65,7 +66,7 @@ pub(super) struct Tracer<'a> {
     pub(super) goal: f64,
     /// Side of a cell.
     pub(super) cell: f64,
-    /// How far points are apart.
+    /// Distance of points.
     pub(super) step: f64,
     /// Edges do not leave this.
     pub(super) within: Box3,
@@ -94,7 +95,7 @@ impl<'a> Tracer<'a> {
         (size > 0.0 && size.is_finite()).then(|| slope / size)
     }
 
-    /// Whether a point is on some surfaces.
+    /// True if a point is on all the surfaces.
     pub(super) fn on(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
         surfaces.iter().all(|&s| {
             let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
@@ -122,7 +123,7 @@ impl<'a> Tracer<'a> {
         (size > TOUCH).then(|| line / size)
     }
 
-    /// How the solid lies about the line of two surfaces, if that is an edge.
+    /// Convexity of the line of two surfaces, if it is an edge.
     fn bend(&mut self, p: Vec3, [a, b]: [u32; 2]) -> Option<EdgeBend> {
         let (n, m) = (self.normal(a, p)?, self.normal(b, p)?);
         let c = n.dot(m);
@@ -286,7 +287,7 @@ impl<'a> Tracer<'a> {
         Some(node)
     }
 
-    /// The corner between a point of an edge and one where it is none any more.
+    /// The corner between a point of an edge and one beyond its end.
     fn corner(&mut self, p: Vec3, stop: Vec3, ray: &EdgeRay) -> Option<usize> {
         let (mut low, mut high) = (p, stop);
         for _ in 0..40 {
@@ -344,7 +345,7 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// How far a point is from a side.
+/// Distance of a point from a side.
 pub(super) fn from_side(p: Vec3, a: Vec3, b: Vec3) -> f64 {
     let along = b - a;
     let size = along.norm_sq();

@@ -559,7 +559,8 @@ impl<T: Real> Build<T> for Distance<T> {
         if found.distance == 0.0 {
             return Ok(Value::Number(T::zero()));
         }
-        // Each foot moves as its own surface does; what it slides along changes the distance by nothing.
+        // Each foot moves with its own surface; its slide along the surface does not change the
+        // distance.
         let near = 1e-9 * over.diagonal();
         let x = foot::nearest(a, Vec3::lifted(found.second), found.first, near);
         let y = foot::nearest(b, Vec3::lifted(found.first), found.second, near);

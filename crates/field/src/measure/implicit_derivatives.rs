@@ -1,4 +1,4 @@
-//! How facets move when parameters change: their vertices and moments as numbers with derivatives.
+//! Motion of facets with parameters: vertices and moments as numbers with derivatives.
 
 use super::curved::Curved;
 use super::moved::moved;
@@ -35,8 +35,8 @@ impl<T: Real> Lifter<T> {
         Self { pairs, corners }
     }
 
-    /// The primitive of a leaf with derivatives: one of the set, its complement or what it is a sheet
-    /// of, or a face of the box.
+    /// The primitive of a leaf with derivatives: one of the set, its complement or the argument of
+    /// its sheet, or a face of the box.
     pub(crate) fn primitive(&self, leaf: &Leaf) -> Option<Primitive<T>> {
         let wanted = &leaf.primitive;
         for (plain, lifted) in &self.pairs {
@@ -69,7 +69,7 @@ impl<T: Real> Lifter<T> {
         Ok(moved(facets.mesh.positions(), &facets.surfaces, &primitives))
     }
 
-    /// Points that lie on surfaces of the set.
+    /// Points on surfaces of the set, with derivatives.
     ///
     /// # Errors
     /// Surfaces that are not the set's.
@@ -82,7 +82,7 @@ impl<T: Real> Lifter<T> {
         Ok(moved(points, &on.surfaces, &primitives))
     }
 
-    /// The primitives of the leaves that points lie on.
+    /// The primitives of the points' leaves.
     ///
     /// # Errors
     /// Surfaces that are not the set's.

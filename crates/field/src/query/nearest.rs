@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// A box that may hold the surface, by its distance from the point that asks.
+/// A box that may contain the surface, by its distance from the point.
 struct Candidate {
     distance: f64,
     sides: [Interval; 3],
@@ -58,10 +58,11 @@ const DEPTH: u32 = 24;
 /// The most boxes to look at.
 const MOST: usize = 100_000;
 
-/// The point of a set's surface in a box that is nearest to `p`, or `None` when there is none.
+/// The point of a set's surface in a box that is nearest to `p`; `None` without a surface.
 ///
-/// Boxes are visited by their distance, those proved all solid or all air left out, until none is
-/// nearer than the best point found by more than `accuracy`, or 100 000 were seen: `at_least` is what is proved.
+/// Boxes are visited by their distance, without those proved all solid or all air, until no other
+/// is nearer than the best point by more than `accuracy`, or 100 000 were visited: `at_least` is
+/// the proved bound.
 ///
 /// # Errors
 /// A box without volume, an accuracy that is not above zero.
@@ -121,7 +122,7 @@ pub fn nearest(
         }
         let tape = tape.pruned(&room).map_or(tape, Arc::new);
         if body.one_state(&tape).is_some() {
-            // What surfaces are left are no surface of the body.
+            // The remaining surfaces are hidden inside the body.
             continue;
         }
         let smooth = surface_point(&body, &tape, &sides, p);

@@ -20,7 +20,8 @@ pub(super) enum Gauge {
     Axis(Axis<f64>),
 }
 
-/// Directions that differ by less are parallel; what that is over the box is taken off the bound.
+/// Directions that differ by less are parallel; the resulting error over the box is subtracted from
+/// the bound.
 const PARALLEL: f64 = 1e-12;
 
 fn from_line(p: Vec3, axis: &Axis<f64>) -> f64 {

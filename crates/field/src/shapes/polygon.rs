@@ -1,21 +1,22 @@
 //! The inside of a polygon as a formula of half-planes, one for each side, so that its sides are faces and its corners
 //! edges of bodies.
 //!
-//! D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, An efficient algorithm for finding the CSG representation of a
-//! simple polygon, Computer Graphics 22 (1988): a chain between two rays is cut at a corner from which both sides,
-//! lengthened, meet the chain no more; what is left of it is left of both parts where the corner is convex, and of one of
-//! them where it is not. A polygon is two chains between its first and its last corner.
+//! D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, An efficient algorithm for finding the CSG
+//! representation of a simple polygon, Computer Graphics 22 (1988): a chain between two rays is cut
+//! at a corner whose extended sides do not meet the rest of the chain; at a convex corner the
+//! result is the intersection of both parts, otherwise the union. A polygon is two chains between
+//! its first and its last corner.
 
 type FlatPoint = [f64; 2];
 
 /// A formula of sides by their numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SideFormula {
-    /// What is left of the side.
+    /// The left side of the side with this number.
     Side(usize),
-    /// What all have.
+    /// Intersection.
     All(Vec<SideFormula>),
-    /// What one of them has.
+    /// Union.
     Any(Vec<SideFormula>),
 }
 
@@ -46,7 +47,7 @@ pub(crate) fn sides_of(corners: &[FlatPoint]) -> Option<SideFormula> {
     Some(SideFormula::All(both.into_iter().flat_map(in_all).collect()))
 }
 
-/// Whether no two sides meet but at the corner between neighbours.
+/// True if sides meet only at the corner between neighbours.
 fn is_simple(corners: &[FlatPoint]) -> bool {
     let n = corners.len();
     let side = |k: usize| [corners[k], corners[(k + 1) % n]];
@@ -101,7 +102,7 @@ fn in_any(of: SideFormula) -> Vec<SideFormula> {
     }
 }
 
-/// Consecutive sides, of which the first comes from infinity and the last goes there.
+/// Consecutive sides, of which the first comes from infinity and the last extends to it.
 struct SideChain<'a> {
     corners: &'a [FlatPoint],
     sides: &'a [usize],
@@ -136,7 +137,8 @@ impl SideChain<'_> {
         })
     }
 
-    /// Whether the sides before and behind corner `at`, lengthened beyond it, meet the chain no more.
+    /// True if the sides before and behind corner `at`, extended beyond it, do not meet the rest of
+    /// the chain.
     fn is_free(&self, at: usize) -> bool {
         let ([a, v], [_, b]) = (self.ends(self.sides[at - 1]), self.ends(self.sides[at]));
         let ahead = [v[0] - a[0], v[1] - a[1]];
@@ -153,7 +155,7 @@ impl SideChain<'_> {
             let size =
                 (along[0] * along[0] + along[1] * along[1]) * (own[0] * own[0] + own[1] * own[1]);
             if det * det <= 1e-24 * size {
-                // Parallel: it must not lie on the ray.
+                // Parallel: it must not be on the ray.
                 let beside = away[0] * along[1] - away[1] * along[0];
                 let other = [q[0] - v[0], q[1] - v[1]];
                 let ahead = |w: FlatPoint| w[0] * along[0] + w[1] * along[1];

@@ -28,7 +28,7 @@ use std::fmt::Write as _;
 pub struct TextError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// Description of the fault.
     pub message: String,
 }
 
@@ -266,7 +266,7 @@ impl Set<f64> {
     /// The set of a text that [`Set::to_text`] wrote.
     ///
     /// # Errors
-    /// What is wrong with the text, with the line.
+    /// The fault of the text, with its line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
             ParsedShape::Set(set) => Ok(set),
@@ -290,7 +290,7 @@ impl Primitive<f64> {
     /// The primitive of a text that [`Primitive::to_text`] wrote.
     ///
     /// # Errors
-    /// What is wrong with the text, with the line.
+    /// The fault of the text, with its line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
             ParsedShape::Field(f) => Ok(f),
@@ -305,7 +305,7 @@ enum ParsedShape {
     Set(Set),
 }
 
-/// The words of a line; what is quoted is one.
+/// The words of a line; a quoted string is one.
 fn words(line: &str, number: usize) -> Result<Vec<String>, TextError> {
     let mut out = Vec::new();
     let mut chars = line.chars().peekable();

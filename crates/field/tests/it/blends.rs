@@ -132,7 +132,7 @@ fn fillets_and_rounds_are_arcs_between_perpendicular_planes() {
 
 #[test]
 fn setbacks_are_kept_between_curved_bodies() {
-    // True distances: contact at the asked distance from the other body.
+    // True distances: contact at the given distance from the other body.
     let run = Primitive::cylinder_distance(axis(Vec3::zero(), v(1.0, 0.0, 0.0)), 1.0).unwrap();
     let branch = Primitive::cylinder_distance(axis(Vec3::zero(), v(0.0, 0.0, 1.0)), 0.6).unwrap();
     let rail = setback_rail([&run, &branch], [0.3, 0.2]).unwrap();

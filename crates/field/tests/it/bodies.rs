@@ -140,7 +140,7 @@ fn hidden_faces_are_no_surface() {
     assert_eq!(both.member(v(0.0, 0.0, 0.0), 1e-9), Membership::Surface);
 }
 
-/// A part that is known by itself.
+/// A part with a known formula.
 #[derive(Clone, Debug)]
 enum Part {
     Cuboid([f64; 3], [f64; 3]),
@@ -244,7 +244,7 @@ fn direction(random: &mut Random) -> Vec3 {
     }
 }
 
-/// A body by its parts: each joined to what there is before, or cut from it.
+/// A body by its parts: each united with the previous ones, or cut from them.
 #[derive(Debug)]
 struct Known(Vec<(Part, bool)>);
 
@@ -352,7 +352,7 @@ fn nearest_points_are_as_near_as_any_of_the_surface() {
     assert!(asked > 40);
 }
 
-/// Whether a body of boxes meets the box of half side `d` about a point: its dilation by a cube.
+/// True if a body of boxes meets the box of half side `d` around a point: its dilation by a cube.
 fn dilated(known: &Known, p: Vec3, d: f64) -> bool {
     let cuts: Vec<Vec<f64>> = (0..3)
         .map(|k| {

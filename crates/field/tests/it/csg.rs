@@ -1,5 +1,5 @@
-//! Random bodies of two to five bounded primitives, and plates with oblique holes: how many have an edge or a corner that
-//! their facets cut off.
+//! Random bodies of two to five bounded primitives, and plates with oblique holes: frequency of
+//! edges and corners cut off by facets.
 //!
 //! `MOLDLOFT_SOAK` makes the number 1 000.
 

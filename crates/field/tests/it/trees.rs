@@ -74,7 +74,7 @@ fn random_trees_are_closed_manifold_and_oriented() {
         }
         sound(&f);
         let (volume, best) = (bracket(&set, &cube(1.2), 5).unwrap().volume(), f.moments().volume());
-        // Facets miss what is thinner than a cell: up to a cell's volume where they are blunt.
+        // Facets miss features thinner than a cell: up to the volume of a cell for each blunt one.
         let wrong = f.undecided.len() + f.blunt.len();
         let slack = f.step.powi(3) * (1.0 + wrong as f64);
         assert!(

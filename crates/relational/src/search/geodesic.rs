@@ -59,7 +59,7 @@ pub struct GeoSnake<T: Real> {
     /// path with 0, 1 or -1.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,
-    /// The same for the seam v = 0.
+    /// Number of forward crossings of the seam v = 0; see `turns_u`.
     #[field(min = -10, max = 10)]
     turns_v: Option<i32>,
 }

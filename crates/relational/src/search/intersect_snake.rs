@@ -27,7 +27,9 @@ use moldloft_registry::{
 /// curve. Each point is on both shapes to rounding. At the seam of a closed surface the parameter
 /// jumps between 0 and 1.
 ///
-/// Start: a magnet or ring on the intersection.
+/// All branches are found that are longer than 2 % of the size and somewhere cross at an angle
+/// larger than the shapes turn within that length; of two branches closer than that all along, one
+/// may be missed. Shapes that only touch have no intersection.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -43,7 +45,7 @@ pub struct IntSnake<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
-    /// Start: a magnet or ring of the intersection.
+    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,
@@ -75,7 +77,7 @@ pub struct IntCurve<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
-    /// Start: a magnet or ring of the intersection.
+    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,

@@ -45,18 +45,19 @@ use std::sync;
 pub struct RollFillet<T: Real> {
     /// The first surface, or a magnet on it near the intended contact.
     surface1: Onto<T>,
-    /// The second surface, or a magnet of it.
+    /// The second surface, or a magnet on it near the intended contact.
     surface2: Onto<T>,
-    /// The radius of the ball.
+    /// Radius of the ball, greater than 0.
     #[field(min = 0)]
     radius: T,
     /// Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the other.
     #[field(default = 1, min = -1, max = 1)]
     side1: i32,
-    /// The same for the second surface.
+    /// Side of the ball for the second surface; see `side1`.
     #[field(default = 1, min = -1, max = 1)]
     side2: i32,
-    /// Radii along u: the coefficients of a B-spline.
+    /// Radii along u, greater than 0: coefficients of a clamped uniform B-spline of degree 3 (for n
+    /// < 4 coefficients: n - 1). Default: constant `radius`.
     radii: Option<Vec<T>>,
 }
 

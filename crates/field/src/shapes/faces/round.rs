@@ -24,7 +24,7 @@ pub enum RoundProfile<T> {
     Parabola([Vec3<T>; 3]),
 }
 
-/// A round side: from a profile straight to a copy of it that is shifted, and smaller or larger.
+/// A round side: ruled between a profile and a shifted, scaled copy of it.
 ///
 /// The profile runs so that its velocity x `shift` points out of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,7 @@ impl<T: Real> Round<T> {
         }
     }
 
-    /// What lies at the far end where `p` lies at the near one.
+    /// The point at the far end opposite to `p` at the near one.
     fn far(&self, p: Vec3) -> Vec3 {
         let origin = self.origin().re();
         origin + self.shift.re() + (p - origin) * self.scale.re()
@@ -142,7 +142,7 @@ pub(super) struct Rounded {
     /// Numbers of the sides in the list.
     parts: Vec<usize>,
     plain: Vec<Round<f64>>,
-    /// Whether the solid is inside.
+    /// True if the solid is inside.
     convex: bool,
     full: bool,
 }
@@ -245,7 +245,7 @@ impl Rounded {
             set = set & Set::new(&nappe);
         }
         if !self.full {
-            // Beyond the chord, away from the arc, the solid goes on.
+            // Beyond the chord, away from the arc, the solid continues.
             let plain = &self.plain[0];
             let (start, end) = (plain.at(0.0), plain.at(1.0));
             let far = |p: Vec3| plain.far(p) - p;
