@@ -274,8 +274,9 @@ impl Drawing {
         }
     }
 
-    /// Number of lines along an axis that have zero length in the planes of the others or overlap,
-    /// of coincident points, and one more if everything is in one plane.
+    /// Number of faults: lines along an axis of zero length in the planes of the others, coincident
+    /// points, axes with a single plane (for closed drawings), overlapping lines, and loops that
+    /// cannot be plane.
     fn collapsed(&self, loops: &[Vec<LineId>]) -> usize {
         let planes = Planes::of(self);
         let lines = self.lines.values().filter(|l| {
