@@ -188,6 +188,8 @@ pub struct FeatureOperand {
 /// An object made of others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {
+    /// Operation.
     pub kind: FeatureKind,
+    /// Operands.
     pub operands: Vec<FeatureOperand>,
 }

@@ -41,6 +41,7 @@ impl SketchFace {
 pub struct Reference {
     /// The point.
     pub point: PointId,
+    /// Coordinates.
     pub at: [f64; 3],
 }
 

@@ -44,6 +44,7 @@ pub struct Data {
 pub struct DataOptions {
     /// The measure to minimise.
     pub measure: Measure,
+    /// Selection among the curves within the tolerances.
     pub goal: Goal,
     /// Linear conditions on the control points.
     pub conditions: Vec<Condition>,

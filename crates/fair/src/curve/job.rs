@@ -62,6 +62,7 @@ impl EndContinuity {
 /// A curve to be faired: spline, original control points and conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
+    /// Space of the spline.
     pub space: Space,
     /// The original control points.
     pub points: Vec<Vec3<f64>>,

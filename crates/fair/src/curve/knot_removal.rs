@@ -86,7 +86,9 @@ impl Stopped {
 /// Options of local steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnotRemovalOptions {
+    /// Selection of the next knot.
     pub rule: Rule,
+    /// Action of one step.
     pub step: RemovalStep,
     /// The measure that [`RemovalStep::Vertex`] lowers and that stops look at; one of squares.
     pub measure: Measure,

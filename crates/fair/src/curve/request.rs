@@ -44,6 +44,7 @@ pub struct CurveRequest<T> {
     pub closed: bool,
     /// The measure to minimise; [`CurveRequest::data_measure`] without one.
     pub measure: Option<Measure>,
+    /// Selection among the curves within the tolerances.
     pub goal: Goal,
     /// Parametrisation, and the parameters themselves if given.
     pub spacing: PointSpacing,
@@ -53,6 +54,7 @@ pub struct CurveRequest<T> {
     pub ends: [EndContinuity; 2],
     /// In which directions it leaves them.
     pub motion: Motion,
+    /// Shape conditions.
     pub shape: Vec<ShapeCondition>,
     /// Conditions at parameters in [0, 1].
     pub conditions: Vec<(f64, Demand)>,

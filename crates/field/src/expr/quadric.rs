@@ -27,6 +27,7 @@ pub enum QuadricClass {
 /// x^2 + y^2 = 1 or of the cone x^2 + y^2 = z^2 of coordinates along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricAxes {
+    /// Class.
     pub class: QuadricClass,
     /// Its centre: of a cone its apex, of a cylinder a point of its axis.
     pub centre: Vec3,

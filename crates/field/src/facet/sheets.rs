@@ -31,6 +31,7 @@ pub struct Sheet {
 /// A point where three sheets meet.
 #[derive(Clone, Debug)]
 pub struct TriplePoint {
+    /// Position.
     pub point: Vec3,
     /// The numbers of its three leaves.
     pub leaves: [usize; 3],

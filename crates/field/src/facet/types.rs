@@ -26,6 +26,7 @@ pub enum Resolution {
 /// Options of facets.
 #[derive(Clone, Debug)]
 pub struct FacetOptions {
+    /// Resolution.
     pub resolution: Resolution,
     /// The most cells that the surface may pass through.
     pub limit: f64,

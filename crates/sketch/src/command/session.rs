@@ -551,6 +551,7 @@ impl SketchSession {
         !self.begun.is_empty()
     }
 
+    /// All commands so far.
     pub fn history(&self) -> &[String] {
         &self.history
     }

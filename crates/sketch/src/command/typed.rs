@@ -160,6 +160,7 @@ pub struct ObjectChange {
 /// The answer to a typed command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandReport {
+    /// Replies.
     pub replies: Vec<CommandReply>,
     /// Changes by object.
     pub changes: Vec<ObjectChange>,

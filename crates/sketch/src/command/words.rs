@@ -16,6 +16,7 @@ pub enum CommandTokenKind {
 /// A word, number or text of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandToken {
+    /// Kind.
     pub kind: CommandTokenKind,
     /// As written, without quotes.
     pub text: String,

@@ -124,6 +124,7 @@ pub enum Naming {
 pub struct Letters {
     /// The axis that points up.
     pub up: CoordinateAxis,
+    /// Spelling of the inclined types.
     pub naming: Naming,
 }
 

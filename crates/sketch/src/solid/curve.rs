@@ -50,6 +50,7 @@ impl CurveKind {
 pub struct SketchCurve {
     /// As the user wrote it.
     pub name: String,
+    /// Kind.
     pub kind: CurveKind,
     /// The points it hangs on: for a corner the ends of the lines with the corner in the middle.
     pub points: Vec<PointId>,

@@ -52,6 +52,7 @@ use surface::FaceSurface;
 pub struct Vertex<T> {
     /// The label: a point's, or the next free one for a tangent point.
     pub id: PointId,
+    /// Position.
     pub at: Vec3<T>,
 }
 
