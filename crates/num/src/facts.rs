@@ -216,8 +216,9 @@ macro_rules! surface_one_by_one {
     };
 }
 
-/// Statements of a field for missing abilities: `value_with_gradient`, no separate value;
-/// `second_by_differences`, no second derivatives; `no_bounds`, no bounds of its values over a box.
+/// The usual methods of a field: `value_with_gradient`, the value from value and gradient;
+/// `second_by_differences`, second derivatives by differences; `no_bounds`, no bounds of its values
+/// over a box.
 #[macro_export]
 macro_rules! field_facts {
     ($scalar:ty: $($which:ident),+ $(,)?) => {
