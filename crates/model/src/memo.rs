@@ -25,7 +25,7 @@ struct Remembered<T: Scalar> {
     row: Arc<Row>,
     args: Vec<Value<T>>,
     value: Value<T>,
-    /// Warnings of the call; repeated when its result is reused.
+    /// Notes of the call; repeated when its result is reused.
     remarks: Vec<CallRemark>,
     numbers: usize,
     used_at: u64,

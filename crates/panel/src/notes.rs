@@ -110,7 +110,7 @@ impl PanelNote {
         }
     }
 
-    /// True for a gap in the mesh of a closed shape.
+    /// True if it opens the mesh of a closed shape.
     pub fn is_error(&self) -> bool {
         !matches!(
             self,

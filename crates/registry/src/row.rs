@@ -52,11 +52,11 @@ pub struct Context {
     pub budget: Arc<Budget>,
     /// Data kept between calls.
     pub kept: Kept,
-    /// Warnings of calls.
+    /// Notes of calls.
     pub remarks: Arc<Mutex<Vec<CallRemark>>>,
 }
 
-/// A warning of a call besides its value: an iteration has not converged, a march ended early.
+/// A note of a call besides its value: an iteration has not converged, a march ended early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CallRemark {
     /// A stable id.
@@ -68,13 +68,13 @@ pub struct CallRemark {
 }
 
 impl Context {
-    /// Adds a warning.
+    /// Adds a note.
     pub fn remark(&self, id: &'static str, message: String, help: &'static str) {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
         remarks.push(CallRemark { id, message, help });
     }
 
-    /// Removes and returns the warnings so far.
+    /// Removes and returns the notes so far.
     pub fn take_remarks(&self) -> Vec<CallRemark> {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *remarks)
