@@ -28,7 +28,7 @@ pub enum FairError {
         /// Index of the first of the two, from 0.
         first: usize,
     },
-    /// Points run back along the direction that gives them their parameters.
+    /// Points are not monotone along the direction of their parameters.
     TurnsAlong {
         /// Index of the first that does, from 0.
         index: usize,
@@ -40,7 +40,7 @@ pub enum FairError {
         /// Distance of the best curve found.
         distance: f64,
     },
-    /// A budget or a share is out of range, or does not apply to the measure.
+    /// A budget or share is out of range, or does not apply to the measure.
     Goal(&'static str),
     /// The derivative is not available.
     NoDerivative(&'static str),
@@ -120,7 +120,7 @@ pub enum FairError {
         /// Reason and remedy.
         why: String,
     },
-    /// A curve runs against the neighbour that it should run on from.
+    /// A curve has the opposite direction to the neighbour that it should continue.
     TurnsBack,
     /// Two surfaces cannot be joined at an edge.
     Seam {

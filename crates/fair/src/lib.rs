@@ -15,9 +15,9 @@
 //!   plane; per control point), `marks` (intended breaks), [`EndContinuity`]s, weights.
 //! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
 //!   [`with_findings`] takes them into account.
-//! - [`knot_removal()`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
-//!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`multilevel()`] for bulk
-//!   work and long waves.
+//! - [`knot_removal()`]: the classical method, knots removed and re-inserted one by one, the worst
+//!   first, with a log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and
+//!   [`multilevel()`] for large data and long waves.
 //! - [`optimum`]: the least of a [`Measure`] under hard bounds ([`Bound`]) and linear
 //!   [`Condition`]s, with a [`Certificate`] that does not trust the solver.
 //! - [`deviation`]: certified and sampled distance from the original.

@@ -102,7 +102,7 @@ impl SparseRows {
         }
     }
 
-    /// Calls `add` with each column's share of the transpose times `x`.
+    /// Calls `add` with each column's contribution to the transpose times `x`.
     pub(crate) fn add_transposed_into(
         &self,
         x: &[Vec3<f64>],

@@ -20,7 +20,7 @@ pub enum FieldError {
         /// Given value.
         value: f64,
     },
-    /// A direction of no length, or points that coincide or lie in one plane.
+    /// A direction of zero length, or points that coincide or are coplanar.
     Degenerate {
         /// Name of the quantity.
         what: &'static str,
@@ -97,7 +97,7 @@ pub enum FieldError {
         place: Box3,
         /// The side of a cell.
         step: f64,
-        /// From about which depth on its cells are small enough.
+        /// Approximate minimum depth for small enough cells.
         depth: u32,
     },
     /// The accuracy was not reached with the cells allowed.
@@ -117,7 +117,7 @@ pub enum FieldError {
         side: f64,
         /// The side of a cell.
         step: f64,
-        /// From which depth on its cells are small enough.
+        /// Minimum depth for small enough cells.
         depth: u32,
     },
     /// The body is not closed, so it has no inside.
@@ -138,14 +138,14 @@ pub enum FieldError {
         /// A point of it.
         place: Vec3,
     },
-    /// A primitive of which no distance is known in closed form.
+    /// A primitive without a distance in closed form.
     NoDistance {
         /// Kind of primitive.
         kind: &'static str,
     },
-    /// Sets of which no convex hull or Minkowski sum is known in closed form.
+    /// Sets without a convex hull or Minkowski sum in closed form.
     NoHull {
-        /// What was found instead.
+        /// The set found.
         found: String,
     },
     /// Two faces that meet in no edge of the set.

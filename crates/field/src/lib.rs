@@ -5,8 +5,8 @@
 //! Conventions: a function is negative in the solid, zero on the surface and positive in air; normals
 //! point from solid to air; angles are radians.
 //!
-//! Invariant: this crate knows no graph, no language and no file. Ranges are rounded outward; sums and
-//! maps run in fixed order, so their bits do not depend on threads.
+//! Invariant: this crate is independent of graph, language and files. Ranges are rounded outward;
+//! sums and maps have a fixed order, so their bits do not depend on threads.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -14,15 +14,16 @@ const SETTLED: f64 = 1e-3;
 const ROUNDS: usize = 12;
 const FEW: usize = 4;
 
-/// The share of a tolerance from which on it is reached.
+/// Fraction of a tolerance from which it counts as reached.
 const REACHED: f64 = 1.0 - 1e-4;
 
-/// Of more points than this a fairest curve with more turns than these owes them to rounding: sixth differences of
-/// so short steps have no digits left, and its signs say nothing.
+/// If there are more points, and the fairest curve has more turns than this, the turns are due to
+/// rounding: sixth differences of such short steps have no digits left, and their signs are
+/// meaningless.
 const MANY: usize = 2000;
 const ROUNDED_TURNS: usize = 32;
 
-/// Steps, and halvings of one of them, on the way between two curves.
+/// Steps, and halvings of one of them, of the interpolation between two curves.
 const SHARES: usize = 32;
 const HALVINGS: usize = 6;
 

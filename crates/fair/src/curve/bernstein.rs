@@ -65,7 +65,7 @@ impl SignedQuantity {
                 let times = |a: T, b: T| a * b;
                 let first = product(&third, &speed, times);
                 let second = product(&turn, &along, times);
-                // Of quadratics the first product is zero and of its own degree.
+                // For quadratics the first product is zero and has its own degree.
                 let first = if e.len() > 1 { first } else { vec![T::zero(); second.len()] };
                 let both = first.into_iter().zip(second);
                 both.map(|(a, b)| a * (p - 2.0) - b * (3.0 * (p - 1.0))).collect()

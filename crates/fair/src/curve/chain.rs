@@ -27,7 +27,7 @@ pub(crate) struct FittedSegment {
 }
 
 impl FittedSegment {
-    /// Place and direction at an arc length.
+    /// Position and direction at an arc length.
     pub fn at(&self, s: f64) -> (P<f64>, P<f64>) {
         let half = 0.5 * self.curvature * s;
         // The chord of an arc is s sin(half) / half long.
@@ -46,7 +46,7 @@ impl FittedSegment {
             return (along, left);
         }
         let k = self.curvature;
-        // From the centre, at (0, 1 / k) in the own frame.
+        // Relative to the centre, at (0, 1 / k) in the own frame.
         let turned = libm::atan2(along * k, 1.0 - left * k);
         let far = ((along * k).powi(2) + (1.0 - left * k).powi(2)).sqrt();
         (turned / k, (1.0 - far) / k)
@@ -60,7 +60,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// Place and direction at an arc length from its beginning.
+    /// Position and direction at an arc length from its start.
     pub fn at(&self, mut s: f64) -> (P<f64>, P<f64>) {
         let last = self.pieces.len() - 1;
         for piece in &self.pieces[..last] {

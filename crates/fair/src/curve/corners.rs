@@ -18,9 +18,9 @@ pub struct FitWithCorners<T> {
     pub at: Vec<f64>,
 }
 
-/// The spline through all points that is continuous, and no more, at the points `breaks` (from 0):
-/// knots of multiplicity `degree` separate the pieces, each of which passes through its own points
-/// alone. A piece of fewer than `degree + 1` points is the polynomial through them.
+/// The interpolating spline that is only continuous at the points `breaks` (from 0): knots of
+/// multiplicity `degree` separate the pieces, each of which interpolates its own points alone. A
+/// piece of fewer than `degree + 1` points is the polynomial through them.
 ///
 /// A closed curve with a break becomes an open one that begins and ends at its first break: its
 /// parameters count from there. Without breaks this is [`crate::interpolate`]. Parameters are those of

@@ -76,7 +76,7 @@ impl DataOptions {
 pub struct DataFit {
     /// Its control points, on the layout's space.
     pub points: Vec<Vec3<f64>>,
-    /// Those of the curve through the data.
+    /// Control points of the interpolating curve.
     pub original: Vec<Vec3<f64>>,
     /// The distance of each datum from the curve at its parameter.
     pub residuals: Vec<f64>,
@@ -96,8 +96,8 @@ pub struct DataFit {
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
-    /// Inflections that the goal would have added to those of the curve through the data: where no
-    /// way without them was found that curve is taken, if there are no conditions.
+    /// Inflections that the goal would have added to those of the interpolating curve: if no curve
+    /// without them was found, that curve is the result, unless there are conditions.
     pub bends: usize,
     /// Arcs among the shape conditions.
     pub arcs: Vec<FoundArc>,
@@ -106,7 +106,7 @@ pub struct DataFit {
     pub fairer: f64,
 }
 
-/// Data of which neighbours in one place are one datum.
+/// Data in which coincident neighbours are merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// The data that are left.
@@ -117,10 +117,10 @@ pub struct Merged {
     pub of: Vec<usize>,
 }
 
-/// Neighbours nearer than this share of the extent are in one place.
+/// Distance of neighbours, relative to the extent, within which they coincide.
 const TOGETHER: f64 = 1e-6;
 
-/// Joins neighbours that are in one place: their mean, as far from it as all their tolerances allow.
+/// Merges coincident neighbours: to their mean, with a tolerance within all of theirs.
 ///
 /// # Errors
 /// [`FairError::Coincident`] when no place is within the tolerances of both.
@@ -427,7 +427,7 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
 /// Times that signs and lines are made linear again at most.
 const ROUNDS: usize = 40;
 
-/// From here on half a step only.
+/// Number of iterations after which half steps are taken.
 const WHOLE: usize = 12;
 
 /// Number of failed rounds after which signs are required with a margin of the amount missed, and
@@ -558,8 +558,8 @@ impl Data {
         Ok(self.along(&plain, job, &mut parts)?.points)
     }
 
-    /// The curve with the control points of lines and arcs in their places to rounding, where that
-    /// leaves all data within their tolerances.
+    /// The curve with the control points of lines and arcs exact to rounding, if all data stay
+    /// within their tolerances.
     fn exact(&self, shape: &ShapeConstraints, made: DataFit) -> DataFit {
         let points = shape.projected(&made.points);
         let residuals = self.residuals(&points);

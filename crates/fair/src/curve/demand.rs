@@ -8,10 +8,10 @@ use moldloft_num::Vec3;
 pub enum Demand {
     /// It passes through a point.
     Through(Vec3<f64>),
-    /// It runs along a direction.
+    /// Tangent direction.
     Tangent(Vec3<f64>),
-    /// It runs on from another curve at its start or end: that one's first and second derivative,
-    /// by a parameter that runs as its own.
+    /// Continuation of another curve at the start or end: its first and second derivative, with
+    /// respect to a parameter of the same direction.
     Join([Vec3<f64>; 2]),
     /// It keeps the area swept about the origin in the plane of x and y, to first order.
     Area,
@@ -36,7 +36,7 @@ impl Demand {
     /// relative to the domain.
     ///
     /// # Errors
-    /// Those of [`Condition::join`].
+    /// As [`Condition::join`].
     pub fn conditions(
         self,
         space: &Space,

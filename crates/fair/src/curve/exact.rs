@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 /// Number of points beyond those that determine a curve, for a coincidence to be excluded.
 const SPARE: usize = 4;
 
-/// The same for one line of many, all of which have to be exact.
+/// The same for one of many lines, all of which must be exact.
 const SPARE_EACH: usize = 1;
 
 /// True if the points are in order on a line, a circle, another conic, a plane cubic or a helix.
@@ -36,8 +36,8 @@ pub fn is_exact(points: &[Vec3<f64>], breaks: &[usize], closed: bool) -> bool {
     between_breaks(points, breaks, closed).iter().all(|part| exact(part))
 }
 
-/// The same of all lines through numbered points, each its points and whether it is closed; `breaks` are
-/// numbers of points. One whose points are in one place is exact.
+/// The same for lines through numbered points, each its points and whether it is closed; `breaks`
+/// are numbers of points. A line of coincident points is exact.
 pub fn are_exact(points: &[Vec3<f64>], lines: &[(Vec<usize>, bool)], breaks: &[usize]) -> bool {
     all_exact(lines.iter().flat_map(|(own, closed)| {
         let marks: Vec<usize> = (0..own.len()).filter(|&k| breaks.contains(&own[k])).collect();
@@ -53,8 +53,8 @@ pub(crate) fn all_exact(lines: impl IntoIterator<Item = Vec<Vec3<f64>>>) -> bool
         .all(|line| line.iter().all(|p| *p == line[0]) || exact_with(&line, SPARE_EACH))
 }
 
-/// The parts of a list between breaks, which belong to both sides; of a closed list the last runs on
-/// to the first break.
+/// The parts of a list between breaks, which belong to both sides; the last part of a closed list
+/// extends to the first break.
 pub(crate) fn between_breaks<T: Copy>(list: &[T], breaks: &[usize], closed: bool) -> Vec<Vec<T>> {
     let n = list.len();
     let mut inner: Vec<usize> = breaks.iter().copied().filter(|&b| b < n).collect();

@@ -102,10 +102,10 @@ pub fn parameters_with<T: Real>(
     Ok(at)
 }
 
-/// The least share of a chord that its projection must be for stations to count.
+/// Minimum ratio of a chord's projection to the chord for stations to be used.
 const SHALLOW: f64 = 0.2;
 
-/// A tolerance from this share of the extent on is that of a datum that was released.
+/// Tolerance, relative to the extent, from which a datum counts as released.
 const RELEASED: f64 = 0.5;
 
 /// Released data: their tolerance is at least half the extent, while others have smaller ones.

@@ -32,9 +32,9 @@ pub enum RemovalStep {
 pub struct Stops {
     /// Maximum number of steps.
     pub steps: usize,
-    /// When no move is longer than this share of the largest finite limit.
+    /// When no move is longer than this fraction of the largest finite limit.
     pub least_move: f64,
-    /// When a step lowers the measure by less than this share of it.
+    /// When a step lowers the measure by less than this fraction of it.
     pub least_drop: f64,
     /// When the certified gap, computed every n steps, is below this fraction of the measure.
     pub gap: f64,

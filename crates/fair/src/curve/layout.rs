@@ -8,8 +8,8 @@ use crate::{FairError, Space, SparseRows, fit};
 use moldloft_num::{Banded, Real, Vec3};
 use moldloft_spline::KnotVector;
 
-/// A space of splines with as many control points as there are sites, of which one passes through
-/// any data at the sites.
+/// A space of splines with as many control points as sites: for any data at the sites it has a
+/// unique interpolating spline.
 ///
 /// Knots are at the sites except those next to the ends ("not a knot", de Boor 1978), so that
 /// polynomials are reproduced at any spacing. At a break the spline is only continuous.
@@ -29,9 +29,9 @@ pub struct InterpolationSpace {
     pub marks: Vec<usize>,
     /// Values at the sites over the control points.
     pub rows: SparseRows,
-    /// Sites as shares of the way from one parameter of the list to another.
+    /// Sites as interpolations between two parameters of the list.
     site_of: Vec<Share>,
-    /// Knots as shares of the way from one site to another.
+    /// Knots as interpolations between two sites.
     knot_of: Vec<Share>,
     /// The datum at which a closed curve with breaks begins.
     first: Option<usize>,
@@ -39,8 +39,8 @@ pub struct InterpolationSpace {
     pub(crate) thin: Option<CurvesBesideData>,
 }
 
-/// A share of the way from one place of a list to another; from the last to the first of a closed
-/// curve when the second is the length of the list.
+/// An interpolation between two items of a list, by indices and fraction; if the second index is
+/// the length of the list, between the last and the first of a closed curve.
 type Share = (usize, usize, f64);
 
 impl InterpolationSpace {
@@ -299,7 +299,7 @@ impl InterpolationSpace {
         Ok(true)
     }
 
-    /// The data that a site hangs on.
+    /// The data that a site depends on.
     pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
         self.sources.row(site).0.iter().map(|&c| c as usize)
     }
@@ -414,7 +414,7 @@ impl InterpolationSpace {
         if !self.space.is_closed() || n.is_multiple_of(2) {
             return Ok(size(&self.through(&alternating(radii))?));
         }
-        // Signs alternate round a closed curve when it is run through twice.
+        // Signs alternate around a closed curve when it is traversed twice.
         let twice = |all: &[f64]| -> Vec<f64> {
             all.iter().copied().chain(all.iter().map(|t| t + 1.0)).collect()
         };
@@ -454,7 +454,7 @@ impl InterpolationSpace {
     }
 }
 
-/// A share of the way between two places of a list.
+/// Interpolation between two items of a list.
 fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
     if share == 0.0 {
         return list[a];

@@ -38,8 +38,8 @@ const LEAST_WAY: f64 = 1.05;
 const EARLY: [f64; 2] = [0.8, 1.0];
 const LATE: [f64; 2] = [1.0, 1.25];
 
-/// Below this share of the way from the data the budget is read from the goal and not from the
-/// curve.
+/// Fraction of the distance from the data below which the budget is taken from the goal and not
+/// from the curve.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Steps of the same integral under a shape, where each curve is a search of its own, and on few
@@ -57,7 +57,7 @@ struct CountLimits {
 }
 
 impl CountLimits {
-    /// Those of fairest curves, of which the first is the one that is taken in the end.
+    /// Limits from fairest curves, the first of which is the final one.
     fn of(fairest: &[Vec<Sample>], more: f64) -> Self {
         let all: Vec<SoftCounts> = fairest.iter().map(|s| SoftCounts::of(s, LATE)).collect();
         let least = |of: fn(&SoftCounts) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -96,7 +96,7 @@ pub(super) struct TurnedFrom<'a> {
     pub at: &'a [f64],
 }
 
-/// The way from the goal's curve to the fairest.
+/// The path from the goal's curve to the fairest.
 struct FairingPath<'a> {
     data: &'a Data,
     job: &'a Job,
@@ -124,7 +124,8 @@ impl FairingPath<'_> {
         self.budgets[0] * libm::pow(self.budgets[1] / self.budgets[0], x)
     }
 
-    /// Between the data's own curve and one, as far as the goal's is, and farther along the way.
+    /// Interpolation between the data's own curve and `points`, at the goal's fraction and beyond,
+    /// along the path.
     fn towards(&self, points: &[Vec3<f64>], x: f64) -> Vec<Vec3<f64>> {
         let share = self.share + (1.0 - self.share) * x;
         if share >= 1.0 {
@@ -134,7 +135,7 @@ impl FairingPath<'_> {
         both.map(|(from, to)| *from + (*to - *from) * share).collect()
     }
 
-    /// The curve on the way to the fairest, near enough to be counted.
+    /// The curve on the path to the fairest, accurate enough for counts.
     fn rough(&mut self, x: f64) -> Result<Vec<Vec3<f64>>, FairError> {
         if x == 0.0 {
             return Ok(self.goal.points.clone());
@@ -151,7 +152,7 @@ impl FairingPath<'_> {
         Ok(self.towards(&points, x))
     }
 
-    /// The optimum of a budget on the way.
+    /// The optimum of a budget on the path.
     fn exact(&mut self, x: f64) -> Result<DataFit, FairError> {
         let goal = if x < 1.0 && self.goal.weight > 0.0 {
             Goal::Budget(self.budget(x))
@@ -173,7 +174,7 @@ impl FairingPath<'_> {
         Ok(Some(Data { layout, ..self.data.clone() }))
     }
 
-    /// The curve at a place of the way, with its layout where that is another.
+    /// The curve at a position of the path, with its layout if that differs.
     fn made(&mut self, x: f64) -> Result<Relaid, FairError> {
         if x == 0.0 {
             return Ok((None, self.goal.clone()));
@@ -226,8 +227,8 @@ impl FairingPath<'_> {
 }
 
 impl Data {
-    /// The curve of the goal `near` or `budget`, or one on the way from it to the fairest. `turned`
-    /// is where the parameters come from if they follow the turns.
+    /// The curve of the goal `near` or `budget`, or one on the path from it to the fairest.
+    /// `turned` is the source of the parameters if they follow the turns.
     pub(super) fn gated<'a>(
         &'a self,
         options: &DataOptions,

@@ -67,7 +67,7 @@ pub struct CurveRequest<T> {
 /// A curve near its points.
 #[derive(Clone, Debug)]
 pub struct NearCurve<T> {
-    /// The data: neighbours in one place are one of them.
+    /// The data; coincident neighbours are merged.
     pub data: Data,
     /// Index of the merged datum for each point.
     pub of: Vec<usize>,

@@ -8,19 +8,20 @@ use moldloft_num::Vec3;
 /// convex is a turn to the left, as of a graph over x (or over y) from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeCondition {
-    /// Between two data the curve turns one way: to the left (convex) or to the right (concave).
+    /// Between two data the curve turns in one direction: to the left (convex) or to the right
+    /// (concave).
     Turn {
         /// The first and the last datum.
         between: [usize; 2],
         /// To the left.
         left: bool,
     },
-    /// Between two data the curve has no inflection; which way it turns is left to it.
+    /// Between two data the curve has no inflection; its direction of turning is free.
     OneWay {
         /// The first and the last datum.
         between: [usize; 2],
     },
-    /// A straight run from datum to datum.
+    /// A straight line from datum to datum.
     Straight {
         /// The first and the last datum.
         between: [usize; 2],

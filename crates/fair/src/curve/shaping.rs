@@ -38,7 +38,7 @@ impl CurvePlane {
     /// The plane of a curve, if it is plane.
     fn of(space: &Space, points: &[Vec3<f64>]) -> Option<Self> {
         let normal = shape::plane_normal(&shape::samples(space, points, None, 4))?;
-        // From above; a vertical plane with z up and x, or else y, to the right.
+        // Seen from above; for a vertical plane with z up and x, or else y, to the right.
         let back = if normal.z.abs() > 1e-9 {
             normal.z < 0.0
         } else if normal.y.abs() > 1e-9 {
@@ -108,7 +108,7 @@ pub struct ShapeConstraints {
     determined: Vec<isize>,
     limits: Vec<(usize, Vec3<f64>, f64)>,
     sides: Vec<(usize, Vec3<f64>)>,
-    /// Parts that turn one way, whichever.
+    /// Parts that turn in one direction, either of both.
     one_way: Vec<(usize, Vec<isize>)>,
     pieces: Option<(usize, usize)>,
     /// Required margin inside the signs, as a length.
@@ -253,7 +253,7 @@ impl Data {
             runs.sort_by_key(|r| r.1);
             out.runs(&mut self, &runs)?;
         }
-        // Signs after the knots have their places.
+        // Signs after the knots are final.
         for (owner, condition) in wanted.iter().enumerate() {
             let of = |between: &[usize; 2]| -> Vec<isize> {
                 let layout = &self.layout;
@@ -458,7 +458,7 @@ impl ShapeConstraints {
         points
     }
 
-    /// Holds the control points of a chain: those of arcs at their places, others on their lines.
+    /// Fixes the control points of a chain: those of arcs exactly, others on their lines.
     fn hold(
         &mut self,
         data: &Data,
@@ -681,7 +681,8 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
     Ok((found, feet))
 }
 
-/// The share of the way that a tolerance leaves along a chain by which a point may be beside its foot.
+/// Fraction of the possible distance, by the tolerance, that a point may have from its foot along a
+/// chain.
 const ROOM: f64 = 0.9;
 
 /// Increasing positions, each within `rooms` of its foot; noise can reverse the order of close
@@ -817,7 +818,7 @@ impl ShapeConstraints {
         };
         for &(owner, d, most) in &self.limits {
             for span in space.spans() {
-                // Of quarters: the Bézier points of whole spans are too far from the curve where
+                // Bézier points of quarters: those of whole spans are too far from the curve where
                 // it turns away from its limit.
                 for row in halved(&halved(&[space.bezier_of(span)])).into_iter().flatten() {
                     beyond(space.columns(span).zip(row).collect(), d, most, owner);
@@ -925,8 +926,8 @@ impl ShapeConstraints {
         out
     }
 
-    /// The shape with the signs that parts which turn one way have by a curve, and with pieces where
-    /// that curve has them.
+    /// The shape with the signs of a curve for its parts that turn in one direction, and with
+    /// pieces if that curve has them.
     pub(crate) fn by(&self, space: &Space, control: &[Vec3<f64>]) -> Self {
         let mut out = self.clone();
         let normal = self.plane.map(|p| p.normal());

@@ -30,11 +30,11 @@ const SPAN_DATA: usize = 8;
 const NARROW_DATA: usize = 4;
 const SPARSE: usize = 3;
 
-/// Blocks of a span, and the standard deviations beyond which their sums are no noise.
+/// Blocks of a span, and the number of standard deviations beyond which their sums are not noise.
 const BLOCKS: usize = 8;
 const DEVIATIONS: f64 = 4.0;
 
-/// Residuals below this share of the tolerance are small enough.
+/// Residuals below this fraction of the tolerance are small enough.
 const FINE: f64 = 1e-4;
 
 /// Rounds of halving at most, and of feet once no span is halved.
@@ -56,7 +56,7 @@ const PARTS: usize = 8;
 pub(crate) struct CurvesBesideData {
     /// The control points of the curve of least squares, each over its tolerance.
     pub nearest: Vec<Vec3<f64>>,
-    /// Those of a curve strictly inside the tolerances.
+    /// Control points of a curve strictly inside the tolerances.
     pub centre: Vec<Vec3<f64>>,
 }
 
@@ -112,7 +112,7 @@ pub fn thinned(
     thinning.run(turning)
 }
 
-/// Stations are on a line to this share of the extent.
+/// Deviation of stations from a line, relative to the extent, up to which they are on it.
 const IN_LINE: f64 = 1e-12;
 
 /// Increasing parameters in [0, 1] of points that move in one direction, from their stations;

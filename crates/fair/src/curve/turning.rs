@@ -22,7 +22,7 @@ const SHARP: f64 = 2.0;
 const PLANE_BUDGET: f64 = 0.5;
 const SPACE_BUDGET: f64 = 0.8;
 
-/// Flat to this share of the extent is plane.
+/// Relative deviation from a plane up to which points are plane.
 const FLAT: f64 = 1e-9;
 
 /// Budget of the curve whose curvature is used, in thirds of the squared tolerances: that of noise.

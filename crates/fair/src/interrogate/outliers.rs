@@ -32,7 +32,7 @@ pub enum DataFinding {
         /// The turn as a multiple of its scale.
         score: f64,
     },
-    /// A point that seems to belong behind the next one: the way through both runs back.
+    /// A point that seems to belong after the next one: the polyline through both reverses.
     Swapped {
         /// The first of the two.
         index: usize,
@@ -94,7 +94,7 @@ const ASIDE_SCORE: f64 = 6.0;
 /// Leaving a point out cures when no neighbour has a larger score without it.
 const CURED: f64 = 6.0;
 
-/// From which score on the turn of a knuckle is proposed.
+/// Minimum score of a knuckle's turn.
 const KNUCKLE_SCORE: f64 = 20.0;
 
 /// Turn in radians beyond which it counts as a nose, unless both sides are straight or the turn is
@@ -475,7 +475,7 @@ pub fn digit_scale(points: &[Vec3<f64>]) -> f64 {
     0.0
 }
 
-/// The points between knuckles, which cubics do not run across, and whether they are a closed list.
+/// The points between knuckles, which cubics do not cross, and whether they are a closed list.
 fn pieces(n: usize, closed: bool, knuckles: &[DataFinding]) -> Vec<(Vec<usize>, bool)> {
     let mut cuts: Vec<usize> = knuckles.iter().map(DataFinding::index).collect();
     cuts.sort_unstable();
@@ -565,8 +565,8 @@ pub fn predicted(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.deviation)
 }
 
-/// Each point is judged as it is when it is looked for: between knuckles, without the wrong digits that
-/// are clearer, and by the scale that the others have among themselves.
+/// Each point is judged as in the search: between knuckles, without the wrong digits of higher
+/// score, and by the scale of the others.
 fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> Vec<f64> {
     let n = points.len();
     let mut out = vec![f64::INFINITY; n];

@@ -16,8 +16,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Of the sums of basis functions and their derivatives times control points, and for a rational
-    /// curve of the same with weights (Piegl and Tiller 1997, eq. 4.8).
+    /// From the sums of basis functions and their derivatives times control points, and for a
+    /// rational curve the same with weights (Piegl and Tiller 1997, eq. 4.8).
     pub(crate) fn of_sums(t: f64, a: [Vec3<f64>; 4], weights: Option<[f64; 4]>) -> Self {
         let Some(w) = weights else {
             let [point, derivatives @ ..] = a;
@@ -236,10 +236,11 @@ fn known_beside(circles: &[f64], k: usize) -> Option<f64> {
     (high - low <= 0.5 * high && turns <= 1).then_some(high)
 }
 
-/// The error of a cubic's second derivative in the square of the longest span beside a place times the
-/// fourth derivative there: an eighth is that of the straight line between its values at the knots (de Boor
-/// 2001, ch. II), a quarter that of these values: the equation of a knot between steps h and k is off by
-/// (h^2 - h k + k^2) / 4 of it, and its 2 on the diagonal outweighs the 1 beside.
+/// Error of a cubic's second derivative, in units of the squared length of the longest adjacent
+/// span times the fourth derivative there: an eighth is that of the straight line between its
+/// values at the knots (de Boor 2001, ch. II), a quarter that of these values: the equation of a
+/// knot between steps h and k has an error of (h^2 - h k + k^2) / 4 of it, and its 2 on the
+/// diagonal dominates the 1 beside it.
 const OWN_ERROR: f64 = 0.375;
 
 /// Spans on either side that are averaged for the fourth derivative: noise of the points, whose
@@ -286,7 +287,7 @@ fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f
             for i in span.clone() {
                 let square = samples[i].derivatives[0].norm_sq();
                 if square > 0.0 {
-                    // That of a circle, or less.
+                    // At most that of a circle.
                     let fourth = (fourth / square).min(bend * bend * bend * square);
                     out[i] = OWN_ERROR * squares[k] * fourth;
                 }
@@ -524,7 +525,7 @@ pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
     monotone_pieces(&bends(space, points), UNCOUNTED)
 }
 
-/// The share of the curvature's range below which a reversal is not counted.
+/// Fraction of the curvature's range below which a reversal is not counted.
 pub(crate) const UNCOUNTED: f64 = 1e-3;
 
 /// The length of the curve, by the 8-point Gauss-Legendre rule on each span.

@@ -10,13 +10,12 @@ use moldloft_num::{Real, Vec3};
 /// Points that such a list has, at least and at most.
 pub(super) const SHORT: [usize; 2] = [7, 20];
 
-/// Points about a hinge that are looked at, at most, and on either side at least.
+/// Maximum number of points used for a hinge, and minimum on either side.
 const WINDOW: usize = 11;
 const SIDE: usize = 2;
 
-/// From which ratio of a hinge to its deviation on it is proposed, by the degrees of freedom that
-/// are left, from two on: one false in a thousand of Gaussian noise by Student's law, for all
-/// places of a list.
+/// Minimum ratio of a hinge to its deviation, by the remaining degrees of freedom, from two on: one
+/// false finding in a thousand for Gaussian noise by Student's law, over all positions of a list.
 const SCORES: [f64; 6] = [32.0, 13.0, 9.0, 7.5, 6.7, 6.2];
 
 /// Minimum ratio of the squared residuals of a smooth polynomial with one more coefficient to those
@@ -47,7 +46,7 @@ fn left<const C: usize>(
     Some((rows.iter().zip(points).map(off).sum(), c, last))
 }
 
-/// The hinge at a place of a list, if it is one.
+/// The hinge at a position of a list, if there is one.
 fn hinge(points: &[Vec3<f64>], at: usize, floor: f64) -> Option<DataFinding> {
     let n = points.len();
     let half = WINDOW / 2;
@@ -142,8 +141,8 @@ const BACK: f64 = 0.25;
 const SHORTER: f64 = 0.8;
 const FEW: f64 = 0.1;
 
-/// The first of each two neighbours that are in the wrong order: the way through them runs back and
-/// the other way round it does not.
+/// The first of each two neighbours in the wrong order: the polyline through them reverses, and in
+/// the other order it does not.
 pub(super) fn swapped(points: &[Vec3<f64>], closed: bool) -> Vec<usize> {
     let n = points.len();
     if n < SHORT[0] {
@@ -166,6 +165,6 @@ pub(super) fn swapped(points: &[Vec3<f64>], closed: bool) -> Vec<usize> {
     let back = (0..n - 2)
         .filter(|&k| (points[k + 1] - points[k]).dot(points[k + 2] - points[k + 1]) < 0.0)
         .count();
-    // A pair turns the polygon back at two places.
+    // A pair reverses the polygon twice.
     if back as f64 > 2.0 * found.len() as f64 + FEW * n as f64 { Vec::new() } else { found }
 }

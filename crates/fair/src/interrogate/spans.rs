@@ -20,7 +20,8 @@ fn bernstein(degree: usize, s: f64) -> Vec<f64> {
     row
 }
 
-/// Calls `f` with the samples of each span at the shares (0 .. 1) of it, in order along the curve.
+/// Calls `f` with the samples of each span at the relative parameters `shares` (0 .. 1), in order
+/// along the curve.
 ///
 /// Positions, first and second derivatives are bit-identical to
 /// [`crate::interrogate::shape::sample_in`]; third derivatives are those of the span's Bezier
@@ -87,8 +88,8 @@ pub(crate) fn each_span(
     }
 }
 
-/// The basis functions at the same shares of every span, to sample many splines of one space without third
-/// derivatives. Their samples have the bits of [`each_span`]'s.
+/// The basis functions at the same relative parameters of every span, to sample many splines of one
+/// space without third derivatives. Their samples are bit-identical to those of [`each_span`].
 pub(crate) struct SpanBasis {
     degree: usize,
     shares: Vec<f64>,

@@ -55,7 +55,7 @@ pub fn look(surface: &dyn Surface<f64>, u: f64, v: f64) -> Option<SurfaceAnalysi
     })
 }
 
-/// The value of which isophotes are level lines: the cosine between the normal and the light.
+/// Cosine between the normal and the light; its level lines are the isophotes.
 pub fn isophote(look: &SurfaceAnalysis, light: Vec3<f64>) -> f64 {
     look.normal.dot(light.normalized().unwrap_or_default())
 }
@@ -89,7 +89,7 @@ pub fn zebra(look: &SurfaceAnalysis, view: Vec3<f64>, axis: Vec3<f64>, stripes: 
 }
 
 impl SurfaceAnalysis {
-    /// The same seen from the other side: the normal turned round, and with it the signs of the mean
+    /// The same seen from the other side: with the opposite normal, and opposite signs of the mean
     /// and the principal curvatures.
     pub fn turned(&self) -> Self {
         let SurfaceCurvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;

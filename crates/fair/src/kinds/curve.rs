@@ -193,7 +193,7 @@ impl<T: Real> FairCurve<T> {
                 .in_item(k)
                 .in_field(JOINS));
             }
-            // The derivative is reversed if the neighbour's parameter runs against this curve's.
+            // The derivative is reversed if the neighbour's parameter has the opposite direction.
             let sign = if a == b { -1.0 } else { 1.0 };
             found[a] = Some((k, [jets[b][1].map(|x| x * sign), jets[b][2]]));
         }

@@ -296,7 +296,7 @@ impl<T: Real> DirectCurve<T> {
     ) -> Result<MovedControlPoints<T>, FairError> {
         let SplineToFair { space, control: points, .. } = laid;
         let measure = self.intent.measure.unwrap_or(Measure::Second);
-        // Where the points move, an end condition counts fixed points: 2 for "tangent".
+        // For `as = "points"` an end condition counts fixed points: 2 for "tangent".
         let end = |end: EndContinuity| match (self.role, end) {
             (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
             (PointRole::Points, end) => EndContinuity::Points(end.kept()),

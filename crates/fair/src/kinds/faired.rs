@@ -27,7 +27,7 @@ pub(crate) struct CurveContext<T> {
     pub keep_field: FieldId,
     /// Minimum condition at the ends.
     pub least_end: Option<EndContinuity>,
-    /// Default share of the goals.
+    /// Default of `share`.
     pub budget: f64,
     /// True if "auto" may select "curvature".
     pub turns: bool,

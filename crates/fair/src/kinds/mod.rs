@@ -96,8 +96,7 @@ pub(crate) fn plain_spacing(name: &str, field: FieldId) -> Result<ParameterSpaci
     }
 }
 
-/// Default share of the goals; 1 is the mean squared residual of noise that fills the tolerances
-/// evenly.
+/// Default of `share`; 1 is the mean squared residual of noise that fills the tolerances evenly.
 pub const BUDGET: f64 = 0.8;
 
 /// Default share for networks parametrised by index. Measured on 36 networks of six hulls that the
@@ -105,7 +104,7 @@ pub const BUDGET: f64 = 0.8;
 /// do not.
 pub const NETWORK_BUDGET: f64 = 0.3;
 
-/// Goal called `name` with its share. The fields are those of the goal and of the share.
+/// Goal called `name` with its parameter `share`. The fields are those of both.
 pub(crate) fn goal_of(
     name: &str,
     share: Option<f64>,

@@ -1,4 +1,4 @@
-//! Curves that run on from others with continuous curvature.
+//! Curves that continue others with continuous curvature.
 
 use crate::fixtures::*;
 use moldloft_fair::rows;

@@ -184,7 +184,7 @@ fn many_data_without_noise_stay() {
 
 #[test]
 fn many_data_with_normal_noise() {
-    // Of a tolerance of two and a half deviations some data are beyond; knots follow them.
+    // At a tolerance of two and a half deviations some data are beyond; knots follow them.
     let mut random = Lcg::new(3);
     let mut normal = || (0..12).map(|_| random.unit()).sum::<f64>() * 1e-3;
     let mut points = waves(2000);

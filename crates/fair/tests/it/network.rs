@@ -267,7 +267,7 @@ fn surfaces_keep_conditions() {
 }
 
 /// Offsets of a hull at half stations and uneven waterlines, read to a centimetre: nearer to the
-/// truth than the data, and without new turns. Index differences go the other way.
+/// truth than the data, and without new turns. Index differences give the opposite.
 #[test]
 fn uneven_stations_and_waterlines() {
     let xs = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0, 9.5, 10.0];
@@ -547,7 +547,7 @@ fn derivatives_of_the_fairest_network_are_right_or_refused() {
                 let own = network(&data, radius);
                 own.toward(Measure::Third, Goal::Fairest, Vec::new(), 1e-13).unwrap().0.points
             };
-            // Of flat optima the last digits are the solver's, and larger steps meet limits.
+            // For flat optima the last digits depend on the solver, and larger steps meet limits.
             let off = |h: f64| {
                 let (low, high) = (at(-h), at(h));
                 let one = |i: usize| {

@@ -45,7 +45,7 @@ fn the_optimum_row_of_the_table() {
     }
 }
 
-/// Long ranked steps and the solver are two ways to one place.
+/// Long sequences of ranked steps and the solver have the same result.
 #[test]
 fn steps_converge_to_the_optimum() {
     for f in [f2a(), f2b(), f3()] {
@@ -221,8 +221,8 @@ fn conditions_hold_and_contradictions_are_named() {
     assert!(result.certificate.value > best(&job, Measure::Second).certificate.value);
 }
 
-/// Two points at one place of the curve contradict each other however near they are, and the
-/// numbers that come of it are never handed out.
+/// Two different points at one parameter of the curve are a contradiction, however close they are,
+/// and give no result.
 #[test]
 fn no_contradiction_passes() {
     for f in [f2a(), f2b(), f3()] {

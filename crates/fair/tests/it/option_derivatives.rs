@@ -5,7 +5,7 @@ use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{CallError, CurveRef, Scalar, Value};
 use moldloft_testing::Random;
 
-/// An option with numbers of which one may be a parameter.
+/// An option with numbers, one of which may be a parameter.
 #[derive(Clone, Debug)]
 enum Given {
     Text(&'static str),
@@ -49,7 +49,8 @@ struct Case {
     points: Vec<Vec3<f64>>,
     tolerance: f64,
     options: Vec<(&'static str, Given)>,
-    /// The point that moves, and the option of which a number is a parameter, and which number.
+    /// The point that moves, the option with a parameter among its numbers, and the index of that
+    /// number.
     moving: usize,
     seeded: Option<(usize, usize)>,
 }

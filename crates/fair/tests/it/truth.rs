@@ -21,7 +21,7 @@ impl Lcg {
 pub const SHAPES: [&str; 6] = ["clothoid", "naca0012", "hollow", "helix", "ellipse", "sac"];
 pub const SPACINGS: [&str; 4] = ["even", "half", "jitter", "random"];
 
-/// A clothoid by the trapezoidal rule on a fine grid, linear between its places.
+/// A clothoid by the trapezoidal rule on a fine grid, linear between its points.
 struct Clothoid(Vec<[f64; 2]>);
 
 impl Clothoid {
@@ -279,7 +279,7 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
     }
     all.sort_by(f64::total_cmp);
     let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
-    // Of 960 draws 0.24 and 0.43.
+    // Over 960 draws: 0.24 and 0.43.
     assert!(at(0.5) < 0.27 && at(0.95) < 0.48, "median {}, 95 % {}", at(0.5), at(0.95));
     // More than two pieces beyond the truth are rare.
     assert!(20 * more <= all.len(), "{more} of {}", all.len());
@@ -317,7 +317,7 @@ fn parameters_by_curvature_turn_scale_and_are_the_datas() {
             let turned: Vec<_> = points.iter().map(place).collect();
             assert!(close(&own(&turned, 2e3), &at));
             if closed {
-                // From another point on, and the other way round.
+                // Starting at another point, and in reverse order.
                 let first = 7;
                 let from: Vec<_> =
                     (0..n as usize).map(|k| points[(k + first) % n as usize]).collect();
@@ -429,7 +429,7 @@ fn results_turn_and_scale_with_the_data() {
 
 #[test]
 fn third_derivatives_add_no_bends() {
-    // Two straight runs that a rounding joins, read with noise: a place for false bends.
+    // Two straight lines joined by a rounding, read with noise: prone to false bends.
     let mut g = Lcg::new(11);
     for round in 0..6 {
         let t = stations(&mut g, 40);

@@ -35,7 +35,7 @@ struct PlaneBound<T> {
 }
 
 impl<T: Real> Spanning<T> {
-    /// Of an intersection of primitives; nothing for an empty one.
+    /// From an intersection of primitives; empty for an empty one.
     fn of(piece: &[Primitive<T>]) -> Result<Self, FieldError> {
         let mut planes = Vec::new();
         let mut round = Vec::new();
@@ -77,7 +77,7 @@ impl<T: Real> Spanning<T> {
         }
     }
 
-    /// Of a cylinder or cone between planes across its axis.
+    /// From a cylinder or cone between planes normal to its axis.
     fn of_revolution(
         axis: &Axis<T>,
         planes: &[PlaneBound<T>],

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 /// Edges by the names of their two faces; `None`: all.
 pub type Edges<'a> = Option<&'a [[String; 2]]>;
 
-/// Boxes in which an edge is looked for.
+/// Maximum number of boxes in the search for an edge.
 const MOST_BOXES: usize = 600;
 /// Distance of probes beside an edge, and of its points within the faces, relative to the box.
 const BESIDE: f64 = 1e-7;

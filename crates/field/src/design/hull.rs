@@ -37,7 +37,7 @@ pub(super) fn outermost<T: Real>(balls: &[HullBall<T>]) -> Vec<HullBall<T>> {
     let hidden = |i: usize| {
         let inside = |j: usize| {
             let apart = plain[i].centre.distance(plain[j].centre) + plain[i].radius;
-            // Of equal ones the first stays.
+            // The first of equal ones is kept.
             let equal = (plain[i].radius - plain[j].radius).abs() <= slack;
             j != i && apart <= plain[j].radius + slack && (j < i || !equal)
         };
@@ -293,7 +293,7 @@ pub(super) fn of_balls<T: Real>(balls: &[HullBall<T>]) -> Result<Set<T>, FieldEr
     if all.is_nothing() { Err(flat) } else { Ok(all) }
 }
 
-/// Discs across one axis, of which those at the low end have the same outline as those at the high end.
+/// Discs normal to one axis, with the same outline at both ends.
 pub(super) struct Prism<T> {
     pub(super) axis: Vec3<T>,
     /// A point of the plane of each end.
@@ -328,7 +328,7 @@ impl<T: Real> Prism<T> {
                     let to = plain[m].centre - plain[i].centre;
                     let over = to.dot(n) + plain[m].radius - plain[i].radius;
                     let t = to.dot(u) / length;
-                    // Of discs along one side the outer two have it.
+                    // Of several discs along one side the outer two have it.
                     over < -slack || over <= slack && (-slack..=length + slack).contains(&t)
                 };
                 if (0..plain.len()).all(behind) {

@@ -20,11 +20,12 @@ use std::sync::Arc;
 
 /// A set may have this many terms.
 const MOST_TERMS: usize = 512;
-/// Points of the box around a body, and of the space about it, in which terms are looked for first.
+/// Number of points of the box around a body, and of the space about it, in which terms are first
+/// searched.
 const SAMPLES: [usize; 2] = [3072, 1024];
-/// Boxes in which a term is looked for then.
+/// Maximum number of boxes in the following search for a term.
 const MOST_BOXES: usize = 1500;
-/// A point is in a term when it is deeper in it than this share of the box.
+/// A point is in a term if it is deeper in it than this, relative to the box.
 const DEEP: f64 = 1e-9;
 
 /// Intersections of literals; a literal is the number of a surface and its solid side: 2 k for the
@@ -33,7 +34,7 @@ type LiteralTerm = Vec<u32>;
 
 /// The terms of a body.
 pub(super) struct BodyTerms<T: Real> {
-    /// Of every literal the half-space, with the attributes of the leaf that it comes from.
+    /// For every literal the half-space, with the attributes of its leaf.
     literals: Vec<Option<Leaf<T>>>,
     pub(super) terms: Vec<LiteralTerm>,
     /// True if parts far outside the box around the body may be missing.
@@ -163,7 +164,7 @@ struct TermSpace {
     target: Set,
     /// The literals as sets.
     literals: Vec<Set>,
-    /// Of every literal the sample points in it, strictly.
+    /// For every literal the sample points strictly inside.
     inside: Vec<SampleBits>,
     /// The sample points strictly outside of the target.
     missed: SampleBits,
@@ -191,7 +192,7 @@ fn about(set: &Set) -> Box3 {
     widened(&Box3::around(points), 1.0)
 }
 
-/// A box with that share of its diagonal more on every side.
+/// A box extended on every side by that fraction of its diagonal.
 fn widened(over: &Box3, share: f64) -> Box3 {
     let more = share * over.diagonal();
     let more = Vec3::of(more, more, more);

@@ -1,8 +1,9 @@
 //! Jumps of functions that are not faces of the body: the cut of `atan2` and the steps of
 //! `remainder`.
 //!
-//! In a box across one jump a leaf is `f1` on one side of it and `f2` on the other, both smooth: the body there is
-//! `(c & f1) | (-c & f2)` with the jump's place `c`. A jump on both sides of which the body is the same is then no face of it.
+//! In a box across one jump a leaf is `f1` on one side of it and `f2` on the other, both smooth:
+//! the body there is `(c & f1) | (-c & f2)` with an expression `c` that is zero at the jump. A jump
+//! with the same body on both sides is then not a face.
 
 use crate::expr::algebra::Unary;
 use crate::expr::interval::Interval;
@@ -26,7 +27,7 @@ impl ExprTape<f64> {
         self.code.iter().any(jumps)
     }
 
-    /// The first jump inside of a leaf, with its place among the instructions.
+    /// The first jump inside a leaf, with its index among the instructions.
     fn jump(&self, ranges: &[Interval]) -> Option<(usize, FieldJump)> {
         let of = |k: u32| ranges[k as usize];
         self.code.iter().enumerate().find_map(|(k, code)| match *code {

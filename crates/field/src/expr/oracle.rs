@@ -36,7 +36,8 @@ pub trait Oracle<T: Real>: Field<T> {
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }
 
-/// A plain primitive among numbers with derivatives: it depends on no parameter, but its place may.
+/// A plain primitive among numbers with derivatives: it depends on no parameter, but its position
+/// may.
 pub struct Constant(pub Arc<dyn Oracle<f64>>);
 
 /// True when a point carries no derivatives.

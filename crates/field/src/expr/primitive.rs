@@ -204,7 +204,7 @@ impl<T: Real> Primitive<T> {
         Affine::identity().rows.map(|n| Self::linear(n, T::zero()))
     }
 
-    /// `normal` . X + `offset`, of which the normal need not be a unit vector.
+    /// `normal` . X + `offset`; the normal need not be a unit vector.
     pub fn linear(normal: Vec3<T>, offset: T) -> Self {
         let constant = normal.re() == Vec3::zero() && (0..3).all(|k| normal[k].is_constant());
         if constant { Self::real(offset) } else { Self::from_op(Op::Plane { normal, offset }) }
@@ -512,7 +512,7 @@ impl<T: Real> Primitive<T> {
 }
 
 impl Primitive<f64> {
-    /// The same function among numbers with derivatives, on no parameter of which it depends.
+    /// The same function among numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Primitive<S> {
         self.rebuilt(
             &|c| S::from(c),

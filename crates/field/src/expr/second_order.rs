@@ -25,7 +25,7 @@ fn is_zero(x: Interval) -> bool {
     x.low == 0.0 && x.high == 0.0
 }
 
-/// A product of which zero times anything is zero.
+/// A product in which zero times anything is zero.
 fn product(a: Interval, b: Interval) -> Interval {
     if is_zero(a) || is_zero(b) { Interval::ZERO } else { a * b }
 }

@@ -38,7 +38,7 @@ pub(crate) enum ExprInstruction<T> {
     Atan2(u32, u32),
     Div(u32, u32),
     Mod(u32, u32),
-    /// A minimum of which only the sign and, near zero, the value matter: a union of sets.
+    /// A minimum whose sign and, near zero, value matter only: a union of sets.
     Union(u32, u32),
     /// Likewise a maximum: an intersection of sets.
     Common(u32, u32),
@@ -316,7 +316,7 @@ impl<T: Real> ExprTape<T> {
         Self { code, leaf, register, registers: registers as usize, users }
     }
 
-    /// A tape of other instructions, the last of which is its value.
+    /// A tape of other instructions; the last is its value.
     pub(crate) fn with_code(&self, code: Vec<ExprInstruction<T>>, leaf: Vec<u32>) -> Self {
         Self::with(code, leaf, self.users.clone())
     }
@@ -424,7 +424,8 @@ impl<T: Real> ExprTape<T> {
         self.code.iter().any(|c| matches!(c, ExprInstruction::User(_)))
     }
 
-    /// As [`ExprTape::eval`] at many places, instruction by instruction: a column of values for each.
+    /// As [`ExprTape::eval`] at many points, instruction by instruction: a column of values for
+    /// each.
     pub(crate) fn eval_many<A: Algebra<T>>(&self, at: &[A::At]) -> Vec<Vec<A>> {
         let mut columns: Vec<Vec<A>> = Vec::with_capacity(self.code.len());
         for code in &self.code {

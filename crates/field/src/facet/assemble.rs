@@ -1,4 +1,4 @@
-//! From blocks to triangles: one quadrilateral round every crossed edge.
+//! Triangles from blocks: one quadrilateral around every crossed edge.
 //!
 //! The vertices of the four cells around an edge are in their cells, so the segment between two of
 //! them passes through the common face of the cells. The tetrahedra of the edge and each such
@@ -378,7 +378,7 @@ impl<'a> Assembly<'a> {
         let (at, axis) = place(edge);
         let ends = [place(edge), place(next)].map(|(at, axis)| self.crossing(near, at, axis));
         let [Some(p), Some(q)] = ends else { unreachable!("edges of a piece are crossed") };
-        // The polygon round the first crossing runs from here to there, or back.
+        // The polygon around the first crossing has this side, or its reverse.
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         let turn = |cell: [usize; 3]| {
             ROUND.iter().position(|below| [at[b] - cell[b], at[c] - cell[c]] == *below)

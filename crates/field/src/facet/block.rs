@@ -241,14 +241,15 @@ const NEAR: f64 = 1e-13;
 /// An edge on which the set changes sign, and the part of it where that is.
 struct EdgeBracket {
     ends: [Vec3; 2],
-    /// The part, as shares of the edge, and the values at its ends; that of an end that stays is halved.
+    /// The part, as fractions of the edge, and the values at its ends; that of a retained end is
+    /// halved.
     part: [f64; 2],
     values: [f64; 2],
     /// The end kept in the last step: 0 or 1, -1 for neither.
     stayed: i8,
     /// A value as small as this is zero.
     small: f64,
-    /// The share that is looked at.
+    /// The tested fraction.
     at: f64,
 }
 

@@ -28,21 +28,21 @@ const MOST: usize = 1000;
 const DEPTH: u32 = 5;
 /// … in at most this many parts.
 const PARTS: usize = 20_000;
-/// Of more pairs that may touch than this it is not proved whether they do.
+/// With more pairs that may touch, contact is not proved.
 const PAIRS: usize = 400;
 /// The cells by which it is proved that two sets share no volume.
 const CELLS: usize = 3000;
 /// Maximum number of points at which the contact of two sets is examined.
 const PLACES: usize = 64;
-/// A common point is sought in this many steps, and known to this part of the box.
+/// Maximum number of steps to a common point, and its accuracy relative to the box.
 const STEPS: usize = 100;
 const SAME: f64 = 1e-10;
 /// Points round a common one that are on both surfaces show a shared face if they are not on one line: their
 /// parallelogram is this part of the square of the radius.
 const AROUND: usize = 64;
 const WIDE: f64 = 0.1;
-/// Of sets without a point in common on their surfaces it is not proved that they share no volume unless the bound is
-/// below this part of the box.
+/// Bound, relative to the box, below which sets without a common point on their surfaces are proved
+/// to share no volume.
 const SHARED: f64 = 1e-9;
 /// Triangles that are through others by this part of a cell are on them, to rounding.
 const TOUCH: f64 = 1e-9;
@@ -72,7 +72,7 @@ fn operands(set: &Set, union: bool) -> Vec<Set> {
     out
 }
 
-/// A set as an intersection, one of whose factors is a union: the ways to take it as a union.
+/// A set as an intersection, one of whose factors is a union: a view of it as a union.
 struct UnionView {
     factors: Vec<Set>,
     /// Index of the factor that is the union.
@@ -94,7 +94,7 @@ impl UnionView {
         unions.map(view).filter(|v| (2..=MOST).contains(&v.parts.len())).collect()
     }
 
-    /// The set with one part of the union, or several, in its place.
+    /// The set with one part of the union, or several, instead of the union.
     fn with(&self, part: Set) -> Set {
         let mut part = Some(part);
         let factor = |(k, f): (usize, &Set)| match k == self.at {
@@ -273,7 +273,7 @@ fn share_face(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     })
 }
 
-/// Sets that share no volume, and the places where they touch.
+/// Sets without common volume, and their contacts.
 pub(super) struct Parted {
     pub(super) sets: Vec<Set>,
     pub(super) contacts: Vec<Vec3>,

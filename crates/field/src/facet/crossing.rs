@@ -5,8 +5,8 @@ use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
 use smallvec::SmallVec;
 
-/// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
-/// that touch to rounding only do not count. With `flagged`, only pairs of which one is flagged.
+/// Intersecting pairs of faces of a triangle mesh, in order, by the signs of volumes; pairs that
+/// touch within rounding do not count. With `flagged`, only pairs with a flagged one.
 ///
 /// # Example
 /// ```

@@ -55,7 +55,7 @@ struct CutOffRoom {
     solver: Solver,
     /// Triangles in whose cells a primitive may decide that no corner is on.
     hidden: FxHashSet<u32>,
-    /// Triangles by the places of their cells in the block.
+    /// Triangles by the positions of their cells in the block.
     placed: Vec<(u16, u32)>,
     cells: Vec<ShownCell>,
     ranges: Vec<Interval>,

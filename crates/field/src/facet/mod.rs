@@ -1,4 +1,4 @@
-//! Facets: the boundary of a set as triangles, each of which knows its primitive.
+//! Facets: the boundary of a set as triangles with their primitives.
 //!
 //! `set & box -> division by ranges -> blocks of cells -> a vertex per piece of surface -> triangles`
 //!
@@ -379,7 +379,7 @@ fn shortest(over: &Box3) -> (usize, f64) {
     (axis, side(axis))
 }
 
-/// From which depth on the cells of a box of that size are no thicker than one.
+/// Minimum depth at which the cells of a box of that size are not thicker than one.
 fn least_depth(size: f64, over: &Box3) -> u32 {
     halvings(size, shortest(over).1)
 }
@@ -396,7 +396,7 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
     capped.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0)
 }
 
-/// Facets of more cells than this are not made again with the grid in other places.
+/// Facets of more cells than this are not repeated with a shifted grid.
 const FEW_CELLS: usize = 60_000;
 /// The same of those for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
@@ -541,7 +541,7 @@ fn on_grid(
     })
 }
 
-/// The cells of doubtful vertices of which a triangle does cut another.
+/// Cells of doubtful vertices with an intersecting triangle.
 fn undecided(grid: &Grid, mesh: &Mesh, doubtful: &[(u32, [usize; 3])]) -> Vec<Box3> {
     let positions = mesh.positions();
     let faces = mesh.faces();

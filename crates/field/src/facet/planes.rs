@@ -25,7 +25,7 @@ use std::sync::Arc;
 const ON: f64 = 1e-11;
 /// Distance relative to the box below which two planes cannot be distinguished over a polygon.
 const NEAR: f64 = 1e-8;
-/// Corners within this share of the box are one.
+/// Distance of corners, relative to the box, within which they coincide.
 const ONE_POINT: f64 = 1e-10;
 /// Distance of the probes beside each triangle that check whether it is a face of the body,
 /// relative to the box.

@@ -342,7 +342,7 @@ impl Rebuilder<'_> {
                 at = match next[..] {
                     [one] => one,
                     _ => {
-                        // The first one clockwise from the way back.
+                        // The first one clockwise from the reverse direction.
                         let p = self.at(to);
                         let n = tracer.normal(leaf, p)?;
                         let back = self.at(from) - p;
@@ -474,7 +474,7 @@ impl Rebuilder<'_> {
         (all && closed).then_some(())
     }
 
-    /// Puts new triangles in the place of a region if they fit.
+    /// Replaces a region by new triangles if they fit.
     fn take(
         &mut self,
         region: &[u32],

@@ -71,7 +71,7 @@ impl<'a> Tapes<'a> {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    /// Those of some blocks that hold surface.
+    /// Tapes of some blocks with surface.
     pub(super) fn those(
         &self,
         which: impl Fn(&ExprTape<f64>) -> bool,
@@ -237,7 +237,7 @@ impl Refiner<'_> {
         }
     }
 
-    /// The edge's triangles, that in which it runs from `a` to `b` first, with their tips.
+    /// The edge's triangles, first the one with the direction from `a` to `b`, with their tips.
     fn beside(&self, (a, b): (u32, u32)) -> Option<[(u32, u32); 2]> {
         let pair = self.edges.get(&(a, b))?;
         let [s, t] = pair[..] else { return None };
@@ -284,7 +284,7 @@ impl Refiner<'_> {
             return false;
         }
         let point = placed.point;
-        // Another primitive may cut the place off.
+        // Another primitive may cut off the point.
         let slope = self.solver.gradient(self.leaves[on[0] as usize].primitive.tape(), point).slope;
         if self.solver.value(self.tapes.at(point), point).abs()
             > 10.0 * self.rule.goal * slope.norm()
@@ -488,7 +488,7 @@ pub(super) fn refine(
     Ok(cut_off)
 }
 
-/// Points in bins as wide as the reach in which they are looked for.
+/// Points in bins as wide as the search radius.
 struct PointsByPlace {
     reach: f64,
     bins: FxHashMap<[i64; 3], Vec<Vec3>>,
@@ -563,7 +563,7 @@ impl Refiner<'_> {
     }
 }
 
-/// All passes. Where changed triangles intersect others, that part of the surface is repeated with
+/// All passes. If changed triangles intersect others, that part of the surface is repeated with
 /// their surroundings locked, and restored if that does not help. Nothing changes beside `kept`
 /// vertices.
 fn attempt(

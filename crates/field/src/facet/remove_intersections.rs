@@ -27,7 +27,7 @@ const ROUNDS: usize = 16;
 /// its crossings.
 const WAYS: u8 = 5;
 
-/// Pairs of triangles that cut each other, of which one has a doubtful vertex.
+/// Intersecting pairs of triangles, one of which has a doubtful vertex.
 pub(super) fn crossing(
     positions: &[Vec3],
     count: usize,
@@ -99,7 +99,7 @@ pub(super) fn assembled(
         let mut near: FxHashSet<u32> = cut.filter(|v| *v < assembly.count).collect();
         let doubtful =
             |v: &u32| *v < assembly.count && made.doubtful.binary_search_by_key(v, |d| d.0).is_ok();
-        // Of each pair the vertex that is farthest from its crossings: the others need not move.
+        // From each pair the vertex that is farthest from its crossings: the others need not move.
         let mut chosen: Vec<u32> = Vec::new();
         for pair in pairs {
             let all = pair.into_iter().flat_map(corners).filter(doubtful);

@@ -181,7 +181,7 @@ impl Sharpener<'_, '_> {
         if placed.residual > goal {
             return None;
         }
-        // Another primitive may cut the place off.
+        // Another primitive may cut off the point.
         let point = placed.point;
         let tape = self.folds.leaves[on[0] as usize].primitive.tape();
         let slope = self.folds.solver.gradient(tape, point).slope.norm();
@@ -189,7 +189,7 @@ impl Sharpener<'_, '_> {
         (value.abs() <= 10.0 * goal * slope).then_some(point)
     }
 
-    /// The edge runs from the first vertex of the sector to its last.
+    /// The edge connects the first vertex of the sector with its last.
     fn along(&mut self, v: u32, sector: &Sector, beside: u32) -> bool {
         let (p, q) = (sector.rim[0], sector.rim[sector.rim.len() - 1]);
         let [a, b] = [p, q].map(|x| self.folds.at(x));
@@ -225,7 +225,7 @@ impl Sharpener<'_, '_> {
         self.take(best)
     }
 
-    /// The edge runs over a new vertex.
+    /// The edge has a new vertex.
     fn over(&mut self, v: u32, sector: &Sector, beside: [u32; 2]) -> bool {
         let mut on = Surfaces::from_slice(&[beside[0], beside[1], sector.leaf]);
         on.sort_unstable();

@@ -188,7 +188,7 @@ fn behind(
     Ok(Some((facets, crate::facet::info(&sheet))))
 }
 
-/// A solid of which some faces are a sheet.
+/// A solid with some faces that form a sheet.
 #[derive(Clone, Debug)]
 pub struct BehindSheet {
     /// The closed facets of the solid.
@@ -199,7 +199,8 @@ pub struct BehindSheet {
     pub info: PatchInfo,
 }
 
-/// For each sheet of a set, a solid of which it is the faces on one surface: by the others its border is known.
+/// For each sheet of a set, a solid whose faces on one surface are the sheet; its other faces
+/// determine the border.
 ///
 /// # Errors
 /// As [`facet`].

@@ -163,7 +163,7 @@ impl Simplifier<'_> {
         })
     }
 
-    /// The cheapest way for a vertex to go.
+    /// The collapse of a vertex with the least error.
     fn candidate(&self, v: u32) -> Option<EdgeCollapse> {
         if self.stars[v as usize].is_empty() {
             return None;

@@ -1,8 +1,8 @@
-//! Triangles without area: three vertices in a row on a straight edge, or two in one place.
+//! Triangles without area: three vertices on a straight edge, or two coincident ones.
 //!
-//! The polygon round an edge of the grid may have three of its vertices on one edge of the body. The triangle between
-//! these holds nothing, and its longest side is turned towards the triangle beyond; two vertices in one place become one.
-//! Neither changes the surface by more than rounding.
+//! The polygon around an edge of the grid may have three of its vertices on one edge of the body.
+//! The triangle between these has no area, and its longest side is flipped with the triangle
+//! beyond; coincident vertices are merged. Neither changes the surface by more than rounding.
 
 use super::assemble::Assembled;
 use moldloft_mesh::Mesh;
@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// A triangle is a sliver when its height is this part of its longest side: to rounding it is a line. Others have 1e-4
 /// and more.
 const FLAT: f64 = 1e-9;
-/// Two vertices are in one place when they are this part of the triangle's longest side apart.
+/// Distance of two vertices, relative to the triangle's longest side, within which they coincide.
 const ONE: f64 = 1e-8;
 /// Maximum number of rounds; an edge flip rarely makes other triangles flat.
 const ROUNDS: usize = 6;
@@ -196,7 +196,7 @@ pub(super) fn remove(made: &mut Assembled) {
             let sides = [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3]));
             let longest = (0..3).fold(0, |a, k| if sides[k] > sides[a] { k } else { a });
             let shortest = (0..3).fold(0, |a, k| if sides[k] < sides[a] { k } else { a });
-            // From the end of the longest side over the corner between to its start.
+            // From the end of the longest side via the corner between to its start.
             let row = [t[(longest + 1) % 3], t[(longest + 2) % 3], t[longest]];
             let done = if sides[shortest] <= ONE * sides[longest] {
                 let (a, b) = (t[shortest], t[(shortest + 1) % 3]);

@@ -22,7 +22,7 @@ const MOST_SEARCHES: usize = 60;
 /// only.
 struct CrossingRun {
     leaf: u32,
-    /// Places in the ring.
+    /// Indices in the ring.
     places: std::ops::Range<usize>,
     /// Its change into the next.
     change: Option<Vec3>,
@@ -201,7 +201,7 @@ impl Splitting<'_, '_, '_> {
                 used[vertices[nearest] as usize] = true;
             }
         }
-        // A vertex at the end of the tree that no crossing has would hang in the air.
+        // A vertex at the end of the tree without a crossing would be unconnected.
         let inner = |v: usize| {
             let branches =
                 (0..part.parent.len()).filter(|&k| k != v && part.parent[k] as usize == v).count();
@@ -215,7 +215,7 @@ impl Splitting<'_, '_, '_> {
     }
 }
 
-/// Two parts of a ring as one, which are joined along the cut from one run to another.
+/// Two parts of a ring merged along the cut from one run to another.
 fn joined(mut a: RingPart, mut b: RingPart, [i, j]: [usize; 2]) -> RingPart {
     let shift = a.vertices.len() as u8;
     for (_, vertices) in &mut b.of_run {
@@ -236,7 +236,7 @@ fn joined(mut a: RingPart, mut b: RingPart, [i, j]: [usize; 2]) -> RingPart {
             vertices.extend(last.iter().copied());
         }
     }
-    // The tree of b hangs from the vertex of a that is beside it, by b's vertex there.
+    // The tree of b is connected to the vertex of a beside it by b's vertex there.
     let beside = a.of_run.iter().find(|r| r.0 == i).and_then(|r| {
         let k = r.1.iter().position(|v| *v == touching)?;
         r.1.get(k + 1).copied()

@@ -11,11 +11,11 @@ use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
-/// Sectors are looked at this part of a cell away from the line, …
+/// Distance from the line at which sectors are tested, in cells, …
 const ASIDE: f64 = 1e-5;
 /// … where surfaces meet at an angle of more than this.
 const TOUCH: f64 = 1e-2;
-/// Lines that leave a corner are looked at this part of a cell away from it.
+/// Distance from a corner at which its lines are tested, in cells.
 const BEGIN: f64 = 1e-3;
 /// Corners of the same surfaces nearer than this part of a cell are one.
 const ONE: f64 = 1e-6;
@@ -152,7 +152,8 @@ impl<'a> Tracer<'a> {
         Some(self.nodes.len() - 1)
     }
 
-    /// A point amid an edge, from which it is followed both ways, unless it is on one that is known.
+    /// A point inside an edge, from which it is followed in both directions, unless it is on a
+    /// known one.
     pub(super) fn amid(&mut self, point: Vec3, pair: [u32; 2]) {
         let known = |e: &TracedEdge| {
             let own = [e.sides[0].min(e.sides[1]), e.sides[0].max(e.sides[1])];

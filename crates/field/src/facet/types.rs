@@ -53,7 +53,7 @@ pub(super) struct EdgeCrossing {
     pub(super) at: [u8; 3],
     /// Axis of the edge.
     pub(super) axis: u8,
-    /// True when the edge runs from solid to air.
+    /// True if the edge points from solid to air.
     pub(super) outward: bool,
     /// The leaf that decides there.
     pub(super) leaf: u32,
@@ -129,7 +129,7 @@ pub(super) struct Several {
 /// The crossings of a piece of surface, with their edges.
 pub(super) type Ring<'c> = SmallVec<[(usize, &'c EdgeCrossing); 12]>;
 
-/// The vertices of a piece of surface and how they hang together.
+/// The vertices of a piece of surface and their connections.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
     pub(super) vertices: SmallVec<[(PlacedVertex, Surfaces); 2]>,
@@ -154,7 +154,7 @@ impl Split {
             way
         };
         let (mut here, mut there) = (up(from), up(to));
-        // Both ways end at the first vertex; the last that they share is where they part.
+        // Both paths end at the first vertex; the last common vertex is where they part.
         let mut meeting = 0;
         while let (Some(&a), Some(&b)) = (here.last(), there.last()) {
             if a != b {

@@ -110,7 +110,7 @@ pub(super) fn unfold(
 ) -> Option<FxHashSet<u32>> {
     let of_pairs: Vec<u32> = pairs.iter().flatten().flat_map(|&t| made.triangles[t].1).collect();
     let mut folds = FoldedRegion::about(made, leaves, &of_pairs, RINGS);
-    // A pair beside which nothing changed since it was looked at is left.
+    // A pair is skipped if nothing beside it changed since its last test.
     let mut looked: Vec<Option<usize>> = vec![None; pairs.len()];
     for _ in 0..ROUNDS {
         let before = folds.changes;
@@ -217,8 +217,8 @@ impl<'a> FoldedRegion<'a> {
         folds
     }
 
-    /// Leaves out the triangles that went, and says of which vertices nothing is known any more, if anything changed: by
-    /// construction nothing is known of new triangles.
+    /// Removes the deleted triangles, and returns the vertices with outdated data, if anything
+    /// changed; new triangles have none by construction.
     pub(super) fn done(self, grid: &Grid) -> Option<FxHashSet<u32>> {
         let Self { made, gone, touched, .. } = self;
         if touched.is_empty() {
@@ -328,7 +328,7 @@ impl<'a> FoldedRegion<'a> {
         let mut found = Vec::new();
         for bin in bins(reach, self.size) {
             for (t, around) in self.bins.get(&bin).into_iter().flatten() {
-                // Those of several bins are found in the first.
+                // Pairs of several bins are counted in the first.
                 let first = || bin_of(common_low(reach, around), self.size) == bin;
                 if meet(reach, around) && first() && !but(*t) {
                     found.push((*t, self.placed(self.made.triangles[*t].1)));
@@ -393,7 +393,7 @@ impl<'a> FoldedRegion<'a> {
         self.normals.retain(|k, _| k.0 != v);
     }
 
-    /// The triangle in which an edge runs from `a` to `b`, and its third corner.
+    /// The triangle with the directed edge from `a` to `b`, and its third corner.
     pub(super) fn beside(&self, a: u32, b: u32) -> Option<(usize, u32)> {
         let mut found = None;
         for &t in self.round.get(&a)? {
@@ -571,7 +571,7 @@ impl<'a> FoldedRegion<'a> {
                 for k in 0..3 {
                     let (a, b) = (t[k], t[(k + 1) % 3]);
                     edges.push((a.min(b), a.max(b)));
-                    // Those of the triangle beyond.
+                    // Sides of the triangle beyond.
                     if let Some((_, c)) = self.beside(b, a) {
                         edges.extend([(a.min(c), a.max(c)), (b.min(c), b.max(c))]);
                     }

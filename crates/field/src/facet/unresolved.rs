@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// A cell is halved this often to prove it.
 const DEPTH: u32 = 4;
-/// The most parts of cells of a block that are looked at.
+/// Maximum number of parts of cells examined per block.
 const MOST: usize = 3000;
 /// Jumps of one cell that are taken apart.
 const MOST_JUMPS: usize = 3;
@@ -97,7 +97,8 @@ impl Quiet<'_> {
         let whole = self.sides([0; 3], SIDE);
         let mut open = Vec::new();
         let mut work = UnresolvedSearch { room, left: MOST, open: &mut open };
-        // Of a union that is air at all corners every operand is; of an intersection that is solid likewise.
+        // A union that is air at all corners has only such operands; likewise an intersection that
+        // is solid.
         let error = match unions && common {
             true => f64::INFINITY,
             false => interpolation_error(self.tape, &whole, self.step, &mut work.room.forms),
@@ -326,7 +327,8 @@ pub(super) fn not_shown(
             let away = u.witness - nearest(u.witness, [a, b, c]);
             let far = away.norm();
             let side = (b - a).cross(c - a).dot(away);
-            // Of triangles that share the nearest point that which is faced most squarely says the side.
+            // Of triangles with the same nearest point the one with the most frontal view
+            // determines the side.
             let size = (b - a).cross(c - a).norm() * far;
             let square = if size > 0.0 { side / size } else { 0.0 };
             let tied = far <= best.0 * (1.0 + 1e-9);

@@ -59,7 +59,8 @@ impl Solver {
         if first.residual <= goal {
             return first;
         }
-        // At the cell's boundary the free step may run along it in vain: there, search within it.
+        // At the cell's boundary the free step may be along it without progress: then the search
+        // continues within it.
         let second = self.search(&tapes, start, cell, goal, true);
         if second.residual < first.residual { second } else { first }
     }

@@ -1,4 +1,4 @@
-//! Wires: the edges between two sheets as polylines that run along the curve of both, forward.
+//! Wires: the edges between two sheets as polylines along their common curve, in one direction.
 //!
 //! Cells place their vertices independently: those of two neighbours may be in reversed order along
 //! an edge, and a vertex of a cell with more surfaces than it can separate is on none of them. That

@@ -513,7 +513,8 @@ impl<T: Real> Build<T> for FirstHit<T> {
         let ray = foot::ray(start, direction, length);
         let hit = plain.first_hit(&ray).ok_or_else(none)?;
         let leaves = set.leaves();
-        // With derivatives, equal primitives may count twice: the one at this place of the plain set.
+        // With derivatives, equal primitives may occur twice: the one with this index in the plain
+        // set.
         let wanted = &plain.leaves()[hit.leaf].primitive;
         let leaf = leaves.iter().find(|l| l.primitive.re().same(wanted));
         let t = leaf.map(|l| foot::along(l.primitive.of_sheet(), start, direction, hit.t));

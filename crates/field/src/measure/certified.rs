@@ -56,7 +56,7 @@ pub struct Certified {
     leaves: Vec<Leaf>,
 }
 
-/// A cell of which only part is solid.
+/// A partly solid cell.
 struct Open {
     sides: [Interval; 3],
     tape: Arc<ExprTape<f64>>,

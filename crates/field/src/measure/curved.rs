@@ -78,7 +78,7 @@ fn middle(
 }
 
 impl<'a> Curved<'a> {
-    /// Of triangles, closed or open.
+    /// From triangles, closed or open.
     pub fn new(flat: &TriangleView<'a>) -> Self {
         let TriangleView { positions, faces, .. } = *flat;
         let mut leaves = vec![0; faces.len()];

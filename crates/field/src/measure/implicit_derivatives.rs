@@ -23,13 +23,13 @@ pub struct Lifter<T: Real> {
 }
 
 impl<T: Real> Lifter<T> {
-    /// Of a set, within a box whose corners move as given.
+    /// For a set, within a box whose corners have derivatives.
     pub fn new(set: &Set<T>, corners: Option<[Vec3<T>; 2]>) -> Self {
         Self::of(set, &set.re(), corners)
     }
 
-    /// As [`Lifter::new`], given the set in plain numbers of which facets were made. Primitives from outside
-    /// are identified by their identity, so they must be those.
+    /// As [`Lifter::new`], given the plain set from which facets were made. External primitives are
+    /// identified by identity, so they must be the same.
     pub fn of(set: &Set<T>, plain: &Set<f64>, corners: Option<[Vec3<T>; 2]>) -> Self {
         let pairs = plain.traversal().into_iter().zip(set.traversal()).collect();
         Self { pairs, corners }

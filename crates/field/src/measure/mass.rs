@@ -73,7 +73,7 @@ pub struct IntegralOptions {
     pub depth: Option<u32>,
     /// Maximum proved distance of the volume from its best value.
     pub accuracy: Option<f64>,
-    /// The most cells by which that accuracy is sought; by default 400 000.
+    /// Maximum number of cells for that accuracy; default 400 000.
     pub cells: Option<usize>,
     /// Agreement of the volumes of two levels of facets; default: 1e-8 of the box's volume.
     pub agreement: Option<f64>,

@@ -9,7 +9,7 @@ use moldloft_num::{Real, Vec3};
 pub struct Moments<N> {
     /// The point about which they are; it depends on nothing.
     pub about: Vec3,
-    /// Those of 1; x, y, z; xx, yy, zz; xy, yz, zx.
+    /// Integrals of 1; x, y, z; xx, yy, zz; xy, yz, zx.
     pub terms: [N; 10],
 }
 
@@ -64,7 +64,7 @@ impl Moments<f64> {
 }
 
 impl Moments<Interval> {
-    /// Those of nothing.
+    /// Moments of the empty set.
     pub(super) fn zero(about: Vec3) -> Self {
         Self { about, terms: [Interval::ZERO; 10] }
     }

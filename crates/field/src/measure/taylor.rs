@@ -59,7 +59,7 @@ pub(crate) struct Combination {
 type Signs = [i8; MOST_LEAVES];
 
 impl Combination {
-    /// That of a tape; `None` when it has no leaf or too many.
+    /// The combination of a tape; `None` without a leaf, or with too many.
     pub fn of(tape: &ExprTape<f64>) -> Option<Self> {
         let mut number = vec![u8::MAX; tape.code.len()];
         let mut out = Self { nodes: SmallVec::new(), leaves: SmallVec::new() };
@@ -155,7 +155,7 @@ struct TaylorModel {
     rest: Interval,
 }
 
-/// The part of a box that is solid, of which bounds are proved.
+/// Proved bounds of the solid part of a box.
 pub(crate) struct MomentBounds {
     /// At least …
     pub least: [f64; 10],

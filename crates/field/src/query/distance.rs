@@ -66,8 +66,8 @@ fn contracted(
     Some(sides)
 }
 
-/// True when no nearest pair of points can be in two boxes apart: inside a solid, or where the way
-/// between them is nowhere along the gradient, outward.
+/// True if no nearest pair of points can be in two separate boxes: inside a solid, or if the
+/// direction between them is nowhere along the gradient, outward.
 fn can_prune(pair: &[Arc<DistanceBox>; 2]) -> bool {
     (0..2).any(|k| {
         let (own, other) = (&pair[k], &pair[1 - k]);

@@ -96,14 +96,16 @@ pub fn nearest(
     let distance = reach(&start, p);
     heap.push(Candidate { distance, sides: start, depth: 0, tape: compiled.tape.clone() });
     let mut seen = 0;
-    // From a centre of symmetry every point is nearest: boxes would not prove that in a lifetime, distances do.
+    // From a centre of symmetry every point is nearest: boxes could not prove that in reasonable
+    // time, distances do.
     let proved = super::separation::from_point(set, p);
     while let Some(Candidate { distance, sides, depth, tape }) = heap.pop() {
         let distance = distance.max(proved);
         if let Some((point, found)) = best
             && (distance >= found - accuracy || seen >= MOST)
         {
-            // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
+            // Near a minimum the distance determines the position only to the square root of
+            // rounding; Newton's method refines it.
             let point = crate::query::foot::polished(&body, p, point, 1e-9 * over.diagonal());
             let found = point.distance(p).min(found);
             return Ok(Some(CertifiedNearest {
@@ -163,8 +165,8 @@ pub fn nearest(
     }))
 }
 
-/// True when one primitive alone decides in the box, away from the faces of all of it, and its gradient
-/// is nowhere parallel to the way from `p`: then the nearest point is elsewhere.
+/// True if one primitive alone decides in the box, away from the faces of the whole box, and its
+/// gradient is nowhere parallel to the direction from `p`: then the nearest point is elsewhere.
 fn no_foot(tape: &ExprTape<f64>, sides: &[Interval; 3], p: Vec3, over: &Box3) -> bool {
     let alone = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
     let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);

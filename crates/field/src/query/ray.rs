@@ -20,7 +20,7 @@ pub struct Ray {
     pub start: Vec3,
     /// Displacement for a unit of t.
     pub direction: Vec3,
-    /// The end: t runs from 0 to this, which is finite.
+    /// The end of the range of t, from 0; finite.
     pub length: f64,
 }
 
@@ -269,7 +269,8 @@ impl Caster {
         let mut hits = Vec::new();
         let mut from = 0.0;
         for (k, &(t, leaf)) in candidates.iter().enumerate() {
-            // Several primitives may be zero at one place: the first that is on the set's surface tells.
+            // Several primitives may be zero at one position: the first that is on the set's
+            // surface counts.
             let group = |s: f64| (s - t).abs() <= 1e-12 * ray.length;
             if k > 0 && group(candidates[k - 1].0) && hits.last().is_some_and(|h: &Hit| group(h.t))
             {
@@ -290,7 +291,7 @@ impl Caster {
                 from = t;
             }
             if shows {
-                // Of several primitives at one place, the one that decides beside it.
+                // Of several primitives at one position, the one that decides beside it.
                 let g = leaves[leaf].primitive.gradient(point);
                 let normal = g.slope.normalized().unwrap_or_default();
                 hits.push(Hit { t, point, leaf, normal, enters: after && !before });

@@ -19,7 +19,7 @@ const FEW_LEAVES: usize = 3;
 const DEEPEST: u32 = 8;
 /// An index has this many parts at most; those beyond stay coarse.
 const MOST_PARTS: usize = 400_000;
-/// Roots within this share of a ray are at one place.
+/// Roots within this fraction of a ray coincide.
 const ONE_PLACE: f64 = 1e-12;
 
 enum RayPart {
@@ -37,7 +37,7 @@ pub(crate) struct RayIndex {
     root: RayPart,
 }
 
-/// A ray on its way: whether it was inside before.
+/// State of a ray: whether it was inside before.
 struct RayWalk<'a> {
     ray: &'a Ray,
     inside: Option<bool>,

@@ -79,7 +79,7 @@ pub struct SurfacedSet {
     pub(crate) compiled: Compiled<f64>,
     /// One function for each surface.
     pub(crate) surfaces: Vec<Primitive>,
-    /// Of every leaf.
+    /// Sides of every leaf.
     pub(crate) sides: Vec<LeafSide>,
 }
 
@@ -315,7 +315,8 @@ fn sectors(planes: &[(Vec3, Vec<&ActiveSurface>)], k: usize, several: bool) -> V
     if ends.is_empty() {
         ends.push(0.1);
     }
-    // Of touching surfaces the order may change within a sector: no simple shares, for symmetric ones.
+    // For touching surfaces the order may change within a sector: irregular fractions, because of
+    // symmetric ones.
     let shares: &[f64] = match (several, ends.len()) {
         (false, _) => &[0.5],
         (true, 1) => &[0.031, 0.157, 0.281, 0.409, 0.533, 0.661, 0.787, 0.911],

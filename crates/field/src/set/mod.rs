@@ -131,7 +131,7 @@ pub struct Leaf<T: Real = f64> {
 pub(crate) struct Compiled<T: Real> {
     pub(crate) tape: Arc<ExprTape<T>>,
     pub(crate) leaves: Vec<Leaf<T>>,
-    /// The number of the leaf at every place of the tree, in order; those of a part that occurs many times once.
+    /// The number of the leaf at every position of the tree, in order; a shared part counts once.
     pub(crate) places: Vec<u32>,
 }
 
@@ -245,7 +245,7 @@ impl<T: Real> Set<T> {
             let normal = (b - a).cross(c - a);
             let face = Primitive::plane(normal, a)?;
             let height = face.value(points[k]);
-            // Of no volume to rounding: the height is lost among the edges' lengths.
+            // No volume within rounding: the height is lost relative to the edges' lengths.
             if height.re().abs() <= 1e-12 * (points[k] - a).norm().re() {
                 return Err(FieldError::Degenerate { what: "tetrahedron" });
             }
@@ -729,7 +729,7 @@ impl<T: Real> Set<T> {
 }
 
 impl Set<f64> {
-    /// The same set among numbers with derivatives, on no parameter of which it depends.
+    /// The same set among numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Set<S> {
         let leaf = |p: &Primitive| Set::of(SetNodeKind::Leaf(p.constant()), Vec::new());
         self.rebuilt(&leaf, false, &Set::combined)

@@ -14,7 +14,7 @@ use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef, TriangleBody};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The range of a function that changes by at most the way, from its value in the middle of a box.
+/// The range of a function with Lipschitz constant 1, from its value at the centre of a box.
 fn lipschitz(middle: f64, over: &Box3) -> Interval {
     let reach = 0.5 * over.diagonal() * (1.0 + 1e-9) + 1e-9 * over.diagonal();
     Interval { low: middle - reach, high: middle + reach }
@@ -119,7 +119,7 @@ pub struct Near<T: Real> {
 }
 
 impl<T: Real> Near<T> {
-    /// Of `surface`.
+    /// The distance from `surface`.
     pub fn new(surface: SurfaceRef<T>, what: Beside<T>) -> Self {
         let plain = PlainSurface(&*surface);
         let nearest = Arc::new(NearestSurface::new(&plain));
@@ -219,7 +219,7 @@ pub struct Inside<T: Real> {
 }
 
 impl<T: Real> Inside<T> {
-    /// Of the body that closed triangles bound.
+    /// For the body bounded by closed triangles.
     ///
     /// # Errors
     /// The number of open edges.

@@ -20,15 +20,15 @@ pub(crate) enum SideFormula {
     Any(Vec<SideFormula>),
 }
 
-/// The inside of a polygon by its sides; side k runs from corner k to the next. `None` for a polygon that crosses or
-/// touches itself.
+/// The inside of a polygon as a formula of its sides; side k is from corner k to the next. `None`
+/// for a polygon that intersects or touches itself.
 pub(crate) fn sides_of(corners: &[FlatPoint]) -> Option<SideFormula> {
     let n = corners.len();
     if n < 3 || turn_sum(corners) == 0.0 || !is_simple(corners) {
         return None;
     }
     if turn_sum(corners) < 0.0 {
-        // Run the other way round; side k is then the one before corner n - 1 - k.
+        // In reverse order; side k is then the one before corner n - 1 - k.
         let back: Vec<FlatPoint> = corners.iter().rev().copied().collect();
         return Some(renumbered(sides_of(&back)?, &|k| (2 * n - 2 - k) % n));
     }
@@ -66,7 +66,7 @@ fn is_simple(corners: &[FlatPoint]) -> bool {
     };
     (0..n).all(|j| {
         let next = side((j + 1) % n);
-        // Neighbours: the second must not run back along the first.
+        // Neighbours: the second must not overlap the first.
         !(on(side(j), next[1]) || on(next, side(j)[0]))
             && (j + 2..n).filter(|k| (k + 1) % n != j).all(|k| !meet(side(j), side(k)))
     })
@@ -102,7 +102,7 @@ fn in_any(of: SideFormula) -> Vec<SideFormula> {
     }
 }
 
-/// Consecutive sides, of which the first comes from infinity and the last extends to it.
+/// Consecutive sides; the first comes from infinity and the last extends to it.
 struct SideChain<'a> {
     corners: &'a [FlatPoint],
     sides: &'a [usize],
@@ -230,7 +230,7 @@ mod tests {
     fn each_side_stands_once_and_the_inside_is_that_of_a_ray() {
         let mut random = moldloft_testing::Random::new(11);
         for round in 0..400 {
-            // A star, a comb, a spiral or a staircase, either way round.
+            // A star, a comb, a spiral or a staircase, in either orientation.
             let mut corners: Vec<FlatPoint> = match round % 4 {
                 0 => {
                     let n = 3 + random.below(40);
@@ -294,7 +294,7 @@ mod tests {
         assert_eq!(sides_of(&[[0.0, 0.0], [1.0, 0.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 2.0]]), None);
-        // A corner on another side; a side that runs back.
+        // A corner on another side; a side that reverses.
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 2.0]]), None);
     }

@@ -187,7 +187,7 @@ impl<T: Real> ProfileField<T> {
     /// cylinder or cone, so that the corners are edges; another curve is one face, and its corners are blunt in meshes.
     ///
     /// # Errors
-    /// Those of the faces.
+    /// Errors of the faces.
     pub fn into_set(self) -> Result<Set<T>, FieldError> {
         let formula = self.corners().and_then(|corners| {
             let flat: Vec<[f64; 2]> = corners.iter().map(|p| self.outline.at(p.re())).collect();

@@ -92,7 +92,7 @@ impl SurfacePiece {
 }
 
 impl SignedSide {
-    /// Of a surface.
+    /// Pieces of a surface.
     pub(crate) fn new(surface: &dyn Surface<f64>) -> Self {
         let mut pieces = Vec::new();
         let mut bounds = Vec::new();

@@ -156,7 +156,7 @@ fn form_text(out: &mut String, form: &Form<f64>, op: &Op<f64>) {
             numbers(out, &p.point.to_array());
             numbers(out, &p.normal.to_array());
         }
-        // That of a complement is that of its operand.
+        // The form of a complement is that of its operand.
         _ if matches!(op, Op::Unary(Unary::Neg, _)) => {}
         Form::Sphere { centre, radius } => {
             out.push_str(" as sphere");

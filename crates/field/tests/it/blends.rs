@@ -147,7 +147,7 @@ fn setbacks_are_kept_between_curved_bodies() {
     let joint = fillet([&run, &branch], [0.3, 0.2], 0.5).unwrap();
     let f = facets(&joint.set, &over, 6);
     assert_eq!(sound(&f).euler, 2);
-    // It adds material to the union, and lies where the rail is solid.
+    // It adds material to the union, and is on the solid side of the rail.
     let plain = facets(&(Set::new(&run) | Set::new(&branch)), &over, 6);
     assert!(f.moments().volume() > plain.moments().volume() + 0.01);
 }

@@ -132,7 +132,7 @@ fn hidden_faces_are_no_surface() {
     let cavities = cub([0.0; 3], [2.0, 1.0, 1.0])
         - (cub([0.5, 0.2, 0.2], [1.0, 0.8, 0.8]) | cub([1.0, 0.2, 0.2], [1.5, 0.8, 0.8]));
     assert_eq!(cavities.member(v(1.0, 0.5, 0.5), 1e-9), Membership::Air);
-    // A cylinder on its tangent plane: surface along the line, from both sides of which one sees it.
+    // A cylinder on its tangent plane: surface along the line, visible from one of its sides only.
     let ground = cub([-5.0, -5.0, -2.0], [5.0, 5.0, 0.0]);
     let lying =
         Set::new(&Primitive::cylinder(axis(v(0.0, 0.0, 1.0), v(1.0, 0.0, 0.0)), 1.0).unwrap());

@@ -1,4 +1,4 @@
-//! The shape of an intersection: pieces near it, and the place of each point on both shapes.
+//! The curve of an intersection: pieces near it, and the position of each point on both shapes.
 
 use super::equations::PlainField;
 use moldloft_locate::PlainSurface;
@@ -68,9 +68,9 @@ pub(super) const NODES: usize = 8;
 /// Powers of the length along a piece.
 pub(super) const RUN: usize = NODES + 1;
 
-/// A stretch of the intersection with a cubic near it, both with a parameter y from -1 to 1: the
-/// place is the point of the intersection in the plane across the cubic. The length up to it is a
-/// polynomial to rounding, so that neither it nor its derivatives depend on where pieces end.
+/// A part of the intersection with a cubic near it, both with a parameter y from -1 to 1: the point
+/// is the intersection with the normal plane of the cubic. The length up to it is a polynomial to
+/// rounding, so that neither it nor its derivatives depend on the ends of pieces.
 #[derive(Clone, Debug)]
 pub(super) struct CutPiece<T> {
     /// Length along the snake at which it begins, and its own length.
@@ -159,13 +159,14 @@ pub(super) struct Both<T: Real> {
     pub second: Second<T>,
 }
 
-/// Both shapes at a place of the cut: where it is, unit tangent, derivatives by the length.
+/// Both shapes at a point of the cut: position, unit tangent, derivatives with respect to the
+/// length.
 pub(super) struct CutJet<T> {
     pub x: Vec3<T>,
     pub tangent: Vec3<T>,
-    /// Of u and v.
+    /// First derivatives of u and v.
     rate: [T; 2],
-    /// Of the second order, and that of the place itself.
+    /// Second derivatives of u and v, and of the position.
     bend: [T; 2],
     pub curvature: Vec3<T>,
 }
@@ -281,8 +282,8 @@ impl<T: Real> Both<T> {
         }
     }
 
-    /// Derivatives by the length at a place, in the direction of `d`: with N = n1 x n2 for normals
-    /// that are no unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
+    /// Derivatives with respect to the length at a point, in the direction of `d`: with N = n1 x n2
+    /// for normals that are not unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
     pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<CutJet<T>> {
         let j = self.first.jet(u, v, order);
         let k = match &self.second {
@@ -387,7 +388,7 @@ impl<T: Real> Curve<T> for Cut<T> {
         super::on_surface::on_surface_jet(&self.both.first, self.place(t, order), order)
     }
 
-    /// Place by place, as single ones.
+    /// Point by point, independently.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         let first = PlainSurface(&*self.both.first);
         let second = self.both.second.plain();

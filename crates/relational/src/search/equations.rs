@@ -162,7 +162,7 @@ impl<T: Real> Implicit<T, 2> for Between<'_, T> {
 pub enum Moving<T: Real> {
     /// It stays.
     Fixed(Vec3<T>),
-    /// It runs along a curve.
+    /// It moves along a curve.
     Curve(CurveRef<T>),
 }
 

@@ -37,8 +37,8 @@ const OUTSIDE: f64 = 1e-9;
 /// Of several geodesics it is the one found by Newton's method from the straight line of the
 /// parameter plane: on surfaces with little curvature between the magnets, the shortest. On a
 /// closed surface those across its seam are tried too, and the shortest is the result (of equal
-/// ones, the one inside the seam); `turns_u` and `turns_v` select another. Its parameter on the
-/// surface changes from 1 to 0 at the seam.
+/// ones, the one inside the seam); `turns_u` and `turns_v` select another. At the seam the
+/// parameter on the surface jumps between 0 and 1.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -135,13 +135,13 @@ fn ways<T: Real>(
     Ok(us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v])).collect())
 }
 
-/// A way has to be shorter by this share to count as such.
+/// Relative difference by which a path must be shorter to be preferred.
 const SHORTER: f64 = 1e-6;
 
 /// Change in the last refinement, number of iterations, and parameters of the nodes.
 type Solved = (f64, usize, Vec<[f64; 2]>);
 
-/// The shortest of some ways, with its turns.
+/// The shortest of the paths with the given turns.
 fn shortest<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -152,7 +152,7 @@ fn shortest<T: Real>(
     for &turns in ways {
         let end = [to[0] + turns[0], to[1] + turns[1]];
         match solved(sheet, [from, end], turns != [0.0; 2]) {
-            // Over a crease at the seam there is no smooth way.
+            // A crease at the seam excludes a smooth path.
             Ok(found) if found.0 > CREASED && ways.len() > 1 && turns != [0.0; 2] => {}
             Ok(found) => {
                 let length = length(sheet, &found.2);
@@ -241,7 +241,7 @@ fn equations<T: Real>(
     let mut rest = Vec::with_capacity(2 * inner);
     let mut matrix = if with_matrix { vec![T::zero(); 4 * inner * inner] } else { Vec::new() };
     for k in 1..m - 1 {
-        // Of the differences of places: the largest entries belong to the nearest nodes.
+        // From differences of positions: the largest entries belong to the nearest nodes.
         let own = jets[k].p;
         let bend = (0..m)
             .filter(|&j| j != k)
@@ -293,7 +293,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |a, x| a.max(x.abs()))
 }
 
-/// The plain places at the nodes, of a way over a seam or not.
+/// The real parameters at the nodes, for a path across a seam or not.
 fn solved<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -488,7 +488,7 @@ impl<T: Real> CurveFormula for GeodesicPath<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
-        // In y = cos(theta) of the nodes, which runs from 1 to -1.
+        // In y = cos(theta) of the nodes, from 1 to -1.
         let y = t * -2.0 + 1.0;
         let s = -t + 1.0;
         let bump = t * s;

@@ -369,8 +369,8 @@ struct BranchReference<T> {
     /// The shape, 0 or 1, that decides: of two named surfaces the one declared first, unless the other alone is given by
     /// a magnet.
     side: usize,
-    /// The magnet, or a place beside the symmetries that surfaces have, so that as a rule one place of a closed branch is
-    /// the nearest.
+    /// The magnet, or a point off the usual symmetries of surfaces, so that the nearest point of a
+    /// closed branch is unique as a rule.
     place: Vec3<T>,
 }
 
@@ -565,8 +565,8 @@ fn set_up<T: Real>(
         let slope = d.re().dot(stops[0].station.tangent);
         offsets = [(level - level.re()) * (-1.0 / slope); 2];
     } else if whole {
-        // The branch begins where (X - M) . T is zero, the derivative of which by the length is
-        // 1 + (X - M) . k with the curvature k.
+        // The branch begins where (X - M) . T is zero; the derivative of this with respect to the
+        // length is 1 + (X - M) . k with the curvature k.
         let end = at_end(0, Order::Second).ok_or_else(failed)?;
         let away = end.x - reference;
         let slope = 1.0 + away.re().dot(end.curvature.re());
@@ -582,7 +582,7 @@ fn set_up<T: Real>(
     Ok(Cut { trace: Trace::own(), both, pieces, total, size: crossing.size, closed: whole })
 }
 
-/// Stations nearer than this share of the way to the next are moved onto a joint.
+/// Stations within this fraction of the distance to the next are moved onto a joint.
 const NEAR_JOINT: f64 = 0.1;
 
 /// The stations of a branch, with others at the joints of the surfaces between them, so that pieces

@@ -226,7 +226,7 @@ impl<T: Real> Build<T> for XYZMagnet<T> {
         (p[a], p[b]) = (self.value1, self.value2);
         let mut d = [T::zero(); 3];
         d[3 - a - b] = T::one();
-        // From the middle of the surface, so that of several the middle one counts as nearest.
+        // From the middle of the surface, which selects the middle one of several.
         p[3 - a - b] = T::from(
             self.surface.surface.jet(T::from(0.5), T::from(0.5), Order::Zero).p.re()[3 - a - b],
         );

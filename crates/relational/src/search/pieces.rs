@@ -6,8 +6,8 @@ use super::cut::{
 use moldloft_locate::march::{Crossing, TracePoint, Unknowns};
 use moldloft_num::{Order, Real, Vec3};
 
-/// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
-/// that they do not depend on where the stations are.
+/// Maximum relative error of the speed along a piece: lengths are then exact to rounding, and
+/// independent of the stations.
 const SPEED_ACCURACY: f64 = 1e-12;
 
 /// Maximum error of the unknowns along a piece, relative to the size in space: points are on both
@@ -34,7 +34,7 @@ impl From<TracePoint> for PieceEnd {
     }
 }
 
-/// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
+/// True for the two stations at a seam: the same point, with an unknown that is 0 here and 1 there.
 pub(super) fn at_seam(a: &TracePoint, b: &TracePoint) -> bool {
     (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
 }
@@ -96,7 +96,7 @@ fn between(a: &TracePoint, b: &TracePoint, y: f64) -> Unknowns {
 type Matrix = [[f64; NODES]; NODES];
 
 impl PieceFit {
-    /// The stretch between two stops, and whether its speed and its places are polynomials.
+    /// The part between two stops, and whether its speed and its unknowns are polynomials.
     fn new(
         crossing: &Crossing<'_>,
         matrix: &Matrix,
@@ -123,7 +123,8 @@ impl PieceFit {
         let there = |y: f64, q: &Unknowns| {
             crossing.distance(q, &guess(&places, y)) <= PLACE_ACCURACY * crossing.size
         };
-        // At its ends the place is the cubic's and the tangent its own, unless the surface is creased.
+        // At its ends the position is the cubic's and the tangent its own, unless the surface has a
+        // crease.
         let along =
             |k: usize, y: f64| ends[k].joint.is_some() || near(y, on_guide(&guide, y)[1].norm());
         let mut good = along(0, -1.0) && along(1, 1.0);
@@ -197,8 +198,8 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
     Some(all)
 }
 
-/// A piece, and how its ends move along it: the place that is at a joint of the surface is another
-/// one when the model's parameters change. `joint` gives it.
+/// A piece, with the motion of its ends along it: the point at a joint of the surface changes with
+/// the model's parameters. `joint` gives it.
 pub(super) fn laid<T: Real>(
     both: &Both<T>,
     fit: &PieceFit,

@@ -28,7 +28,7 @@ const LONGEST_MOVE: f64 = 0.15;
 /// rounding.
 const CLOSE: f64 = 1e-8;
 
-/// Places read from a table may be off by this share of the size.
+/// Maximum error of positions from a table, relative to the size.
 const TABLE_ACCURACY: f64 = 1e-13;
 
 /// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
@@ -220,7 +220,7 @@ struct ProjectionSample {
     rate: [f64; 3],
 }
 
-/// The way of the projection in the parameter plane of the surface.
+/// The path of the projection in the parameter plane of the surface.
 struct ProjectedPath<T: Real> {
     surface: SurfaceRef<T>,
     point: Moving<T>,
@@ -501,7 +501,7 @@ impl<T: Real> Curve<T> for Projected<T> {
         }
     }
 
-    /// Those of the curve, and where the projection crosses those of the surface.
+    /// Breaks of the curve, and crossings of the projection with those of the surface.
     fn breaks(&self) -> Vec<f64> {
         let own = match &self.path.point {
             Moving::Curve(curve) => curve.breaks(),

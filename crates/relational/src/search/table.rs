@@ -1,5 +1,5 @@
-//! Unknowns along a curve as polynomials, where these are the solutions to rounding: a table that
-//! places are read from instead of being solved for.
+//! Unknowns along a curve as polynomials, where these agree with the solutions to rounding: a table
+//! to read instead of solving.
 
 use moldloft_num::Real;
 
@@ -47,14 +47,14 @@ impl<const N: usize> Table<N> {
         self.spans.iter().map(|span| (span.from, span.until, span.terms.is_none()))
     }
 
-    /// The table of `solved` between the ascending `ends`, 0 and 1 included. `same` says whether two
-    /// values are one place.
+    /// The table of `solved` between the ascending `ends`, 0 and 1 included. `same` compares two
+    /// values.
     pub fn new(
         ends: &[f64],
         solved: impl Fn(f64) -> Option<[f64; N]>,
         same: impl Fn(&[f64; N], &[f64; N]) -> bool,
     ) -> Self {
-        // From values at the nodes to terms.
+        // From values at the nodes to coefficients.
         let matrix: [[f64; NODES]; NODES] = std::array::from_fn(|j| {
             let share = if j == 0 { 1.0 } else { 2.0 } / NODES as f64;
             std::array::from_fn(|k| share * Real::cos(j as f64 * angle(k)))

@@ -231,7 +231,7 @@ impl Stretch {
     pub fn lines(&self, most: usize) -> [Vec<f64>; 2] {
         let reach = [0, 1].map(|k| self.sum[k][self.sum[k].len() - 1].max(1.0));
         let coarser = (reach[0] * reach[1] / most as f64).sqrt().max(1.0);
-        // The shorter way keeps a line or more.
+        // The shorter direction keeps at least one line.
         let shorter = reach[0].min(reach[1]);
         let coarser =
             if coarser > shorter { reach[0].max(reach[1]) / most as f64 } else { coarser };

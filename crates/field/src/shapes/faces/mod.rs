@@ -91,7 +91,7 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
         let angle = |t: &[u32; 3]| seen(t.map(|v| plain[v as usize] - p));
         body.triangles.iter().map(angle).sum::<f64>()
     };
-    // Of a body turned inside out the solid is around it, as for the distance from its triangles.
+    // For an inverted body the solid is around it, as for the distance from its triangles.
     let origin = (bounds.low + bounds.high) * 0.5;
     let part = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| plain[v as usize] - origin);

@@ -13,7 +13,7 @@ pub enum RoundProfile<T> {
     Conic {
         /// Centre.
         centre: Vec3<T>,
-        /// From the centre to the start.
+        /// Vector from the centre to the start.
         a: Vec3<T>,
         /// Conjugate to `a`.
         b: Vec3<T>,
@@ -33,7 +33,7 @@ pub struct Round<T> {
     pub side: u32,
     /// The near end.
     pub profile: RoundProfile<T>,
-    /// From the near end to the far one: of the centre, or of a parabola's start.
+    /// Vector from the near end to the far one: of the centre, or of a parabola's start.
     pub shift: Vec3<T>,
     /// The size of the far end: 1 for cylinders, 0 for a cone with its apex there.
     pub scale: T,
@@ -148,7 +148,7 @@ pub(super) struct Rounded {
 }
 
 impl Rounded {
-    /// All of them; those of one surface that together turn once round it are one.
+    /// All of them; those of one surface with a full turn in total are merged.
     ///
     /// # Errors
     /// Degenerate ones.
