@@ -28,7 +28,7 @@ fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError
 ///
 /// For curves with a parameter use `curvc` and `curvature`.
 ///
-/// `curvature(c)` of a curve of points is the same; `curvature(c, t)` asks a parametric curve.
+/// `curvature(c)` of a curve of points is the same; `curvature(c, t)` is for a parametric curve.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -105,7 +105,7 @@ impl<T: Scalar> Build<T> for Torsions<T> {
         let inner: Vec<T> = points.windows(4).map(turn).collect();
         let n = points.len();
         let at = |k: usize| match k {
-            // Inner points lie in two of the tetrahedra's middles.
+            // Inner points are in the centres of two tetrahedra.
             0 | 1 => inner[0],
             k if k + 2 >= n => inner[inner.len() - 1],
             k => (inner[k - 2] + inner[k - 1]) * 0.5,

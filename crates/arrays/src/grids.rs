@@ -160,7 +160,7 @@ impl<T: Scalar> Build<T> for Tfi<T> {
     }
 }
 
-/// A grid as a value, with a remark when cells of it are folded.
+/// A grid as a value, with a note if it has folded cells.
 fn remarked<T: Scalar>(
     grid: SurfaceGrid<T>,
     context: &Context,
@@ -206,8 +206,8 @@ const EDGES: [(&str, GridSide); 4] = [
 /// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
 /// 1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one
 /// on the surface `on`, by default on the spline surface through its own points. The iteration ends
-/// after `n` sweeps, or once no point moves by more than `tol` of the size and the walls have the
-/// requested spacing and angle; without convergence a remark gives the residual. For "sorenson"
+/// after `n` sweeps, or when no point moves by more than `tol` of the size and the walls have the
+/// requested spacing and angle; without convergence a note gives the residual. For "sorenson"
 /// `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
 /// height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
 /// error, unless `folded` is "allow".

@@ -47,7 +47,7 @@ fn surface_foot<T: Real>(surface: &SurfaceRef<T>, p: Vec3<T>, at: [f64; 2]) -> [
     ]
     .map(|row| row.map(|x| x.re()));
     let scale = jet.u.re().norm() * gap.re().norm();
-    // Held: the gradient does not vanish, since the foot would lie outside.
+    // At an edge the gradient does not vanish, since the foot would be outside.
     let held = |k: usize| {
         let edge = at[k] == 0.0 || at[k] == 1.0;
         edge && f[k].re().abs() > 1e-9 * scale.max(f64::MIN_POSITIVE)
@@ -204,7 +204,7 @@ fn along<T: Scalar>(
         let columns = [jet.u.re(), jet.v.re(), -d.re()].map(Vec3::to_array);
         let a: [[T; 3]; 3] =
             std::array::from_fn(|r| std::array::from_fn(|c| T::from(columns[c][r])));
-        // Where the line touches the surface the meeting has no derivative.
+        // At a tangential intersection of line and surface there is no derivative.
         let s = implicit::solve(&a, rest).map_or(s, |step| s - step[2]);
         moved.push(*p + d * s);
     }

@@ -343,7 +343,7 @@ impl<T: Scalar> Build<T> for Diff<T> {
     example = "assert interp(1.5, list(0, 1, 2), list(0, 10, 30)) == 20;"
 )]
 pub struct Interp<T: Scalar> {
-    /// Where.
+    /// Positions.
     x: Numbers<T>,
     /// Ascending.
     xs: Farray<T>,

@@ -182,8 +182,8 @@ impl<T: Scalar> Build<T> for CGrid<T> {
 /// and `behind`, with `n` cells each that grow from the section's own at nose and tail. Both
 /// surfaces have identical points there; both are right-handed, so the lower one is directed
 /// upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
-/// first height, at right angles; without convergence in `sweeps` a remark gives the residual. With
-/// `sweeps` 0 the grid is that of `tfi`.
+/// first height, at right angles; without convergence in `sweeps` a note gives the residual.
+/// With `sweeps` 0 the grid is that of `tfi`.
 #[derive(Kind)]
 #[kind(
     class = List,

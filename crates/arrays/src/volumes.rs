@@ -91,7 +91,8 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
 /// `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
 /// `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
 /// lines are perpendicular with the first cell height `spacing` (by the iteration of Hilgenstock
-/// 1988). Without convergence in `n` sweeps a remark gives the residual; folded cells are an error.
+/// 1988). Without convergence in `n` sweeps a note gives the residual; folded cells are an
+/// error.
 #[derive(Kind)]
 #[kind(
     class = Block,

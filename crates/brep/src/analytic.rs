@@ -1,4 +1,4 @@
-//! Planes, cylinders, cones, spheres and tori: distances, angles, and what makes two of them one surface.
+//! Planes, cylinders, cones, spheres and tori: distances, angles, and identity of two of them.
 
 use crate::SurfaceShape;
 use moldloft_num::{Pace, Vec3};
@@ -123,7 +123,7 @@ impl SurfaceShape {
         made
     }
 
-    /// The image of a sphere with its axis along another direction; none for other surfaces.
+    /// The image of a sphere with its axis along another direction; `None` for other surfaces.
     pub(crate) fn image_about(&self, z: Vec3) -> Option<Self> {
         let SurfaceShape::Image(image) = self else { return None };
         image.linear_back(z).normalized().and_then(|v| image.about(v))

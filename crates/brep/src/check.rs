@@ -1,4 +1,4 @@
-//! Shells: which faces hang together, whether they close, and what is wrong with them.
+//! Shells: connected faces, their closure, and faults.
 
 use crate::{Brep, BrepFace, Coedge, Shell, SurfaceShape};
 use moldloft_num::Vec3;
@@ -22,7 +22,7 @@ impl ShellFacts {
     }
 }
 
-/// What is wrong with a boundary representation.
+/// Fault of a boundary representation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A loop's sides do not follow one another: face, loop.
@@ -79,8 +79,8 @@ impl Brep {
         shells.into_iter().map(|(_, shell)| shell).collect()
     }
 
-    /// The volume that a closed shell of plane faces with straight edges encloses, negative where its faces look
-    /// inward, as round a cavity; none for other shells.
+    /// The volume that a closed shell of plane faces with straight edges encloses, negative if its
+    /// faces are oriented inward, as around a cavity; `None` for other shells.
     pub fn volume_of_polyhedron(&self, shell: &Shell) -> Option<f64> {
         if !shell.closed {
             return None;
@@ -167,7 +167,7 @@ impl Brep {
         }
     }
 
-    /// What is wrong: loops with gaps, edges whose sides run the same way.
+    /// Faults: loops with gaps, edges with sides of the same direction.
     pub fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let mut sides: Vec<Vec<bool>> = vec![Vec::new(); self.edges.len()];

@@ -13,7 +13,8 @@ const DEEPEST: u32 = 12;
 /// Most turn of the tangent along a piece, radians.
 const TURN: f64 = 0.8;
 
-/// The point of both surfaces near another, by Newton's method; none where they touch or do not meet.
+/// The point of both surfaces near another, by Newton's method; `None` at contacts, and without an
+/// intersection.
 pub fn on_both(surfaces: [&SurfaceShape; 2], mut p: Vec3) -> Option<Vec3> {
     const STEPS: usize = 30;
     let mut last = f64::INFINITY;
@@ -167,7 +168,7 @@ pub fn crossing(
         let piece = [ends[i], ends[j]];
         if i + 1 >= j {
             if divided(surfaces, piece, accuracy, DEEPEST, &mut pieces).is_none() {
-                // Cells pass over what is thinner, as the end of a flat ellipse.
+                // Cells miss thinner parts, such as the end of a flat ellipse.
                 let places = [1.0, -1.0]
                     .into_iter()
                     .find_map(|sign| walked(surfaces, guide, &ends, closed, reach, sign))?;
@@ -253,7 +254,8 @@ fn walked(
     sign: f64,
 ) -> Option<Vec<PieceEnd>> {
     const MOST: usize = 20_000;
-    /// Most turn of the tangent from place to place, radians, and what is near enough to the tangent, in steps.
+    /// Maximum turn of the tangent between stations, in radians, and tolerance of the tangent, in
+    /// steps.
     const BEND: f64 = 0.3;
     const ASIDE: f64 = 0.2;
     let last = ends.len() - 1;

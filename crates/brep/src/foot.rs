@@ -5,11 +5,11 @@ use moldloft_num::Vec3;
 
 const STEPS: usize = 80;
 
-/// What is nearer than this share of the accuracy is on the surfaces.
+/// Distance relative to the accuracy below which a point is on the surfaces.
 const ON: f64 = 1e-6;
 
-/// The point near another that is on all these surfaces, by their numbers in a field, within half the accuracy; none within
-/// reach where they have none.
+/// The point near another that is on all these surfaces, by their numbers in a field, within half
+/// the accuracy; `None` without such a point within `reach`.
 pub fn foot(
     field: &SurfaceField<'_>,
     surfaces: &[u32],
@@ -118,7 +118,7 @@ fn foot_on_one(
     (off <= 0.5 * accuracy && p.distance(start) <= reach).then_some(p)
 }
 
-/// Whether two of the planes are nearly parallel.
+/// True if two of the planes are nearly parallel.
 fn touch(rows: &[(f64, Vec3)]) -> bool {
     const SINE: f64 = 0.2;
     let near = |(a, b): (&Vec3, &Vec3)| a.cross(*b).norm() < SINE;

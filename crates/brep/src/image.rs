@@ -4,7 +4,7 @@ use crate::{Brep, BrepEdge, BrepFace, ExactCurve, FacetedPart, SurfaceAxes, Surf
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 
-/// Coordinates below this share of the size lie in the plane.
+/// Coordinates, relative to the size, below which a point is in the plane.
 const IN_PLANE: f64 = 1e-9;
 
 fn mirrored(p: Vec3, axis: usize) -> Vec3 {

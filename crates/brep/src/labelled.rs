@@ -2,7 +2,8 @@
 //!
 //! `triangles with surfaces -> faces that hang together -> seams -> chains of sides -> edges -> loops`
 //!
-//! The triangles say what hangs together and which part of a curve is an edge; no number of theirs is in the result.
+//! The triangles determine connectivity and which part of a curve is an edge; their coordinates are
+//! not in the result.
 
 use crate::analytic::arc;
 use crate::crossing::crossing;
@@ -50,26 +51,26 @@ pub struct LabelledFacets {
 /// Why triangles do not show a body of faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FacetFault {
-    /// What is wrong.
+    /// Kind of fault.
     pub kind: FacetFaultKind,
     /// The names of the surfaces concerned.
     pub surfaces: Vec<String>,
-    /// Where.
+    /// Position.
     pub place: Vec3,
 }
 
-/// What is wrong with triangles that do not show a body of faces.
+/// Fault of triangles that do not represent a body of faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacetFaultKind {
     /// The triangles do not close, or more than two share a side.
     NotClosed,
-    /// No seam goes round the face without meeting vertices.
+    /// Every seam around the face meets vertices.
     Seam,
     /// The surfaces meet, or touch, in a curve that is not found within the accuracy near the triangles.
     Edge,
     /// The surfaces round a vertex have no common point near it.
     Vertex,
-    /// A surface is none of those that formats have.
+    /// A surface that the formats do not have.
     Surface,
     /// No patches come within the accuracy of the surface, or they fold.
     Patch,
@@ -124,7 +125,7 @@ struct LabelledBody {
     axes: BTreeMap<u32, SurfaceAxes>,
     chains: Vec<BorderChain>,
     corners: BTreeMap<u32, Vec3>,
-    /// How far off the found places are.
+    /// Distance of the points found.
     gap: f64,
     accuracy: f64,
     size: f64,
@@ -179,7 +180,7 @@ impl LabelledBody {
         FacetFault { kind, surfaces: names, place }
     }
 
-    /// How far from the line or point where surfaces touch they are less than a cell apart.
+    /// Distance from a contact of surfaces within which they are less than a cell apart.
     fn cusp(&self) -> f64 {
         (self.step * self.size).sqrt()
     }
@@ -305,7 +306,7 @@ impl LabelledBody {
         }
         self.corners.clear();
         for p in points {
-            // What is left of the triangles round it may fold onto itself; a little more or less does not.
+            // The remaining triangles around it may fold; slightly different sizes avoid that.
             let net = [1.0, 0.7, 1.4, 0.5, 2.0]
                 .into_iter()
                 .find_map(|share| self.net.pinned(p, share * self.step));
@@ -680,7 +681,8 @@ impl LabelledBody {
         Ok(())
     }
 
-    /// How far a curve is from its surfaces: of exact ones by samples, for these are right or not at all.
+    /// Distance of a curve from its surfaces: for exact curves by samples, since they are either
+    /// right or wrong.
     fn off(&self, chain: &BorderChain, curve: &Nurbs<1>) -> f64 {
         if chain.exact.is_none() {
             return curve.error;

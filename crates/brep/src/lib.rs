@@ -1,5 +1,5 @@
-//! Boundary representations: vertices, edges with their curves, faces with their surfaces and loops, shells and
-//! named parts. What two faces share is one edge, by its number.
+//! Boundary representations: vertices, edges with their curves, faces with their surfaces and
+//! loops, shells and named parts. Two faces share an edge by its number.
 //!
 //! `faces of a model -> Brep -> encoders of CAD formats`
 //!
@@ -48,7 +48,7 @@ pub struct Brep {
     pub faces: Vec<BrepFace>,
     /// The parts.
     pub parts: Vec<Part>,
-    /// A bound of the distances between edges, vertices and the surfaces that they lie on.
+    /// Bound of the distances between edges, vertices and their surfaces.
     pub gap: f64,
     /// Bodies that have no faces on surfaces, as triangles.
     pub faceted: Vec<FacetedPart>,
@@ -164,7 +164,7 @@ pub struct FacetedPart {
     pub positions: Vec<Vec3>,
     /// The triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// How far the middles of triangles are from the surface, where that is known.
+    /// Distance of the centres of triangles from the surface, if known.
     pub error: Option<f64>,
 }
 
@@ -181,14 +181,14 @@ pub struct Part {
     pub points: Vec<PartPoint>,
 }
 
-/// A point by itself.
+/// A separate point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartPoint {
     /// Its name.
     pub name: String,
     /// Its colour, sRGB.
     pub colour: Option<[u8; 3]>,
-    /// Where it is.
+    /// Position.
     pub place: Vec3,
 }
 
@@ -248,7 +248,7 @@ impl Brep {
         self.faces.iter().map(|f| f.error).chain(lines).fold(0.0, f64::max)
     }
 
-    /// The surface of a face as a NURBS; none for a plane.
+    /// The surface of a face as a NURBS; `None` for a plane.
     pub fn nurbs(&self, face: &BrepFace) -> Option<Nurbs<2>> {
         if let SurfaceShape::Nurbs(surface) = &face.surface {
             return Some((**surface).clone());

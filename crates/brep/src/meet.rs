@@ -85,7 +85,8 @@ enum ProfilePiece {
     Circle([f64; 2], f64),
 }
 
-/// What two surfaces have in common where that is lines, circles or ellipses; nothing where it is another curve.
+/// The intersection of two surfaces, if it consists of lines, circles or ellipses; empty for other
+/// curves.
 pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Vec<ExactCurve> {
     use SurfaceShape::{Cone, Cylinder, Image, Plane, Sphere, Torus};
     let parallel = |u: Vec3, v: Vec3| u.cross(v).norm() * size <= tolerance;
@@ -151,7 +152,7 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
             planes.into_iter().flatten().flat_map(cut).collect()
         }
         (Cylinder { axes, radius }, Torus { axes: ring, major, minor }) => {
-            // A straight pipe goes on as a bent one.
+            // A straight pipe continued by a bent one.
             let foot = axes.origin + axes.z * (ring.origin - axes.origin).dot(axes.z);
             let level = near((foot - ring.origin).dot(ring.z), 0.0);
             let across = (axes.z.dot(ring.z) * size).abs() <= tolerance;
@@ -197,7 +198,7 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
     }
 }
 
-/// The image of what the plane that a plane is the image of has in common with a surface.
+/// The intersection of an image surface with a plane, as the image of that of the originals.
 fn plane_image(
     origin: Vec3,
     normal: Vec3,

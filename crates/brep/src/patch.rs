@@ -1,4 +1,4 @@
-//! Patches of one polynomial on surfaces that are known by a function: their nets, how far they are off, whether they fold.
+//! Polynomial patches on implicit surfaces: control nets, errors, and folds.
 
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
@@ -39,7 +39,7 @@ pub struct PatchBasis {
     normals: [[BernsteinRow; 2]; NORMALS.len()],
 }
 
-/// A patch and what is known of it.
+/// A patch with its error.
 #[derive(Clone)]
 pub struct FittedPatch {
     /// Control points, the second parameter's fastest.
@@ -121,7 +121,7 @@ impl PatchBasis {
                 net[i * (d + 1) + j] = p;
             }
         }
-        // What neighbours share is the same to the last bit.
+        // Common sides of neighbours are bit-identical.
         for k in 0..=d {
             net[k] = sides[0][k];
             net[d * (d + 1) + k] = sides[1][k];
@@ -131,9 +131,9 @@ impl PatchBasis {
         net
     }
 
-    /// A bound of the distance of a patch from a surface, |f| / |f'|: the sum of its Chebyshev coefficients, the last
-    /// two orders counted three times for those that are not known. Where it is more than `enough`, it may be the
-    /// distance at one place only.
+    /// A bound of the distance of a patch from a surface, |f| / |f'|: the sum of its Chebyshev
+    /// coefficients, with the last two orders counted three times for the truncated ones. If it
+    /// exceeds `enough`, it may be the distance at one point only.
     pub fn distance(
         &self,
         net: &[Vec3],

@@ -1,10 +1,10 @@
-//! Bodies with faces on any surfaces: plane faces, whole ones on cylinders and cones, and elsewhere small patches that lie
-//! on the surface within an accuracy.
+//! Bodies with faces on any surfaces: plane faces, whole ones on cylinders and cones, and elsewhere
+//! small patches within an accuracy of the surface.
 //!
 //! `triangles, each with its surface -> vertices and sides on their surfaces -> quadrilaterals and triangles -> patches`
 //!
-//! Patches that are off by more than the accuracy, or fold, have their longest side halved, with the neighbour's.
-//! What two patches share is one edge with the same control points.
+//! Patches with an error above the accuracy, or with folds, have their longest side halved, with
+//! the neighbour's. Two patches share one edge with the same control points.
 
 use crate::foot::foot;
 use crate::labelled::extent;
@@ -24,23 +24,24 @@ use std::collections::BTreeMap;
 /// Most triangles that become patches of a body.
 const MOST: usize = 48_000;
 
-/// So many times as many are expected where there is no use in dividing.
+/// Ratio of expected to allowed patches at which subdivision is abandoned.
 const MUCH: f64 = 4.0;
 
-/// How often sides are halved, and triangles corrected between, without patience and with it.
+/// Maximum rounds of halving sides and correcting triangles, without patience and with it.
 const ROUNDS: [usize; 2] = [16, 48];
 
-/// How often triangles are corrected with patience: after that, what is corrected is slivers that halving made.
+/// Maximum rounds of corrections with patience: later ones concern slivers from halvings.
 const CORRECTIONS: usize = 6;
 
-/// More patches than that, and than four times the fewest so far, that are off after some rounds are a kink.
+/// Number of remaining faulty patches, and more than four times the minimum so far, that indicates
+/// a kink.
 const MANY: usize = 200;
 const SMOOTH_AFTER: usize = 4;
 
 /// The least sine of the corners of a quadrilateral.
 const LEAST_CORNER: f64 = 0.25;
 
-/// Degrees of patches; the higher one where more is asked than this share of the size.
+/// Degrees of patches; the higher one for accuracies below this fraction of the size.
 const DEGREES: [usize; 2] = [3, 5];
 const FINE: f64 = 3e-8;
 
@@ -101,7 +102,7 @@ pub struct PatchedBody<'a> {
     pub basis: PatchBasis,
     pub accuracy: f64,
     pub size: f64,
-    /// How far edges are from whole faces.
+    /// Distance of edges from whole faces.
     stray: f64,
     /// Control points of sides, from the lower vertex.
     sides: FxHashMap<(u32, u32), Vec<Vec3>>,
@@ -172,22 +173,22 @@ impl<'a> PatchedBody<'a> {
         Ok(body)
     }
 
-    /// Whether a triangle is of a face that is wanted.
+    /// True if a triangle belongs to a requested face.
     fn is_shown(&self, triangle: usize) -> bool {
         self.is_shown_surface(self.net.labels[triangle])
     }
 
-    /// Whether faces on a surface are wanted.
+    /// True if faces on a surface are requested.
     pub fn is_shown_surface(&self, label: u32) -> bool {
         self.shown[label as usize]
     }
 
-    /// Whether a triangle becomes a part of a patch.
+    /// True if a triangle becomes a part of a patch.
     fn is_curved(&self, triangle: usize) -> bool {
         self.is_shown(triangle) && !self.is_whole(self.net.labels[triangle])
     }
 
-    /// How many triangles become parts of patches.
+    /// Number of triangles that become parts of patches.
     fn curved(&self) -> usize {
         (0..self.net.triangles.len()).filter(|k| self.is_curved(*k)).count()
     }
@@ -200,7 +201,7 @@ impl<'a> PatchedBody<'a> {
     pub fn fault(&self, kind: FacetFaultKind, labels: &[u32], place: Vec3) -> FacetFault {
         let mut surfaces: Vec<String> = Vec::new();
         for &label in labels {
-            // Of planes of cuts there is none.
+            // Cutting planes have none.
             if let Some(name) = self.facets.names.get(label as usize)
                 && !surfaces.contains(name)
             {
@@ -295,7 +296,7 @@ impl<'a> PatchedBody<'a> {
         Ok(())
     }
 
-    /// Makes these patches and their sides, side by side; none where a side fails.
+    /// Makes these patches and their sides in parallel; an error if a side fails.
     fn make_patches(&mut self, which: &[(Corners, u32)]) -> Vec<Result<FittedPatch, FacetFault>> {
         let around = |[a, b, c, d]: Corners| [(a, b), (b, c), (c, d), (d, a)];
         let mut keys: Vec<(u32, u32)> = which
@@ -514,7 +515,7 @@ impl<'a> PatchedBody<'a> {
             if round >= SMOOTH_AFTER && halved.len() > MANY.max(4 * fewest) {
                 break;
             }
-            // What is left over after some rounds may be triangles that turned over.
+            // After some rounds the remaining faults may be inverted triangles.
             let bad = |(corners, _): &&(Corners, u32)| {
                 let patch = &known[corners];
                 patch.error > self.accuracy || patch.folded
@@ -546,7 +547,7 @@ impl<'a> PatchedBody<'a> {
         Err(last.unwrap_or_else(|| self.fault(FacetFaultKind::Patch, &[], place)))
     }
 
-    /// How many triangles it may take until all patches are near enough, by the order of their errors.
+    /// Expected number of triangles until all patches are accurate, by the order of their errors.
     fn expected(&self, all: &[(Corners, u32)], known: &FxHashMap<Corners, FittedPatch>) -> f64 {
         let order = 2.0 / (self.basis.degree + 1) as f64;
         let of = |(corners, _): &(Corners, u32)| {
@@ -729,7 +730,7 @@ impl<'a> PatchedBody<'a> {
             }
         }
         next.values_mut().for_each(|n| n.sort_unstable());
-        // A line or an ellipse goes on between the same two faces.
+        // A line or an ellipse continues between the same two faces.
         let exact = |a: u32, b: u32| {
             let sides = [(a, b), (b, a)].map(|s| self.net.groups[self.net.across[&s] as usize]);
             self.exact_side(a, b).map(|curve| (ordered(sides[0], sides[1]), curve))

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 /// Sectors of the circle that are searched for one free of vertices.
 const PARTS: usize = 240;
 
-/// So many parts in a row without the face are a gap.
+/// Minimum number of consecutive sectors without the face that form a gap.
 const LEAST_GAP: usize = 4;
 
 /// Triangles with the surfaces and faces that they belong to.
@@ -38,7 +38,7 @@ pub fn ordered(a: u32, b: u32) -> (u32, u32) {
 }
 
 impl FacetNet {
-    /// The net of labelled triangles; none where a side has more than two triangles, or one alone.
+    /// The net of labelled triangles; `None` if a side has more than two triangles, or only one.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>, labels: Vec<u32>) -> Option<Self> {
         let mut across =
             FxHashMap::with_capacity_and_hasher(3 * triangles.len(), Default::default());
@@ -98,7 +98,7 @@ impl FacetNet {
         }
     }
 
-    /// Finds the triangles across sides anew, where triangles were divided.
+    /// Updates adjacency after a division of triangles.
     pub fn settle(&mut self) {
         if self.neighbours.is_empty() {
             self.neighbours = neighbours(&self.triangles, &self.across).unwrap_or_default();
@@ -177,7 +177,7 @@ impl FacetNet {
         }
     }
 
-    /// The vertex of a face where a ray from a centre goes through it: a new one, unless one is there.
+    /// The vertex of a face on a ray from a centre: a new one, unless there is one.
     fn pierced(&mut self, members: &[usize], from: Vec3, direction: Vec3) -> Option<u32> {
         for &k in members {
             let t = self.triangles[k];
@@ -213,8 +213,8 @@ impl FacetNet {
         None
     }
 
-    /// Divides a face where a function is zero and another positive; the new sides are seams of that plane. False
-    /// where the zero goes through a vertex that was there.
+    /// Divides a face where a function is zero and another positive; the new sides are seams of
+    /// that plane. False if the zero set contains an existing vertex.
     fn cut(
         &mut self,
         group: u32,
@@ -263,7 +263,7 @@ impl FacetNet {
         true
     }
 
-    /// The widest range of angles that a face leaves free: its middle; none where it has every angle.
+    /// Centre of the widest range of angles without the face; `None` if it has every angle.
     pub fn gap(&self, members: &[usize], angle: &dyn Fn(Vec3) -> Option<f64>) -> Option<f64> {
         let mut taken = [false; PARTS];
         for &k in members {
@@ -296,7 +296,8 @@ impl FacetNet {
         (best >= LEAST_GAP).then_some(middle)
     }
 
-    /// The direction of a half-plane about an axis that goes through few borders of the face, far from its corners.
+    /// The direction of a half-plane about an axis that crosses few borders of the face, far from
+    /// its corners.
     fn seam_angle(
         &self,
         members: &[usize],
@@ -497,7 +498,8 @@ impl FacetNet {
         }
     }
 
-    /// Axes of a face of a sphere: with poles outside of it where it leaves room, along what is beside it if that does.
+    /// Axes of a face of a sphere: with poles outside the face, if possible, along an adjacent
+    /// surface's axis if that allows it.
     fn sphere_axes(
         &self,
         members: &[usize],
@@ -551,7 +553,8 @@ impl FacetNet {
         let mut best = (figure(axes.z), axes.z);
         for (natural, z) in beside.iter().map(|z| (true, *z)).chain(spread.map(|z| (false, z))) {
             let own = figure(z);
-            // What is beside a face wins over directions of no meaning with a little more room.
+            // Axes of adjacent surfaces are preferred to arbitrary directions with slightly wider
+            // gaps.
             let bonus = if natural { 1.0 } else { 1.3 };
             if own.0 > best.0.0 || own.0 == best.0.0 && own.1 > bonus * best.0.1 {
                 best = (own, z);
@@ -641,7 +644,7 @@ impl FacetNet {
     }
 }
 
-/// The triangle across each side of each triangle; none where a side is of one alone.
+/// The triangle across each side of each triangle; `None` if a side has only one.
 fn neighbours(
     triangles: &[[u32; 3]],
     across: &FxHashMap<(u32, u32), u32>,

@@ -20,7 +20,7 @@ pub struct SurfaceImage {
 }
 
 impl SurfaceImage {
-    /// The image; none where X, Y and Z are not independent, are left-handed, or are not finite.
+    /// The image; `None` if X, Y and Z are dependent, left-handed, or not finite.
     pub fn new(of: SurfaceShape, centre: Vec3, columns: [Vec3; 3]) -> Option<Self> {
         let [x, y, z] = columns;
         let det = x.dot(y.cross(z));
@@ -37,12 +37,12 @@ impl SurfaceImage {
         &self.of
     }
 
-    /// By how much it enlarges volumes.
+    /// Factor of volumes.
     pub fn volume_scale(&self) -> f64 {
         self.columns[0].dot(self.columns[1].cross(self.columns[2]))
     }
 
-    /// By how much it enlarges lengths, in the mean.
+    /// Mean factor of lengths.
     pub fn scale(&self) -> f64 {
         libm::cbrt(self.volume_scale())
     }
@@ -108,7 +108,8 @@ impl SurfaceImage {
         Some(made)
     }
 
-    /// The same ellipsoid as the image of a sphere with its axis along another coordinate; none for other surfaces.
+    /// The same ellipsoid as the image of a sphere with its axis along another coordinate; `None`
+    /// for other surfaces.
     pub fn about(&self, z: Vec3) -> Option<SurfaceShape> {
         let SurfaceShape::Sphere { axes, radius } = &self.of else { return None };
         let axes = crate::SurfaceAxes::about(axes.origin, z);

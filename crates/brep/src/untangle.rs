@@ -1,7 +1,7 @@
 //! Triangles that turned over, or became slivers, when their vertices were moved onto their surfaces.
 //!
-//! Where two surfaces touch along a curve, as a blend and what it blends do, cells do not tell where one ends and the
-//! other begins: vertices of the border move by as much as a cell, and small pieces of a third surface may lie there.
+//! If two surfaces touch along a curve, as a blend and its faces do, cells do not resolve their
+//! border: its vertices deviate by up to a cell, and there may be small pieces of a third surface.
 
 use crate::patches::PatchedBody;
 use crate::seams::FacetNet;
@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 /// Triangles of a lower quality are corrected; that of an even one is 1, of one that is turned over less than 0.
 const LEAST: f64 = 0.06;
 
-/// What corrects them must raise the least quality by this.
+/// Minimum gain of the least quality by a correction.
 const GAIN: f64 = 1e-3;
 
 /// Walks over all triangles.
@@ -25,10 +25,10 @@ const NEAR: f64 = 0.02;
 const TOUCHING: f64 = 0.2;
 const STRAIGHT: f64 = 0.75;
 
-/// What corrects a triangle.
+/// Correction of a triangle.
 #[derive(Clone, Copy)]
 enum Repair {
-    /// The side from the first vertex to the second gives way to the other diagonal.
+    /// Flip of the side from the first vertex to the second.
     Flip(u32, u32),
     /// The first vertex becomes the second.
     Collapse(u32, u32),
@@ -139,7 +139,7 @@ impl PatchedBody<'_> {
                     corrected = true;
                 }
             }
-            // What is round them may have become worse.
+            // Their surroundings may have become worse.
             let mut vertices: Vec<u32> = walked.iter().flat_map(|&k| tangle.triangles[k]).collect();
             vertices.sort_unstable();
             vertices.dedup();
@@ -188,7 +188,7 @@ impl PatchedBody<'_> {
         signs.iter().map(|s| if *s < 0.0 { -1.0 } else { 1.0 }).collect()
     }
 
-    /// How even a triangle is, and that it is on its surface's side.
+    /// Quality of a triangle: its shape, and its orientation to the surface.
     fn quality(&self, t: [u32; 3], label: u32) -> f64 {
         self.quality_at(t.map(|v| self.net.positions[v as usize]), label)
     }
@@ -200,7 +200,7 @@ impl PatchedBody<'_> {
         if sides > 0.0 { 2.0 * 3f64.sqrt() * area / sides } else { 0.0 }
     }
 
-    /// The correction that leaves the best of what is round it, if it is better than now.
+    /// The correction with the best result around it, if better than the present state.
     fn best_repair(&self, tangle: &Tangle, k: usize) -> Option<Repair> {
         let t = tangle.triangles[k];
         let mut best: Option<(f64, Repair)> = None;
@@ -264,8 +264,8 @@ impl PatchedBody<'_> {
         Some((before, after))
     }
 
-    /// What takes a sharp turn out of a border of two surfaces that touch: there its vertex is on another line that
-    /// both have in common.
+    /// Correction of a sharp turn in a border of two touching surfaces: its vertex is on another
+    /// common line there.
     fn straighten(&self, tangle: &Tangle, v: u32) -> Option<Repair> {
         let labels = tangle.labels_of(v);
         let at = |v: u32| self.net.positions[v as usize];

@@ -8,7 +8,7 @@ use crate::{Brep, BrepFace, Coedge, SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
 use std::f64::consts::{PI, TAU};
 
-/// Integrals along a part of an edge are those of so many steps and twice and four times as many.
+/// Steps of the integral along a part of an edge; refined to twice and four times as many.
 const STEPS: usize = 16;
 /// Maximum deviation of a winding number from an integer.
 const WHOLE: f64 = 1e-3;
@@ -22,8 +22,8 @@ pub struct BrepVolume {
     pub error: f64,
 }
 
-/// Integrals along a loop: of p x dp / 2, of a weight by the angle about the axis, and the angle itself; and by how
-/// much the angle of the tube grows.
+/// Integrals along a loop: of p x dp / 2, of a weight by the angle about the axis, and the angle
+/// itself; and the change of the angle of the tube.
 #[derive(Clone, Copy, Default)]
 struct LoopIntegrals {
     area: Vec3,
@@ -33,7 +33,7 @@ struct LoopIntegrals {
     error: f64,
 }
 
-/// What is integrated about the axis, by the local coordinates of a point and the angle of the tube.
+/// Integrand about the axis, by the local coordinates of a point and the angle of the tube.
 type Weight<'a> = &'a dyn Fn([f64; 3], f64) -> f64;
 
 fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -187,7 +187,8 @@ impl Brep {
             }
             SurfaceShape::Sphere { axes, radius } => {
                 let (all, cap) = (4.0 * PI * radius * radius, TAU * radius * radius);
-                // A face with a pole has the area up to it as well; one with both or none that which is positive.
+                // A face with one pole includes the area up to it; one with both or none has the
+                // positive value.
                 let known = radius * weighted + cap * winding.abs();
                 let surface = match winding == 0.0 && known <= 1e-9 * all {
                     true => known + all,
@@ -238,8 +239,9 @@ impl Brep {
         Some((scale * (own + from.dot(area)), scale * (error + from.norm() * off)))
     }
 
-    /// The volume that all faces enclose, which are to be oriented out of the material; none where a face is a NURBS, goes
-    /// round an axis so that its border does not tell which part of the surface it is, or has an edge through a pole.
+    /// The volume enclosed by all faces, which must be oriented out of the material; `None` if a
+    /// face is a NURBS, encircles an axis so that its border does not determine the part of the
+    /// surface, or has an edge through a pole.
     pub fn volume(&self) -> Option<BrepVolume> {
         let about = self.vertices.first().copied().unwrap_or_default();
         let (mut volume, mut error) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! Faces that are whole beside patches: on cylinders and cones, and their images. One that goes round its axis is cut in
-//! two by a plane through the axis.
+//! Whole faces beside patches: on cylinders and cones, and their images. A face around its axis is
+//! divided by a plane through the axis.
 //!
 //! `triangles -> cut by planes, a label for each half -> ... -> sides between faces that are lines and ellipses, or near
 //! enough -> faces on their surfaces`
@@ -21,18 +21,18 @@ use std::f64::consts::PI;
 /// Directions of planes that are tried.
 const CHOICES: usize = 48;
 
-/// Corners are at least so many cells from a cut, and vertices that are nearer to it than this are put on it.
+/// Minimum distance of corners from a cut, in cells; closer vertices are moved onto the cut.
 const CLEAR: f64 = 0.5;
 const ONTO: f64 = 0.2;
 
-/// What counts as on a curve, as a share of the size.
+/// Distance, relative to the size, below which a point is on a curve.
 const NEAR: f64 = 1e-9;
 
-/// How far sides of whole faces may be from these, as a share of the accuracy: they meet exact edges of the same face, and
-/// must not cross them where both run nearly side by side.
+/// Maximum distance of the sides of whole faces from these, relative to the accuracy: they meet
+/// exact edges of the same face, and must not intersect them where both are nearly parallel.
 const STRAY: f64 = 0.05;
 
-/// Surfaces of which faces are whole, and what was cut for that.
+/// Surfaces with whole faces, and the cuts made for them.
 #[derive(Default)]
 pub struct WholeSurfaces {
     /// For each label whether its faces are whole ones on a cylinder, a cone or an image.
@@ -46,7 +46,7 @@ pub struct WholeSurfaces {
 }
 
 impl WholeSurfaces {
-    /// As many labels, none of them whole.
+    /// Labels without a whole one.
     pub fn none(count: usize) -> Self {
         let before = (0..count as u32).collect();
         Self { round: vec![false; count], before, ..Self::default() }
@@ -251,12 +251,12 @@ fn divide(net: &mut FacetNet, label: u32, other: u32, (origin, normal): (Vec3, V
 }
 
 impl PatchedBody<'_> {
-    /// Whether faces on a surface are whole ones on a cylinder, a cone or an image.
+    /// True if faces on a surface are whole ones on a cylinder, a cone or an image.
     pub fn is_round(&self, label: u32) -> bool {
         self.whole.round[label as usize]
     }
 
-    /// Whether faces on a surface are whole: also those that are plane.
+    /// True if faces on a surface are whole, including plane ones.
     pub fn is_whole(&self, label: u32) -> bool {
         let surface = &self.facets.surfaces[label as usize];
         self.is_round(label) || matches!(surface, Some(SurfaceShape::Plane { .. }))
@@ -437,7 +437,8 @@ mod tests {
     /// A cylinder of radius 1 on a plane, below the paraboloid z = 1 + 0.3 (x^2 + y^2).
     fn cup() -> LabelledFacets {
         let top = |r: f64| 1.0 + RISE * r * r;
-        // Rings from the middle of the bottom to that of the top: radius, height, label of what is below.
+        // Rings from the centre of the bottom to that of the top: radius, height, label of the
+        // surface below.
         let mut rings = vec![(0.0, 0.0, 0), (0.5, 0.0, 0), (1.0, 0.0, 0)];
         rings.extend((1..=4).map(|k| (1.0, top(1.0) * f64::from(k) / 4.0, 1)));
         rings.extend([(0.6, top(0.6), 2), (0.3, top(0.3), 2), (0.0, top(0.0), 2)]);

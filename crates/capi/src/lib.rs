@@ -13,7 +13,7 @@
 //! code, all of which is about pointers of the caller.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-// The functions are for C, which has no `unsafe`: what callers owe is said in the header.
+// The functions are for C, which has no `unsafe`: the header states the obligations of callers.
 #![allow(unsafe_code, clippy::not_unsafe_ptr_arg_deref)]
 
 mod memory;
@@ -41,7 +41,7 @@ pub const MLF_INTERNAL: i32 = 99;
 #[allow(non_camel_case_types)]
 pub struct mlf_model(Document);
 
-/// A curve or surface of a model as it was when it was asked for.
+/// A curve or surface of a model at the time of its request.
 #[allow(non_camel_case_types)]
 pub struct mlf_shape(ShapeHandle);
 
@@ -144,7 +144,7 @@ pub extern "C" fn mlf_v1_set(
 }
 
 /// Evaluates an expression: a number, a vector or an array. Stores the numbers at `values`, which
-/// has room for `room` of them, and how many they are at `count`.
+/// has a capacity of `room`, and their number at `count`.
 #[unsafe(no_mangle)]
 pub extern "C" fn mlf_v1_eval(
     model: *mut mlf_model,
@@ -297,7 +297,7 @@ pub extern "C" fn mlf_v1_points(
     })
 }
 
-/// So many points are evaluated together, by one thread; more by all that the machine has.
+/// Number of points evaluated together by one thread; more are divided among all threads.
 const CHUNK: usize = 1 << 14;
 
 /// First derivatives of a shape by its parameters at `n` points, given as for mlf_v1_points: for

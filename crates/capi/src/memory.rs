@@ -56,7 +56,7 @@ pub fn array<'a, T>(start: *const T, count: usize) -> Result<&'a [T], StatusErro
         return Ok(&[]);
     }
     check(start.cast(), align_of::<T>())?;
-    // SAFETY: the caller gives so many elements, by the contract of the header; not null, aligned.
+    // SAFETY: the caller passes `count` elements, by the contract of the header; not null, aligned.
     Ok(unsafe { std::slice::from_raw_parts(start, count) })
 }
 

@@ -22,11 +22,11 @@ pub struct LabelData {
 /// A proposed change of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EditData {
-    /// What to replace; `place.text` is empty.
+    /// Replaced range; `place.text` is empty.
     pub place: LabelData,
     /// The new text.
     pub replacement: String,
-    /// What the change does.
+    /// Description of the change.
     pub title: String,
 }
 
@@ -43,9 +43,9 @@ pub struct DiagnosticData {
     pub primary: Option<LabelData>,
     /// Other places that explain it.
     pub secondary: Vec<LabelData>,
-    /// What would have been right.
+    /// Expected input.
     pub expected: Option<String>,
-    /// What stood there instead.
+    /// Found input.
     pub found: Option<String>,
     /// Background.
     pub notes: Vec<String>,

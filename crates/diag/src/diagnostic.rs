@@ -5,12 +5,12 @@ use std::borrow::Cow;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing; nothing is wrong.
     Note,
-    /// Probably not what was meant; the result stands.
+    /// Probably a mistake; the result is valid.
     Warning,
     /// Something could not be done.
     Error,
@@ -36,20 +36,20 @@ impl fmt::Display for Severity {
 /// A place with a few words about it; the words may be empty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Label {
-    /// Where.
+    /// Position.
     pub span: Span,
-    /// What is to be said about it.
+    /// Text of the label.
     pub text: String,
 }
 
 /// A change of the source text that would remove the fault.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Edit {
-    /// What to replace; empty to insert.
+    /// Replaced range; empty for an insertion.
     pub span: Span,
     /// The new text.
     pub replacement: String,
-    /// What the change does, for a menu.
+    /// Description of the change, for a menu.
     pub title: String,
 }
 
@@ -58,17 +58,17 @@ pub struct Edit {
 pub struct DiagnosticFields {
     /// Stable name of the kind of fault, in kebab-case.
     pub id: Cow<'static, str>,
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
-    /// One line that stands alone: lower case, no full stop.
+    /// A self-contained line: lower case, no full stop.
     pub message: String,
     /// The place at fault.
     pub primary: Option<Label>,
     /// Other places that explain it.
     pub secondary: Vec<Label>,
-    /// What would have been right.
+    /// Expected input.
     pub expected: Option<String>,
-    /// What stood there instead.
+    /// Found input.
     pub found: Option<String>,
     /// Background: the path of parents, residuals, the last guess.
     pub notes: Vec<String>,
@@ -80,7 +80,7 @@ pub struct DiagnosticFields {
     pub object: Option<String>,
 }
 
-/// One fault, warning or remark, as data.
+/// One error, warning or note, as data.
 ///
 /// The fields ([`DiagnosticFields`]) are reached through `Deref`; they live on the heap so that `Result<T, Diagnostic>` stays
 /// small.
@@ -119,7 +119,7 @@ impl Diagnostic {
         Self::new(Severity::Warning, id, message)
     }
 
-    /// A remark.
+    /// A note.
     pub fn remark(id: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
         Self::new(Severity::Note, id, message)
     }
@@ -134,13 +134,14 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the place at fault only if there is none yet: for callers further out, who know a coarser place.
+    /// Sets the position of the fault if there is none yet: for callers that know a coarser
+    /// position.
     #[must_use]
     pub fn or_at(self, span: Span) -> Self {
         if self.0.primary.is_some() { self } else { self.at(span) }
     }
 
-    /// Sets the words printed under the place at fault (else `expected …, found …` stands there).
+    /// Sets the words printed under the position of the fault (default: `expected …, found …`).
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
         if let Some(primary) = &mut self.0.primary {
@@ -164,14 +165,14 @@ impl Diagnostic {
         self
     }
 
-    /// Says what would have been right.
+    /// Sets the expected input.
     #[must_use]
     pub fn expected(mut self, text: impl Into<String>) -> Self {
         self.0.expected = Some(text.into());
         self
     }
 
-    /// Says what stood there instead.
+    /// Sets the found input.
     #[must_use]
     pub fn found(mut self, text: impl Into<String>) -> Self {
         self.0.found = Some(text.into());
@@ -201,7 +202,7 @@ impl Diagnostic {
         }
     }
 
-    /// Proposes the nearest of `candidates`, if one is near enough to `name` to be what was meant.
+    /// Suggests the nearest of `candidates`, if one is similar enough to `name`.
     #[must_use]
     pub fn suggest<'a>(self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
         self.maybe_help(crate::nearest(name, candidates).map(crate::did_you_mean))
@@ -245,7 +246,7 @@ impl Diagnostic {
         self
     }
 
-    /// Whether it is an error (and not a warning or a remark).
+    /// True for an error, false for a warning or a note.
     pub fn is_error(&self) -> bool {
         self.0.severity == Severity::Error
     }

@@ -1,9 +1,9 @@
 //! Source spans and diagnostics as data.
 //!
-//! Everything a user can do wrong ends up as a [`Diagnostic`]: a stable kebab-case id, a severity, a message that
-//! stands alone, the places it talks about, what was expected and what was found, and how to fix it. The terminal,
-//! Python and the viewer show the same object; [`render`] prints it, [`Diagnostic::to_data`] resolves its places to
-//! lines and columns for everything else.
+//! Every user error is a [`Diagnostic`]: a stable kebab-case id, a severity, a self-contained
+//! message, its positions, expected and found input, and a remedy. The terminal, Python and the
+//! viewer show the same object; [`render`] prints it, [`Diagnostic::to_data`] resolves its
+//! positions to lines and columns for everything else.
 //!
 //! ```
 //! use moldloft_diag::{Diagnostic, Sources, Span, render};

@@ -39,8 +39,9 @@ pub(crate) fn proposed(help: &str) -> Option<&str> {
     help.strip_prefix("did you mean `")?.strip_suffix("`?").filter(|name| !name.contains('`'))
 }
 
-/// The candidate nearest to `name` that could be what was meant: equal but for case, or within a third of its length
-/// (at least one edit). The first of equally near ones. Names longer than 100 characters have no near one.
+/// The candidate most similar to `name`: equal except for case, or within an edit distance of a
+/// third of its length (at least 1). The first of equally near ones; `None` for names longer than
+/// 100 characters.
 ///
 /// ```
 /// assert_eq!(moldloft_diag::nearest("AbsPiont", ["AbsPoint", "RelPoint"]), Some("AbsPoint"));

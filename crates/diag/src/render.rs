@@ -115,7 +115,7 @@ impl<'a> MarkedPlace<'a> {
     }
 }
 
-/// A text without what moves a cursor or turns the direction of writing, but for line ends.
+/// A text without control characters (except line ends) and changes of writing direction.
 fn clean(text: &str) -> String {
     let turns = |c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let shown = |c: char| if (c.is_control() && c != '\n') || turns(c) { '\u{fffd}' } else { c };

@@ -1,4 +1,4 @@
-//! The table of source texts, and where a byte stands in them.
+//! The table of source texts, and positions of bytes in them.
 
 use crate::{FileId, Span};
 use std::sync::{Arc, OnceLock};
@@ -16,7 +16,7 @@ pub struct Location {
 struct Source {
     name: String,
     text: Arc<str>,
-    /// Byte offset of each line's first byte, found when first asked for.
+    /// Byte offset of each line's first byte, computed on first use.
     line_starts: OnceLock<Vec<u32>>,
 }
 
@@ -67,7 +67,7 @@ impl Sources {
         self.files.len()
     }
 
-    /// Whether there is no text.
+    /// True without texts.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
@@ -92,7 +92,7 @@ impl Sources {
         self.files.iter().rposition(|source| source.name == name).map(|at| FileId(at as u32))
     }
 
-    /// The text a span covers; empty if the span lies outside.
+    /// The text of a span; empty if the span is outside.
     pub fn slice(&self, span: Span) -> &str {
         self.text(span.file).and_then(|text| text.get(span.range())).unwrap_or("")
     }

@@ -40,7 +40,7 @@ impl Span {
         Span { file, start: at, end: at }
     }
 
-    /// Whether the place lies in a source text.
+    /// True if the position is in a source text.
     pub fn is_known(self) -> bool {
         self.file != FileId::UNKNOWN
     }
@@ -62,12 +62,12 @@ impl Span {
         (self.end.saturating_sub(self.start)) as usize
     }
 
-    /// Whether the place covers no byte.
+    /// True for an empty range.
     pub fn is_empty(self) -> bool {
         self.end <= self.start
     }
 
-    /// Whether the byte offset lies in the place or directly at its end.
+    /// True if the byte offset is in the range or directly at its end.
     pub fn touches(self, offset: u32) -> bool {
         self.is_known() && self.start <= offset && offset <= self.end
     }

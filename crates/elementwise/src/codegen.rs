@@ -1,13 +1,13 @@
 //! Makes a program of a tape's instructions: which are taken together in one order, and where the results
 //! of the others are kept.
 //!
-//! A product that one sum alone uses is made by the sum's order, and a sum that only another sum uses goes
-//! into that one's. Everything else is kept in a slot, as few as possible.
+//! A product used by one sum only is computed by the sum's instruction, and a sum used only by
+//! another sum is merged into that one. Everything else is stored in a slot, as few as possible.
 
 use crate::tape::{Code, Instr, Src};
 use crate::vm::{Operand, RowLocation, Sign, Term, VmInstruction, VmProgram};
 
-/// What is known of an instruction.
+/// Data about an instruction.
 #[derive(Clone, Copy, Debug)]
 struct InstrInfo {
     uses: u16,
@@ -15,14 +15,14 @@ struct InstrInfo {
     own: bool,
     /// True when the order of another instruction computes it, too.
     absorbed: bool,
-    /// Where its result is kept.
+    /// Location of its result.
     home: Option<RowLocation>,
     /// The instruction whose order reads the result last.
     last: u16,
     step: EmittedOp,
 }
 
-/// What is multiplied or added, before it is known where that is.
+/// An operand of a product or sum, without a register yet.
 #[derive(Clone, Copy, Debug)]
 enum PendingTerm {
     Own(Src),
@@ -31,10 +31,10 @@ enum PendingTerm {
     ScaledProduct(Src, u16, Src),
 }
 
-/// How an instruction that is not absorbed is carried out.
+/// Form of an instruction that is not merged into another one.
 #[derive(Clone, Copy, Debug)]
 enum EmittedOp {
-    /// As it stands.
+    /// Unchanged.
     Plain,
     Term(PendingTerm),
     Sum(PendingTerm, Sign, PendingTerm),
@@ -51,7 +51,7 @@ pub struct Planner {
     free: Vec<u16>,
     /// The slots of the sources, and the last instruction that reads each.
     sources: Vec<(Option<u16>, u16)>,
-    /// What the order under way reads.
+    /// Operands of the current instruction.
     read: Vec<Src>,
     /// Slots of constants for the order under way.
     filled: Vec<u16>,
@@ -86,7 +86,7 @@ impl Planner {
             }
         }
         for k in (0..n).rev() {
-            // Uses by what is itself used; roots and checked instructions always are.
+            // Uses by used instructions; roots and checked instructions are always used.
             self.nodes[k].own |= check(k);
             if !self.is_wanted(k) {
                 continue;
@@ -98,7 +98,7 @@ impl Planner {
                 }
             }
         }
-        // From the last on, so that what takes others in comes before them.
+        // In reverse order, so that an instruction precedes those merged into it.
         for k in (0..n).rev() {
             if self.is_wanted(k) && !self.nodes[k].absorbed {
                 let step = self.step(code, k);
@@ -129,7 +129,8 @@ impl Planner {
             self.read.clear();
             self.filled.clear();
             let order = self.order(code[k], self.nodes[k].step, check(k), program);
-            // What is read for the last time is free: an order reads a block before it writes the same.
+            // An operand read for the last time is free: an instruction reads a block before it
+            // writes the same.
             self.let_go(k);
             let root = roots.iter().position(|r| *r == Src::Reg(k as u16));
             let home = match root {
@@ -181,7 +182,7 @@ impl Planner {
         })
     }
 
-    /// What an operand of a sum is, products that it alone uses made on the way.
+    /// The term of a sum's operand, with products used only by it merged.
     fn part(&mut self, code: &[Instr], src: Src) -> PendingTerm {
         let product = self.alone(src).and_then(|p| Some((p, self.product(code, p)?)));
         match product {
@@ -196,7 +197,7 @@ impl Planner {
         }
     }
 
-    /// How an instruction is carried out, and what it takes in.
+    /// Form of an instruction, with those merged into it.
     fn step(&mut self, code: &[Instr], k: usize) -> EmittedOp {
         let Instr { code: what, of: [a, b] } = code[k];
         let sign = match what {

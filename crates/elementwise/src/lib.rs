@@ -6,8 +6,8 @@
 //! component. Its instructions become a program of the machine in `vm`, through which the elements go in
 //! chunks.
 //!
-//! Invariant: knows no interpreter, syntax or file; each operation is rounded by itself, so that the bits
-//! depend neither on the processor nor on the order of the passes.
+//! Invariant: independent of interpreter, syntax and files; each operation is rounded separately,
+//! so that the bits depend neither on the processor nor on the order of the passes.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -3,12 +3,12 @@
 //! `expression -> tape -> orders -> chunks`
 //!
 //! A tape is the element-wise part of an expression, one instruction for each operation on one
-//! component; what is alike is written once. When it is run, its instructions become a program of the
-//! [`machine`](crate::vm), through which the elements go in chunks, so that a statement reads its
-//! sources once and writes its result once, whatever the number of its operators.
+//! component, without duplicates. When it is run, its instructions become a program of the
+//! [`machine`](crate::vm), through which the elements are processed in chunks, so that a statement
+//! reads its sources once and writes its result once, whatever the number of its operators.
 //!
-//! Values are those of the operators one after the other, bit for bit: products and sums keep their
-//! order and are rounded each by itself.
+//! Values are those of the operators in sequence, bit for bit: products and sums keep their order
+//! and are rounded separately.
 
 use crate::codegen::Planner;
 use crate::vm::VmProgram;
@@ -17,7 +17,7 @@ use moldloft_registry::{Array, ArrayShape, Vectors};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Where an instruction finds an operand.
+/// Location of an instruction's operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Src {
     /// A row or grid of numbers.
@@ -61,7 +61,7 @@ pub struct Instr {
 }
 
 impl Instr {
-    /// What it reads.
+    /// Operands.
     pub fn operands(&self) -> &[Src] {
         match self.code {
             Code::Neg | Code::Abs | Code::Sqrt | Code::Unary(_) => &self.of[..1],
@@ -96,7 +96,7 @@ impl Cell {
     pub const NONE: Cell = Cell(u16::MAX);
 }
 
-/// Where a source or constant of a tape comes from: a component of a cell, or the number itself.
+/// Origin of a source or constant of a tape: a component of a cell, or the number itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// The entry of the recording.
@@ -119,20 +119,20 @@ impl Origin {
 #[derive(Debug)]
 pub struct Tape<T: Real> {
     planes: Vec<NumberSource<T>>,
-    /// Where the sources and the constants come from.
+    /// Origins of the sources and the constants.
     pub plane_origins: Vec<Origin>,
     /// The origin of each constant.
     pub const_origins: Vec<Origin>,
     /// Cells that were the same array when the tape was made.
     pub aliases: Vec<[Cell; 2]>,
     code: Vec<Instr>,
-    /// Instructions whose results must be finite, in order, and how many elements they have.
+    /// Instructions whose results must be finite, in order, and their numbers of elements.
     checked: Vec<(u16, usize)>,
     planner: Planner,
     program: VmProgram<T>,
 }
 
-/// The most instructions, sources and constants of a tape; a longer expression goes in parts.
+/// Maximum number of instructions, sources and constants of a tape; a longer expression is divided.
 pub const LONGEST: usize = 4_000;
 
 impl<T: Real> Default for Tape<T> {
@@ -150,7 +150,7 @@ impl<T: Real> Default for Tape<T> {
     }
 }
 
-/// How far back an instruction is sought that does the same.
+/// Number of preceding instructions searched for a duplicate.
 const ALIKE: usize = 64;
 
 impl<T: Real> Tape<T> {
@@ -226,7 +226,7 @@ impl<T: Real> Tape<T> {
         self.planes.clear();
     }
 
-    /// The constants, to be set anew before a run of a kept tape.
+    /// The constants, to be set before a run of a cached tape.
     pub fn constants_mut(&mut self) -> &mut [T] {
         &mut self.program.consts
     }
@@ -269,12 +269,12 @@ impl<T: Real> Tape<T> {
         self.push(Instr { code, of: [a, b] }, checked)
     }
 
-    /// How many checks there are so far.
+    /// Number of checks so far.
     pub fn checks(&self) -> usize {
         self.checked.len()
     }
 
-    /// The first check that fails, whatever of the tape is asked for.
+    /// The first failing check, over the whole tape.
     pub fn first_failure(&self) -> Option<usize> {
         let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
         let mut counts: Vec<usize> = self.checked.iter().map(|(_, count)| *count).collect();
@@ -283,8 +283,8 @@ impl<T: Real> Tape<T> {
         counts.into_iter().filter_map(|count| self.failure(&rows, count)).min()
     }
 
-    /// The first check that fails, in the order of the instructions, of those with so many elements: every
-    /// instruction by itself, which the machine has no time for.
+    /// The first failing check, in the order of the instructions, among those with `count`
+    /// elements. Evaluates one instruction at a time, so call it only after a failure.
     fn failure(&self, planes: &[&Vec<T>], count: usize) -> Option<usize> {
         let mut first = self.checked.len();
         // Of operands that are shorter there is nothing.
@@ -324,7 +324,7 @@ impl<T: Real> Tape<T> {
     /// shape.
     pub fn powi(&mut self, a: Src, exponent: i32, checked: Option<ArrayShape>) -> Src {
         let one = self.constant(T::one(), Origin::FIXED);
-        // What is too large has the reciprocal 0.
+        // A divisor that is too large has the reciprocal 0.
         let whole = if exponent < 0 { None } else { checked };
         let mut base = a;
         let mut left = exponent.unsigned_abs();
@@ -343,7 +343,7 @@ impl<T: Real> Tape<T> {
         if exponent < 0 { self.op(Code::Div, one, power, checked) } else { power }
     }
 
-    /// Writes the values of the roots, elements of that shape each, into rows of so many.
+    /// Writes the values of the roots, of that shape each, into rows.
     ///
     /// # Errors
     /// The number of the first check that failed, in the order of the instructions.

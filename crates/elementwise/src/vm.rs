@@ -1,11 +1,12 @@
-//! What runs a tape: a machine that carries out each order for a stretch of elements before the next one.
+//! The machine that runs a tape: it executes each instruction on a chunk of elements before the
+//! next one.
 //!
-//! Stretches are so long that deciding what an order is costs next to nothing, and so short that all they
-//! touch stays in the first cache. Sources are copied to the machine's own memory first, where no pack of
-//! numbers lies across the border of two cache lines; results go to their rows directly. An order that
-//! adds products takes them in as they are made, so that few numbers pass through memory on the way. Packs
-//! are as wide as the processor's registers ([`pulp`] finds out), and each operation is rounded by itself:
-//! the same bits whatever the width.
+//! Chunks are long enough for the dispatch of instructions to be negligible, and short enough for
+//! all their data to stay in the first cache. Sources are first copied to aligned memory of the
+//! machine, so that no pack of numbers crosses a cache line; results are written to their rows
+//! directly. An instruction that adds products computes them too, so that few numbers pass through
+//! memory. Packs are as wide as the processor's registers ([`pulp`] detects the width), and each
+//! operation is rounded separately: the same bits for any width.
 
 use moldloft_num::Real;
 use pulp::bytemuck::cast_slice_mut;
@@ -16,7 +17,7 @@ use std::cell::Cell;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
-/// Where the elements of a stretch are.
+/// Location of the elements of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowLocation {
     /// In a row of the results.
@@ -32,7 +33,7 @@ pub enum Operand {
     Const(u16),
 }
 
-/// What is added or multiplied: numbers in front of `c` are of rows, those behind of constants.
+/// An operand of a sum or product: numbers below `c` are rows, those from it constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Term {
     /// x
@@ -45,15 +46,15 @@ pub enum Term {
     ScaledProduct(RowLocation, u16, RowLocation),
 }
 
-/// Whether a term is added or taken away.
+/// Sign of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     Plus,
     Minus,
 }
 
-/// What becomes of the elements of a stretch; each is what a row of them is set to. Products and sums are
-/// rounded each by itself.
+/// An operation on the elements of a chunk, whose result is written to a row. Products and sums are
+/// rounded separately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VmInstruction {
     /// The elements of a source.
@@ -70,8 +71,8 @@ pub enum VmInstruction {
     Shifted(Term, Sign, u16),
     /// c - x
     From(u16, Term),
-    /// x / y. The last is true for a check, here and below: results must be finite, and so what is
-    /// read, since these make finite numbers of infinite ones.
+    /// x / y. The last is true for a check, here and below: results must be finite, and so must the
+    /// operands, since these operations make finite numbers of infinite ones.
     Ratio(RowLocation, RowLocation, bool),
     /// x / c
     Part(RowLocation, u16, bool),
@@ -86,15 +87,15 @@ pub enum VmInstruction {
     Binary(u16, [Operand; 2], bool),
 }
 
-/// Orders with what they refer to.
+/// Instructions with their operands.
 #[derive(Debug)]
 pub struct VmProgram<T> {
-    /// What to do, and the row that it is done for.
+    /// Operations, and the row of each result.
     pub orders: Vec<(VmInstruction, RowLocation)>,
     pub consts: Vec<T>,
     pub unary: Vec<fn(T) -> T>,
     pub binary: Vec<fn(T, T) -> T>,
-    /// How many slots the orders use.
+    /// Number of slots used.
     pub slots: usize,
     /// True when the results must be finite.
     pub finite: bool,
@@ -120,7 +121,7 @@ impl<T: Real> VmProgram<T> {
         // The processor does not change, and asking it takes longer than a short row.
         static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
         thread_local! {
-            /// Memory for the slots of plain numbers: making it anew takes longer than a short row, too.
+            /// Memory for the slots of plain numbers: an allocation takes longer than a short row.
             static MEMORY: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
         }
         if count == 0 {
@@ -151,7 +152,7 @@ impl<T: Real> VmProgram<T> {
     }
 }
 
-/// The rows that a program reads and writes, and how many elements of each.
+/// The rows that a program reads and writes, and their number of elements.
 struct Rows<'a, T> {
     planes: SmallVec<[&'a [T]; 16]>,
     outs: SmallVec<[&'a mut [T]; 3]>,
@@ -194,7 +195,7 @@ trait Packs: Copy {
     fn sqrt(self, a: Self::Pack) -> Self::Pack;
 }
 
-/// A register's worth of plain numbers.
+/// A register of plain numbers.
 #[derive(Clone, Copy)]
 struct Packed<S>(S);
 
@@ -305,8 +306,8 @@ impl<T: Real> Packs for Single<T> {
     }
 }
 
-/// Packs of a block: what an order reads before it writes the same, so that a row may become a function of
-/// itself, and what hides the time of one operation behind that of the others.
+/// Packs of a block: an instruction reads a whole block before it writes the same, so that a row
+/// may become a function of itself, and the latency of operations is hidden.
 const BLOCK: usize = 4;
 
 /// Packs that are read and written together. A cell, since orders write to memory that others read.
@@ -339,8 +340,8 @@ fn go<P: Packs>(
     let most =
         if large { STRETCH_FAR } else { STRETCH } / (size_of::<P::Number>() * block * all.max(1));
     let blocks = most.clamp(2, 32).min(count.div_ceil(block));
-    // Slots, and rows for what is left over of the results; at a border of two cache lines.
-    // One block apart, since rows a power of two apart would fall into the same few places of the cache.
+    // Slots, and rows for the remainders of results, aligned to cache lines. They are separated by
+    // one block, since rows a power of two apart would map to the same cache sets.
     let stride = blocks + 1;
     let needed = all * stride * block;
     let line = 64 / size_of::<P::Number>().min(64);
@@ -366,7 +367,7 @@ fn go<P: Packs>(
     for at in (0..count).step_by(length) {
         let end = (at + length).min(count);
         if at == whole {
-            // What is left over of the results goes through the machine's memory.
+            // Remainders of results pass through the machine's memory.
             let rows = cells[program.slots * stride..].chunks(stride);
             direct.iter_mut().zip(rows).for_each(|(row, here)| *row = here);
         }
@@ -391,7 +392,7 @@ fn go<P: Packs>(
     !failed
 }
 
-/// What the orders of a stretch work on.
+/// Data of a chunk's instructions.
 struct Machine<'a, P: Packs> {
     planes: &'a [&'a [P::Number]],
     /// The elements of the planes.
@@ -480,7 +481,7 @@ fn carry_out<P: Packs>(
 ) {
     for &(order, to) in &program.orders {
         let to = m.row(to);
-        // Each block becomes what an expression of its number is.
+        // Each block becomes the value of an expression of its number.
         macro_rules! set {
             (|$k:ident| $value:expr) => {
                 for $k in 0..to.len() {
@@ -530,7 +531,7 @@ fn carry_out<P: Packs>(
                 for (to, x) in to.iter().zip(packs) {
                     to.set(*x);
                 }
-                // What is left over, and its last element again and again, which fails no other check.
+                // The remainder, padded with its last element, which cannot fail another check.
                 let done = packs.len() * BLOCK * P::LANES;
                 if let (Some(to), Some(last)) = (to.get(packs.len()), plane.last()) {
                     let mut packs = [p.of(*last); BLOCK];

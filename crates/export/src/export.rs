@@ -1,5 +1,5 @@
-//! One export: the document, the name of the main file, what was asked for, and what rows of the
-//! table ask of it.
+//! One export: the document, the name of the main file, the options, and the services for rows of
+//! the table.
 
 use crate::format::Encoder;
 use crate::{Format, Holds, SymmetryPlanes, length_unit};
@@ -13,31 +13,32 @@ use moldloft_registry::Value;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// What a user may ask of the files.
+/// Options of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WriteOptions {
     /// Lids among the panels of panel codes, or in a file of their own where the code wants that.
     pub lids: bool,
-    /// Only what is below z = 0, cut there, in the files of panel codes.
+    /// True to write only the part below z = 0, cut there, in the files of panel codes.
     pub immersed: bool,
-    /// Only patches with one of these tags; all when there are none.
+    /// Only patches with one of these tags; empty: all.
     pub tags: Vec<String>,
     /// Both sides of a symmetric model, joined in its planes, where files cannot name these planes.
     pub whole: bool,
     /// Triangles only.
     pub triangles: bool,
-    /// How far fitted spline patches may be off, 1e-5 of the model's diagonal by default; in files of panels, how far
-    /// panels may be from their surfaces, by default whatever their divisions make of it.
+    /// Maximum error of fitted spline patches, default 1e-5 of the model's diagonal; in files of
+    /// panels, maximum distance of panels from their surfaces, by default that of their divisions.
     pub tolerance: Option<f64>,
     /// In files of panels, the greatest turn of a surface along a panel, in radians.
     pub angle: Option<f64>,
 }
 
-/// The greatest turn along a panel, in radians, where a distance alone is asked for: holes smaller than it stay round.
+/// Maximum turn along a panel, in radians, if only a distance is given: holes smaller than it stay
+/// round.
 const USUAL_TURN: f64 = 0.5;
 
 impl WriteOptions {
-    /// How near panels are to be to their surfaces, where that is asked for.
+    /// Required accuracy of panels, if given.
     ///
     /// # Errors
     /// A number that is not positive.
@@ -99,7 +100,7 @@ impl From<Vec<Diagnostic>> for ExportFailure {
 /// The files of a model in one format; `main` is the name of the first one, without folder.
 ///
 /// # Errors
-/// What the format does not take of the options, what it cannot hold, what is wrong with the model.
+/// Unsupported options, content that the format cannot represent, errors of the model.
 pub fn write(
     document: &mut Document,
     format: &'static Format,
@@ -123,7 +124,7 @@ pub fn write(
 /// Formats that state a unit of length.
 const STATE_UNIT: [&str; 4] = ["step", "iges", "3mf", "glb"];
 
-/// Refuses what the format has no use for, rather than leaving it out.
+/// Refuses options without an effect on the format.
 fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnostic> {
     let error = |message: String| Err(Diagnostic::error("unused-option", message));
     let name = format.name;
@@ -164,7 +165,7 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
 /// The files of volume blocks in one format; `main` is the name of the first one, without folder.
 ///
 /// # Errors
-/// A format of something else; what the format cannot hold.
+/// A format for other content; content that the format cannot represent.
 pub fn write_blocks(
     blocks: &Blocks,
     format: &Format,
@@ -176,7 +177,7 @@ pub fn write_blocks(
 /// The files of grids of points in one format; `main` is the name of the first one, without folder.
 ///
 /// # Errors
-/// A format of something else; what the format cannot hold.
+/// A format for other content; content that the format cannot represent.
 pub fn write_grids(
     grids: &[StructuredGrid],
     format: &Format,
@@ -205,7 +206,7 @@ fn encoded<T: ?Sized>(
 pub struct FileName<'a>(pub &'a str);
 
 impl<'a> FileName<'a> {
-    /// The name without what follows its last dot: titles, and names of other files, are made of it.
+    /// The name up to its last dot, from which titles and names of other files are derived.
     pub fn stem(&self) -> &'a str {
         match self.0.rfind('.') {
             Some(at) if at > 0 => &self.0[..at],
@@ -228,7 +229,7 @@ impl<'a> FileName<'a> {
     }
 }
 
-/// What a row's writer is given, and asks.
+/// Context of a row's writer.
 pub struct Export<'d> {
     /// The model.
     pub document: &'d mut Document,
@@ -236,7 +237,7 @@ pub struct Export<'d> {
     pub format: &'static Format,
     /// The name of the main file.
     pub main: FileName<'d>,
-    /// What was asked for.
+    /// Options.
     pub options: WriteOptions,
 }
 
@@ -268,7 +269,7 @@ impl Export<'_> {
     /// The cells of the solids in the row's format.
     ///
     /// # Errors
-    /// Cells that cannot be made; what the format cannot hold.
+    /// Cells that cannot be made; content that the format cannot represent.
     pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, ExportFailure> {
         let blocked = self.document.blocked()?;
         let Some(encode) = self.format.volume else { return Ok(Vec::new()) };
@@ -280,7 +281,7 @@ impl Export<'_> {
         length_unit(self.document).1 / 1000.0
     }
 
-    /// The panels of the patches that were asked for.
+    /// The panels of the selected patches.
     ///
     /// # Errors
     /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
@@ -307,7 +308,7 @@ impl Export<'_> {
         lines_and_points(self.document)
     }
 
-    /// What viewers show of the surfaces.
+    /// Fields of the surfaces for viewers.
     ///
     /// # Errors
     /// Panels that cannot be made.
@@ -325,7 +326,7 @@ impl Export<'_> {
     }
 }
 
-/// The panels that some options ask for: of these tags, of both sides, as near to their surfaces.
+/// The panels selected by options: tags, both sides, accuracy.
 ///
 /// # Errors
 /// Panels that cannot be made; unknown tags; numbers that are not positive.

@@ -1,4 +1,4 @@
-//! What a format is: its names, what its files hold, how a model is written in it.
+//! Formats: names, content of their files, writers.
 
 use crate::export::FileName;
 use crate::{Export, ExportFailure};
@@ -6,7 +6,7 @@ use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError};
 use moldloft_mesh::Blocks;
 
-/// What a format is, and how a model is written in it.
+/// A format with its writer.
 pub struct Format {
     /// Its name in commands and calls.
     pub name: &'static str,
@@ -18,11 +18,11 @@ pub struct Format {
     pub other_suffix: &'static str,
     /// A line about it.
     pub about: &'static str,
-    /// What of a model its files hold.
+    /// Content of its files.
     pub holds: Holds,
     /// The planes x = 0 and y = 0 that its files can name as planes of symmetry.
     pub symmetry: SymmetryPlanes,
-    /// What becomes of lids.
+    /// Treatment of lids.
     pub lids: Lids,
     /// The immersed part alone can be written.
     pub immersed: bool,
@@ -40,7 +40,7 @@ pub struct Format {
 pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
 
 impl Format {
-    /// What most formats are: panels of all patches, one side as it is, binary.
+    /// Defaults: panels of all patches, one side, binary.
     pub const PANELS: Self = Self {
         name: "",
         aliases: &[],
@@ -57,11 +57,11 @@ impl Format {
         volume: None,
     };
 
-    /// What formats of the cells of solids are.
+    /// Defaults of formats for the cells of solids.
     pub const VOLUME: Self =
         Self { holds: Holds::Volumes, write: |e| e.write_volume(), ..Self::PANELS };
 
-    /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
+    /// Defaults of panel codes: text, the skin, lids on request, both planes of symmetry.
     pub const PANEL_CODE: Self = Self {
         holds: Holds::Panels,
         symmetry: SymmetryPlanes::Both,
@@ -71,7 +71,7 @@ impl Format {
         ..Self::PANELS
     };
 
-    /// True when lids are written only when asked for.
+    /// True if lids are written only on request.
     pub fn asks_for_lids(&self) -> bool {
         self.lids != Lids::Patches
     }
@@ -82,7 +82,7 @@ impl Format {
     }
 }
 
-/// What of a model the files of a format hold.
+/// Content of a format's files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// Panels.
@@ -95,7 +95,7 @@ pub enum Holds {
     Surfaces,
     /// The cells of solids.
     Volumes,
-    /// What is seen of it.
+    /// A drawing.
     Drawing,
     /// The model itself.
     Model,
@@ -140,13 +140,13 @@ impl SymmetryPlanes {
     }
 }
 
-/// What becomes of lids.
+/// Treatment of lids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lids {
     /// They are patches as others.
     Patches,
-    /// They are written when asked for.
+    /// Written on request.
     Asked,
-    /// They are written to a file of their own when asked for.
+    /// Written to a file of their own on request.
     OwnFile,
 }

@@ -8,11 +8,11 @@ use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
 use moldloft_picture::{Options, PatchStyle, PointName, StyledPolyline, render};
 use moldloft_registry::Value;
 
-/// What the picture is about.
+/// Colour of the subject.
 const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
-/// What it is made of.
+/// Colour of its parents.
 const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];
-/// Names of what it is made of.
+/// Colour of its parents' names.
 const NAME: [u8; 3] = [0x2f, 0x3a, 0x46];
 /// The way to a point.
 const WAY: [u8; 3] = [0xa9, 0xb4, 0xbf];
@@ -23,9 +23,9 @@ const STEPS: usize = 96;
 /// Panels along the edges of solids.
 const PANELS: usize = 8;
 
-/// The picture of a model in which the objects of one kind stand out: shown curves as lines,
-/// points as dots, planes and frames as their outline, the solids of that kind as their faces. Where there are points
-/// only, the way to each along x, y and z is drawn, too.
+/// The picture of a model with the objects of one kind highlighted: visible curves as lines, points
+/// as dots, planes and frames as their outline, the solids of that kind as their faces. If there
+/// are only points, the path to each along x, y and z is drawn too.
 ///
 /// # Errors
 /// An impossible size; a model without panels that can be made.
@@ -64,7 +64,7 @@ pub fn kind_picture(
     }
     let size = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
     let mut lines = Vec::new();
-    // The subject last, so that it lies on top.
+    // The subject is last, so that it is on top.
     for own in [false, true] {
         let colour = if own { SUBJECT } else { OTHER };
         for object in objects.iter().filter(|o| (o.row.name == kind) == own) {
@@ -112,7 +112,7 @@ pub fn kind_picture(
     }
     let graph = document.graph();
     let of_kind = |name: &str| {
-        // The patches of a body are called after it and what they are pieces of.
+        // The names of a body's patches begin with its name, followed by the surface.
         let whole = || graph.find(name.split('.').next()?);
         let object = graph.find(name).or_else(whole).and_then(|key| graph.get(key));
         object.is_some_and(|o| o.row.name == kind)

@@ -1,4 +1,4 @@
-//! A document into files: the one table of formats, and what each makes of a model.
+//! Export of a document: the table of formats and their writers.
 //!
 //! `Document -> Export -> row of FORMATS -> encoder of moldloft-io -> named bytes`
 //!

@@ -1,5 +1,5 @@
-//! The lines drawing: contours that the model names, and cuts at round coordinates along the axes for
-//! which it names none, laid out as body plan, waterlines and buttocks.
+//! The lines drawing: contours of the model, and cuts at round coordinates along the axes without
+//! contours, arranged as body plan, waterlines and buttocks.
 
 use crate::{ExportFailure, length_unit};
 use moldloft_diag::Diagnostic;
@@ -51,7 +51,7 @@ fn cut(
     let panelled = document.entire_panels()?;
     let bounds = panelled.mesh.bounds();
     for axis in 0..3 {
-        // What the model does not ask for is cut at round coordinates.
+        // Axes without contours are cut at round coordinates.
         if contours.iter().all(|c| c.axis != axis) {
             let values = round_values(bounds.low[axis], bounds.high[axis]);
             contours.extend(cuts(document, axis, &values));

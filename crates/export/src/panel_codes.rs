@@ -1,5 +1,5 @@
-//! Panels as panel codes want them: cut at the water where that is asked for, and a symmetry that the
-//! code has no flag for written out, the image with its original.
+//! Panels for panel codes: cut at the water on request, and with images for symmetries that the
+//! code has no flag for.
 
 use crate::{Export, ExportFailure};
 use moldloft_diag::Diagnostic;
@@ -7,7 +7,7 @@ use moldloft_io::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, MeshError};
 
 impl Export<'_> {
-    /// The panels, and what the file says about them.
+    /// The panels, and the options of the file.
     ///
     /// # Errors
     /// As [`Export::panels`]; more vertices than can be counted.

@@ -18,8 +18,8 @@ const CONTOUR_WIDTH: f32 = 1.5;
 const WIRE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
 const WIRE_WIDTH: f32 = 3.0;
 
-/// A picture of the model's panels, its contours as lines, and its mirror images; of a program that has none of them of
-/// the arrays of points among its variables.
+/// A picture of the model's panels, its contours as lines, and its mirror images; for a program
+/// without any of these, of the arrays of points among its variables.
 ///
 /// # Errors
 /// An impossible size; nothing to see.

@@ -34,12 +34,12 @@ const ROUNDING: f64 = 4e-13;
 /// Distance from a plane of symmetry over the size of the model that counts as in the plane.
 const IN_PLANE: f64 = 1e-9;
 
-/// Where the curves that are probed for an exact form run, in [-1, 1].
+/// Positions, in [-1, 1], of the curves that are tested for an exact form.
 const PROBES: [f64; 5] = [-0.83, -0.31, 0.17, 0.56, 0.97];
 
 /// The model's skin as B-spline patches, in the order of its patches; S_u x S_v points out of the
-/// water. A fit is within `tolerance` (1e-5 of the model's diagonal by default) at four places of
-/// each span in each direction. Lids are among the patches when asked for.
+/// water. A fit is within `tolerance` (default: 1e-5 of the model's diagonal) at four points of
+/// each span in each direction. Lids are included on request.
 ///
 /// # Errors
 /// Patches that are no surface of u and v; positions that are not finite; a half that crosses its
@@ -254,7 +254,7 @@ impl SurfaceFit<'_> {
         off.flatten().all(|x| x.abs() <= ROUNDING * self.size)
     }
 
-    /// The fewest even pieces, two or more, each of which is a polynomial; 1 when there are none.
+    /// The minimum number, two or more, of equal pieces that are polynomials; 1 if there is none.
     fn pieces(&self, part: Part, axis: usize) -> usize {
         let is_polynomial = |piece: [f64; 2], degree: usize| {
             let mut own = part;
@@ -267,7 +267,7 @@ impl SurfaceFit<'_> {
         (2..=MOST_PIECES).find(|&count| all(count)).unwrap_or(1)
     }
 
-    /// The patch of given forms that interpolates a part, and how far it is off.
+    /// The patch of given forms that interpolates a part, and its error.
     fn interpolated(&self, part: Part, forms: [Form; 2]) -> SplinePatch {
         let [u, v] = forms.map(UniformBasis::new);
         let (nu, nv) = (u.means.len(), v.means.len());
@@ -345,7 +345,7 @@ impl UniformBasis {
         for column in 0..width {
             let mut curve: Vec<Vec3> = (0..n).map(|row| points[row * width + column]).collect();
             let solved = matrix.clone().solve(&mut curve);
-            // Every mean lies inside the support of its own function, so no pivot vanishes.
+            // Every mean is inside the support of its own function, so no pivot vanishes.
             solved.expect("the matrix of interpolation at the means is regular");
             for (row, point) in curve.into_iter().enumerate() {
                 points[row * width + column] = point;

@@ -1,4 +1,4 @@
-//! The model's unit of length, for what must be said in metres or millimetres.
+//! The model's unit of length, for formats in metres or millimetres.
 
 use moldloft_document::Document;
 use moldloft_lang::model_file::units::{self, PhysicalDimension};
@@ -6,7 +6,7 @@ use moldloft_lang::model_file::units::{self, PhysicalDimension};
 /// Standard gravity in metres per second squared (ISO 80000-3).
 pub const GRAVITY: f64 = 9.80665;
 
-/// The model's unit of length and its size in millimetres; metres when it names none that is known.
+/// The model's unit of length and its size in millimetres; metres if no known one is stated.
 pub fn length_unit(document: &Document) -> (String, f64) {
     let stated = units::parsed(&document.units()).unwrap_or_default();
     let length = stated.into_iter().find(|u| u.1 == PhysicalDimension::Length);
@@ -16,7 +16,7 @@ pub fn length_unit(document: &Document) -> (String, f64) {
 /// In a metre.
 const MILLIMETRES: f64 = 1000.0;
 
-/// The unit of a 3MF file that is so many metres long; metres where it has none.
+/// The unit of a 3MF file with this length in metres; metres if there is none.
 pub(crate) fn threemf_unit(metres: f64) -> &'static str {
     const UNITS: [(f64, &str); 5] = [
         (1e-3, "millimeter"),

@@ -1,4 +1,4 @@
-//! What cannot be faired, and why.
+//! Errors of fairing.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ pub enum FairError {
         /// Index of the first of the two, from 0.
         first: usize,
     },
-    /// Points run back along the direction that gives them their parameters.
+    /// Points are not monotone along the direction of their parameters.
     TurnsAlong {
         /// Index of the first that does, from 0.
         index: usize,
@@ -37,12 +37,12 @@ pub enum FairError {
     OutOfReach {
         /// Index of the datum that is farthest off, in tolerances.
         index: usize,
-        /// How far the best curve that was found is from it.
+        /// Distance of the best curve found.
         distance: f64,
     },
-    /// A budget or a share is out of range, or the measure has none.
+    /// A budget or share is out of range, or does not apply to the measure.
     Goal(&'static str),
-    /// The derivative that is asked for is not known.
+    /// The derivative is not available.
     NoDerivative(&'static str),
     /// A tolerance is negative, NaN or infinite.
     Tolerance {
@@ -51,7 +51,7 @@ pub enum FairError {
     },
     /// A closed curve shrinks to a point when nothing holds it: it needs a tolerance.
     ClosedWithoutTolerance,
-    /// A mark lies outside the list of control points.
+    /// A mark is not the index of a control point.
     Mark {
         /// The mark.
         index: usize,
@@ -67,7 +67,7 @@ pub enum FairError {
     },
     /// Two lists that belong together differ in length.
     Count {
-        /// What is counted.
+        /// Counted items.
         what: &'static str,
         /// The number that is needed.
         expected: usize,
@@ -101,26 +101,26 @@ pub enum FairError {
     },
     /// Shape conditions cannot hold within the tolerance.
     Shape {
-        /// Which, by position in the list given.
+        /// Violated shape conditions, by index in the given list.
         shapes: Vec<usize>,
-        /// By how much they are missed, as a move of the curve.
+        /// Largest violation, as a move of the curve.
         miss: f64,
     },
     /// No curve within the tolerance has so small a measure.
     Energy {
-        /// The measure asked for.
+        /// The requested measure.
         asked: f64,
         /// The least there is.
         least: f64,
     },
     /// A shape condition that these data cannot have.
     Shapeless {
-        /// Which, by position in the list given.
+        /// Index of the shape condition in the given list.
         shape: usize,
-        /// Why, and what to do.
+        /// Reason and remedy.
         why: String,
     },
-    /// A curve runs against the neighbour that it should run on from.
+    /// A curve has the opposite direction to the neighbour that it should continue.
     TurnsBack,
     /// Two surfaces cannot be joined at an edge.
     Seam {

@@ -1,10 +1,10 @@
 //! A heap of keys that can be changed by index, for the next knot to remove.
 
-/// A heap over the items 0..n that knows where each item stands: the largest key comes first,
-/// equal keys in the order of the items, so that results repeat on every machine.
+/// A heap over the items 0..n with the position of each: the largest key comes first, equal keys in
+/// the order of the items, so that results are reproducible.
 ///
-/// Four children to a node and keys beside their items: half the levels of a binary heap and one
-/// line of memory for a node's children, which is what counts at a million items.
+/// A 4-ary heap with keys beside their items has half the levels of a binary heap and one cache
+/// line for a node's children, which dominates at a million items.
 #[derive(Clone, Debug)]
 pub(crate) struct IndexedHeap {
     order: Vec<(f64, u32)>,

@@ -8,16 +8,16 @@
 //!
 //! # A tour
 //!
-//! - [`Space`]: what control points mean. Any degree, any knots, open or closed. Data used directly
-//!   as control points are [`Space::floating`]; [`interpolate`] and [`least_squares`] make a spline
-//!   of data points.
-//! - [`Job`]: a curve to be faired, with what must be kept: [`Limit`] (balls, boxes, one direction,
-//!   one plane; per control point), `marks` (intended breaks), [`EndContinuity`]s, weights.
+//! - [`Space`]: splines of any degree on any knots, open or closed. Data used directly as control
+//!   points are [`Space::floating`]; [`interpolate`] and [`least_squares`] make a spline of data
+//!   points.
+//! - [`Job`]: a curve to be faired with its conditions: [`Limit`] (balls, boxes, one direction, one
+//!   plane; per control point), `marks` (intended breaks), [`EndContinuity`]s, weights.
 //! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
 //!   [`with_findings`] takes them into account.
-//! - [`knot_removal()`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
-//!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`multilevel()`] for bulk
-//!   work and long waves.
+//! - [`knot_removal()`]: the classical method, knots removed and re-inserted one by one, the worst
+//!   first, with a log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and
+//!   [`multilevel()`] for large data and long waves.
 //! - [`optimum`]: the least of a [`Measure`] under hard bounds ([`Bound`]) and linear
 //!   [`Condition`]s, with a [`Certificate`] that does not trust the solver.
 //! - [`deviation`]: certified and sampled distance from the original.
@@ -27,13 +27,13 @@
 //! - [`shape`] and [`surface`]: curvature, torsion, combs, monotone pieces, inflections,
 //!   logarithmic curvature graphs, orthotomics; Gaussian and mean curvature, isophotes, highlight
 //!   and reflection lines, zebra, the metric of grids.
-//! - [`report()`]: all of it about one fairing, as data ([`FairingReport`]) and as text. This is what the
-//!   command line prints: rows of a file are control points ([`Job::of_points`]), points moved
-//!   directly (the same, and the faired points are the result), or fitted first ([`interpolate`],
-//!   then [`Job::new`] with [`Fit::space`]). `deviation_certified`, `deviation_sampled`,
-//!   `jumps_before`, `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
-//!   [`CurveStatistics::jumps`] of [`FairingReport::before`] and [`FairingReport::after`], and [`Certificate::gap`].
-//!   [`Network::report`] does the same for nets.
+//! - [`report()`]: figures of a fairing, as data ([`FairingReport`]) and as text, as printed by the
+//!   command line. Rows of a file are control points ([`Job::of_points`]), points moved directly
+//!   (the same, and the faired points are the result), or interpolated first ([`interpolate`], then
+//!   [`Job::new`] with [`Fit::space`]). `deviation_certified`, `deviation_sampled`, `jumps_before`,
+//!   `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
+//!   [`CurveStatistics::jumps`] of [`FairingReport::before`] and [`FairingReport::after`], and
+//!   [`Certificate::gap`]. [`Network::report`] does the same for nets.
 //! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf`, `FairNet` and the functions `fair`, `jumps`,
 //!   `curvature` of the language, with derivatives ([`optimum_with`], [`replay_with`]).
 //!
@@ -59,10 +59,10 @@
 //!
 //! # Where things are
 //!
-//! `curve/`: one curve: what its control points mean, fits, limits, conditions, knot removal.
-//! `optimum/`: the interior point method and its certificates. `net/`: surfaces and networks.
-//! `interrogate/`: curvature, deviation, reports. `kinds/`: what models say. [`SparseRows`] and
-//! [`Measure`] are what all of these speak in.
+//! `curve/`: spaces, fits, limits, conditions and knot removal of one curve. `optimum/`: the
+//! interior point method and its certificates. `net/`: surfaces and networks. `interrogate/`:
+//! curvature, deviation, reports. `kinds/`: rows of the registry. All are based on [`SparseRows`]
+//! and [`Measure`].
 //!
 //! # Conventions
 //!

@@ -23,7 +23,7 @@ pub enum Measure {
     Variation,
 }
 
-/// Whether a measure adds up squares or lengths of its rows.
+/// Norm of the rows of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowNorm {
     /// Sum of squares.
@@ -60,7 +60,7 @@ impl Measure {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// How its rows are added up.
+    /// Norm in which its rows are summed.
     pub fn norm(self) -> RowNorm {
         if self == Measure::JumpLengths { RowNorm::Length } else { RowNorm::Square }
     }
@@ -157,7 +157,7 @@ fn integrated(space: &Space, order: usize) -> SparseRows {
     rows
 }
 
-/// What makes an integral of squared derivatives of an order free of the parameter's unit.
+/// Factor that makes an integral of squared derivatives independent of the parameter's unit.
 pub(crate) fn unit_of(mean: f64, order: usize) -> f64 {
     mean.powi(2 * order as i32 - 1)
 }
@@ -172,10 +172,10 @@ impl Measure {
         }
     }
 
-    /// The measure of points themselves at parameters that rise by 1 in all (of a closed curve from
-    /// the first to itself): divided differences, each weighted with the root of the range that it
-    /// stands for, so that the sum of squares approximates the integral of the squared derivative.
-    /// Zero on polynomials below its order at any spacing.
+    /// The measure of points themselves at parameters with a total range of 1 (closed: from the
+    /// first to itself): divided differences, each weighted with the square root of its interval,
+    /// so that the sum of squares approximates the integral of the squared derivative. Zero on
+    /// polynomials below its order at any spacing.
     pub fn divided<T: moldloft_num::Real>(
         self,
         at: &[T],

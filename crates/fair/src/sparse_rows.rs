@@ -45,7 +45,7 @@ impl SparseRows {
         self.starts.len() - 1
     }
 
-    /// True when there are none.
+    /// True without rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -102,7 +102,7 @@ impl SparseRows {
         }
     }
 
-    /// Calls `add` with each column's share of the transpose times `x`.
+    /// Calls `add` with each column's contribution to the transpose times `x`.
     pub(crate) fn add_transposed_into(
         &self,
         x: &[Vec3<f64>],

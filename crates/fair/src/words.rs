@@ -1,4 +1,4 @@
-//! The words of the options, read in one place for models, Python and the command.
+//! Words of the options, parsed here for models, Python and the command.
 
 use crate::curve::fit::ParameterSpacing;
 use crate::curve::request::PointSpacing;
@@ -12,11 +12,11 @@ use std::fmt;
 pub struct WordError {
     /// The kind of fault: "unknown-name", "no-share" or "other-mode".
     pub id: &'static str,
-    /// What the word is of.
+    /// Name of the option.
     pub noun: &'static str,
     /// The word.
     pub found: String,
-    /// What was expected.
+    /// Allowed words.
     pub expected: String,
 }
 
@@ -45,13 +45,13 @@ impl std::error::Error for WordError {}
 /// The goals.
 pub const GOALS: [&str; 6] = ["near", "budget", "fairest", "nearest", "energy", "closest"];
 
-/// The share of the goal "nearest" without one.
+/// Default of `share` for the goal "nearest".
 const NEAREST: f64 = 0.1;
 
 /// The goal called `word`, with its share: of "near" and "budget" `budget` without one.
 ///
 /// # Errors
-/// Of an unknown word, and of "energy" without a measure.
+/// For an unknown word, and for "energy" without a measure.
 pub fn goal(word: &str, share: Option<f64>, budget: f64) -> Result<Goal, WordError> {
     Ok(match word {
         "near" => Goal::Near(share.unwrap_or(budget)),
@@ -69,14 +69,14 @@ pub fn goal(word: &str, share: Option<f64>, budget: f64) -> Result<Goal, WordErr
     })
 }
 
-/// The ways in which points get parameters.
+/// Values of `spacing`.
 pub const SPACINGS: [&str; 8] =
     ["auto", "chord", "centripetal", "x", "y", "z", "index", "curvature"];
 
-/// The way in which points get their parameters that is called `word`.
+/// Parametrisation called `word`.
 ///
 /// # Errors
-/// Of an unknown word.
+/// For an unknown word.
 pub fn spacing(word: &str) -> Result<PointSpacing, WordError> {
     let axis = |x, y, z| ParameterSpacing::Along(Vec3::of(x, y, z));
     Ok(PointSpacing::Given(match word {
@@ -92,13 +92,13 @@ pub fn spacing(word: &str) -> Result<PointSpacing, WordError> {
     }))
 }
 
-/// What an open end keeps.
+/// Conditions at open ends.
 pub const ENDS: [&str; 4] = ["free", "position", "tangent", "curvature"];
 
 /// The end condition called `word`, or a number of control points.
 ///
 /// # Errors
-/// Of an unknown word.
+/// For an unknown word.
 pub fn end(word: &str) -> Result<EndContinuity, WordError> {
     if let Ok(count) = word.parse() {
         return Ok(EndContinuity::Points(count));
@@ -113,16 +113,16 @@ pub fn end(word: &str) -> Result<EndContinuity, WordError> {
 /// The measure called `word`.
 ///
 /// # Errors
-/// Of an unknown word.
+/// For an unknown word.
 pub fn measure(word: &str) -> Result<Measure, WordError> {
     let all = Measure::ALL.map(Measure::name);
     Measure::named(word).ok_or_else(|| WordError::unknown("measure", word, &all))
 }
 
-/// The directions in which points move: `word` is none, "across" or "box".
+/// Directions of motion; `word` is `None`, "across" or "box".
 ///
 /// # Errors
-/// Of an unknown word, and of one that needs a direction or has none.
+/// For an unknown word, and for one that needs a direction or excludes one.
 pub fn motion(along: Option<Vec3<f64>>, word: Option<&str>) -> Result<Motion, WordError> {
     let with = |word: &str, expected: &str| WordError {
         id: "other-mode",

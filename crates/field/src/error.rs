@@ -1,4 +1,4 @@
-//! What can be wrong with a primitive, a set, a blend or a question to them.
+//! Errors of primitives, sets, blends and queries.
 
 use moldloft_budget::Spent;
 use moldloft_num::{Box3, Vec3};
@@ -10,50 +10,50 @@ use std::fmt;
 pub enum FieldError {
     /// A number that is infinite or not a number.
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
     },
     /// A size that must be above zero.
     NotPositive {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
     },
-    /// A direction of no length, or points that coincide or lie in one plane.
+    /// A direction of zero length, or points that coincide or are coplanar.
     Degenerate {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
     },
     /// Primitives may be divided by a real other than zero only.
     Division,
     /// Exponents are whole numbers from 0 to 1000.
     Exponent {
-        /// What was given.
+        /// Given value.
         value: f64,
     },
-    /// The weight of a blend lies strictly between 0 and 1.
+    /// The weight of a blend must be strictly between 0 and 1.
     Lambda {
-        /// What was given.
+        /// Given value.
         value: f64,
     },
     /// The two rails of a transition meet, or could not be shown to keep apart.
     RailsMeet {
-        /// Where.
+        /// Position of the fault.
         place: Box3,
     },
-    /// On its rail the blend meets a body with its inside out: the rail lies inside the other body.
+    /// On its rail the blend meets an inverted body: the rail is inside the other body.
     RailInside {
-        /// Which body it should leave outside.
+        /// Number of the body that the rail should leave outside.
         body: usize,
-        /// Where.
+        /// Position of the fault.
         place: Box3,
     },
     /// The body has no direction at its rail (zero gradient), so nothing can be tangent to it.
     RailSingular {
-        /// Which body.
+        /// Number of the body.
         body: usize,
-        /// Where.
+        /// Position of the fault.
         place: Box3,
     },
     /// The box has no volume, or is not finite.
@@ -72,12 +72,12 @@ pub enum FieldError {
     },
     /// The accuracy would need more boxes than allowed.
     TooFine {
-        /// How many boxes it would need, estimated.
+        /// Estimated number of boxes needed.
         boxes: f64,
-        /// How many are allowed.
+        /// Maximum number of boxes.
         limit: f64,
     },
-    /// The box is so far from the origin that coordinates there do not tell its cells apart.
+    /// The box is so far from the origin that rounding does not resolve its cells.
     FarAway {
         /// The greatest coordinate.
         far: f64,
@@ -86,30 +86,30 @@ pub enum FieldError {
     },
     /// Nearly all cells of large parts of the box hold the surface: the set has waves smaller than they are.
     TooRough {
-        /// How many such cells there are so far.
+        /// Number of such cells found.
         cells: usize,
         /// The side of a cell.
         step: f64,
     },
     /// Part of the set is thinner than the cells.
     Thin {
-        /// Where.
+        /// Position of the fault.
         place: Box3,
         /// The side of a cell.
         step: f64,
-        /// From about which depth on its cells are small enough.
+        /// Approximate minimum depth for small enough cells.
         depth: u32,
     },
     /// The accuracy was not reached with the cells allowed.
     NotReached {
-        /// What was asked.
+        /// Requested accuracy.
         asked: f64,
-        /// What was reached.
+        /// Accuracy reached.
         reached: f64,
-        /// With how many cells.
+        /// Number of cells used.
         cells: usize,
     },
-    /// The box is thinner than its cells, so that what is in it would get lost.
+    /// The box is thinner than its cells, so that its content would be lost.
     ThinBox {
         /// The axis along which it is, 0 to 2.
         axis: usize,
@@ -117,12 +117,12 @@ pub enum FieldError {
         side: f64,
         /// The side of a cell.
         step: f64,
-        /// From which depth on its cells are small enough.
+        /// Minimum depth for small enough cells.
         depth: u32,
     },
     /// The body is not closed, so it has no inside.
     NotClosed {
-        /// How many edges have not as many triangles on one side as on the other.
+        /// Number of edges without an equal number of triangles on both sides.
         edges: usize,
     },
     /// A body with too many faces for the allowed size of its set.
@@ -132,19 +132,20 @@ pub enum FieldError {
     },
     /// Round sides of a body touch, or cross, so that no plane beside them parts them.
     RoundSides,
-    /// An edge inside of a body, or in one of its faces, whose mitre would stand out of the grown body.
+    /// An edge inside a body, or in one of its faces, whose mitre would protrude from the offset
+    /// body.
     HiddenEdge {
         /// A point of it.
         place: Vec3,
     },
-    /// A primitive of which no distance is known in closed form.
+    /// A primitive without a distance in closed form.
     NoDistance {
-        /// What it was made as.
+        /// Kind of primitive.
         kind: &'static str,
     },
-    /// Sets of which no convex hull or Minkowski sum is known in closed form.
+    /// Sets without a convex hull or Minkowski sum in closed form.
     NoHull {
-        /// What was found.
+        /// The set found.
         found: String,
     },
     /// Two faces that meet in no edge of the set.
@@ -154,11 +155,11 @@ pub enum FieldError {
     },
     /// A function from outside, which has no text.
     Outside,
-    /// The caller asked to stop, or memory or time are used up.
+    /// Cancelled by the caller, or memory or time are used up.
     Spent(Spent),
     /// A primitive had no finite value.
     NoValue {
-        /// Where.
+        /// Position of the fault.
         at: Vec3,
     },
 }

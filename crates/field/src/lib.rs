@@ -1,12 +1,12 @@
-//! Implicit solids: primitives by arithmetic, and what can be asked of them.
+//! Implicit solids: primitives from arithmetic, sets, and queries to them.
 //!
 //! `planes, reals -> Primitive -> Set -> tape -> values, gradients, ranges -> facets`
 //!
 //! Conventions: a function is negative in the solid, zero on the surface and positive in air; normals
 //! point from solid to air; angles are radians.
 //!
-//! Invariant: this crate knows no graph, no language and no file. Ranges are rounded outward; sums and
-//! maps run in fixed order, so their bits do not depend on threads.
+//! Invariant: this crate is independent of graph, language and files. Ranges are rounded outward;
+//! sums and maps have a fixed order, so their bits do not depend on threads.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

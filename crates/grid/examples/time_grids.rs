@@ -1,10 +1,10 @@
-//! How long a 500 x 500 grid takes: transfinite interpolation and 200 elliptic sweeps, by the clock and,
-//! where the system tells it, by the processor time of all threads together.
+//! Time of a 500 x 500 grid: transfinite interpolation and 200 elliptic sweeps, by the clock and,
+//! if the system supports it, by processor time of all threads.
 use moldloft_grid::*;
 use moldloft_num::Vec3;
 use std::time::Instant;
 
-/// The processor time of this program so far, in seconds.
+/// Processor time of this program so far, in seconds.
 fn processor() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // After the name in brackets; user and system time are the twelfth and thirteenth field, in

@@ -7,7 +7,7 @@ use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use moldloft_parallel::prelude::*;
 
-/// How the parameters of an inner point follow from the edges.
+/// Parametrisation of inner points from that of the edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
     /// By arc length: where the line between the normalised lengths s1 and s2 of the edges j = 1
@@ -25,7 +25,7 @@ pub enum Blend {
     Soni2,
 }
 
-/// Normalised arc lengths of the points of an edge; `None` when it has none.
+/// Normalised arc lengths of the points of an edge; `None` for an edge without length.
 fn lengths<T: Real>(points: &[Vec3<T>], size: f64) -> Option<Vec<T>> {
     let mut total = T::zero();
     let mut all = vec![total];
@@ -152,8 +152,8 @@ pub fn transfinite_until<T: Real>(
     Ok(SurfaceGrid { m, n, planes })
 }
 
-/// Rows of the grid from `first` on; a struct, for closures need not be inlined, and what is not
-/// inlined does not get the wide registers.
+/// Rows of the grid from `first` on. A struct instead of closures, since code in closures that are
+/// not inlined does not use the wide registers.
 struct Fill<'a, T> {
     frame: &'a EdgeRows<T>,
     first: usize,

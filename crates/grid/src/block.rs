@@ -14,9 +14,9 @@ pub type Faces<T> = [SurfaceGrid<T>; 6];
 /// The layers k = 1 .. nk, each [ni, nj], of the block that has these faces, to the bit, and whose
 /// inside is interpolated from them (Gordon and Hall 1973).
 ///
-/// Parameters are the normalised arc lengths of the four edges of each direction, blended bilinearly
-/// by their means in the other two; edges without length are left out of the blend, and a direction
-/// with none is even.
+/// Parameters are the normalised arc lengths of the four edges of each direction, blended
+/// bilinearly by their means in the other two; edges without length are left out of the blend, and
+/// a direction of only such edges is uniform.
 ///
 /// # Errors
 /// [`GridError::FaceSizes`]; [`GridError::FacesApart`] where two faces do not share their edge.
@@ -71,7 +71,7 @@ struct TransfiniteBlock<'a, T> {
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
 /// The parameters of the four edges along an axis: at the low and high ends of the first other axis
-/// (slow) and the second (fast); none for an edge without length.
+/// (slow) and the second (fast); `None` for an edge without length.
 type Edges<T> = [Option<Vec<T>>; 4];
 
 impl<T: Real> TransfiniteBlock<'_, T> {
@@ -81,7 +81,7 @@ impl<T: Real> TransfiniteBlock<'_, T> {
         self.faces[2 * axis + end].at(at[a], at[b])
     }
 
-    /// The point when it lies on a face; of two faces the first counts, they agree.
+    /// The point, if it is on a face; on an edge the first face counts, since both agree.
     fn on_face(&self, at: [usize; 3]) -> Option<Vec3<T>> {
         let axis = (0..3).find(|&axis| at[axis] == 0 || at[axis] + 1 == self.size[axis])?;
         Some(self.at_face(axis, usize::from(at[axis] != 0), at))

@@ -5,13 +5,14 @@ use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// What is measured of each cell of a block.
+/// Quality metric of a block's cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockMetric {
     /// Scaled Jacobian: the least triple product of the unit edges at a corner, 1 at best; negative where a corner is
     /// turned over against the block's own hand.
     ScaledJacobian,
-    /// Equiangular skewness: how far the worst angle of a face is from a right one, as a share of that; 0 at best.
+    /// Equiangular skewness: deviation of the worst angle of a face from 90°, relative to 90°; 0 is
+    /// best.
     Skew,
     /// The longest over the shortest of the three lines that join the middles of opposite faces.
     Aspect,
@@ -65,7 +66,7 @@ pub fn block_quality<T: Real>(grid: &VolumeGrid<T>, metric: BlockMetric) -> Vec<
 /// As [`block_quality`]; ends early when `budget` is spent.
 ///
 /// # Errors
-/// What it is spent on.
+/// The exceeded limit.
 pub fn block_quality_until<T: Real>(
     grid: &VolumeGrid<T>,
     metric: BlockMetric,

@@ -1,4 +1,4 @@
-//! Control terms: how elliptic grids keep the spacing of their edges, or take one that is asked for.
+//! Control terms of elliptic grids, which keep the spacing of the edges or impose a given one.
 
 use crate::lines::Control;
 use crate::{GridSide, SurfaceGrid, Wall};
@@ -32,7 +32,7 @@ pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
             _ => [along(&p), along(&q)],
         }
     };
-    // The rows of the grid run along j: "across" goes with i.
+    // The rows of the grid are along j: "across" belongs to i.
     let [low, high] = pair(GridSide::FirstJ, GridSide::LastJ);
     let [first, last] = pair(GridSide::FirstI, GridSide::LastI);
     let mix = |a: T, b: T, k: usize, n: usize| a + (b - a) * (k as f64 / (n - 1) as f64);
@@ -42,23 +42,23 @@ pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
     }
 }
 
-/// How far from its wall a term falls to 1/e, in cells.
+/// Distance from its wall, in cells, at which a term has decayed to 1/e.
 const REACH: f64 = 1.0 / 0.3;
 
 /// Terms, with those of the edges, may not grow beyond this: central differences lose their sense at 2.
 const MOST: f64 = 1.9;
 
-/// What of an error, as an angle, goes into a term in one sweep.
+/// Fraction of an error, as an angle, that is added to a term in one sweep.
 const SHARE: f64 = 0.2;
 
-/// How far a wall is from what is asked.
+/// Deviations of a wall from its specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallReport {
     /// The edge.
     pub edge: GridSide,
-    /// The least and the greatest first cell, as shares of the one asked for.
+    /// Smallest and largest first cell height, relative to the given one.
     pub cells: [f64; 2],
-    /// The largest deviation from the angle asked for, in radians.
+    /// Largest deviation from the given angle, in radians.
     pub angle: f64,
 }
 
@@ -69,8 +69,8 @@ impl WallReport {
     }
 }
 
-/// The terms of Hilgenstock (1988) at the walls, found as the grid develops: each sweep adds to them what the first
-/// cells and angles are off.
+/// The terms of Hilgenstock (1988) at the walls, found iteratively: each sweep adds the errors of
+/// first cells and angles.
 ///
 /// Unlike those of Steger and Sorenson (1979), which solve for them, they give the cell itself, and two walls
 /// converge.
@@ -85,7 +85,7 @@ impl<T: Real> WallTerms<T> {
         Self { terms }
     }
 
-    /// One step towards the terms with which the grid meets the walls as asked, and how far off it is.
+    /// One step towards the terms with which the walls are as specified; returns the deviations.
     pub fn update(&mut self, grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<WallReport> {
         let each = walls.iter().zip(&mut self.terms).map(|(wall, terms)| {
             let view = EdgeView { grid, edge: wall.edge };
@@ -151,7 +151,7 @@ impl<T: Real> WallTerms<T> {
     }
 }
 
-/// How far the walls of a grid are from what is asked.
+/// Deviations of a grid's walls from their specification.
 pub fn wall_reports<T: Real>(grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<WallReport> {
     WallTerms::new(grid, walls).update(grid, walls)
 }

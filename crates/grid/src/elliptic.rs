@@ -10,7 +10,7 @@ use moldloft_budget::Budget;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_parallel::prelude::*;
 
-/// What the grid is drawn to besides smoothness.
+/// Control of the spacing besides smoothness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// Nothing (Winslow 1966).
@@ -34,9 +34,9 @@ pub struct Wall<T> {
     pub angle: T,
 }
 
-/// How a grid is smoothed.
+/// Options of elliptic smoothing.
 pub struct Elliptic<'a, T: Real> {
-    /// What it is drawn to.
+    /// Control of the spacing.
     pub method: Method,
     /// The most sweeps; each solves every grid line of one direction once, the directions taking
     /// turns, two sweeps each.
@@ -62,13 +62,13 @@ pub struct Smoothed<T> {
     pub grid: SurfaceGrid<T>,
     /// The sweeps that were done.
     pub sweeps: usize,
-    /// The greatest step of the last sweep, as a share of the size.
+    /// Largest step of the last sweep, relative to the size.
     pub change: f64,
     /// That of each sweep.
     pub history: Vec<f64>,
-    /// How far the walls are from what is asked.
+    /// Deviations of the walls from their specification.
     pub walls: Vec<WallReport>,
-    /// True when no point moves any more and the walls have what is asked.
+    /// True if the points have converged and the walls are as specified.
     pub converged: bool,
 }
 
@@ -248,10 +248,9 @@ struct Constraint<'a, T: Real> {
 impl<T: Real> Constraint<'_, T> {
     /// Solves all inner rows of one colour for steps in the surface, over-relaxed by `omega`.
     ///
-    /// What is left over of the equations at a point counts in the tangent plane only; its component
-    /// along the normal is what keeps the grid on the surface. The steps that the row's equations give
-    /// are projected to the tangent planes, turned into steps of (u, v), kept inside the surface, and
-    /// the points evaluated there.
+    /// Only the tangential residual at a point counts; the normal component is the constraint force
+    /// of the surface. The steps of the row's equations are projected to the tangent planes,
+    /// converted to steps of (u, v), limited to the surface, and the points evaluated there.
     fn pass(&mut self, colour: usize, omega: f64, control: Option<&Control<T>>) -> Change {
         let rows = &mut self.points;
         let (m, n) = (rows.m, rows.n);

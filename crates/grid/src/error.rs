@@ -1,4 +1,4 @@
-//! What can be wrong with a grid, with the place.
+//! Errors of grids, with the position.
 
 use crate::GridSide;
 use crate::marching::outcome::MarchFailure;
@@ -35,7 +35,7 @@ pub enum GridError {
     EdgesApart {
         /// The corner.
         corner: Corner,
-        /// How far they are apart there.
+        /// Distance at this position.
         gap: f64,
     },
     /// Two faces of a block do not have an edge in common.
@@ -44,7 +44,7 @@ pub enum GridError {
         faces: [usize; 2],
         /// The point of the first face at which they differ most, from 1.
         at: [usize; 2],
-        /// How far they are apart there.
+        /// Distance at this position.
         gap: f64,
     },
     /// The sizes of the faces of a block do not fit.
@@ -58,7 +58,7 @@ pub enum GridError {
     },
     /// The grid has cells that are turned over.
     Folded {
-        /// How many.
+        /// Number.
         count: usize,
         /// The first one, from 1.
         at: [usize; 2],

@@ -28,7 +28,7 @@ pub struct HexMesh {
     pub patches: Vec<BoundaryPatch>,
 }
 
-/// What the faces of a block are on the boundary: name and type.
+/// Name and type of each face of a block on the boundary.
 pub type FaceNames = [Option<(String, String)>; 6];
 
 /// The corners of a hexahedron as indices (i, j, k).
@@ -46,8 +46,8 @@ impl HexMesh {
         self.cells.iter().filter(is_collapsed).count()
     }
 
-    /// The mesh of blocks, whose nodes are one where they coincide to 1e-10 of the size; left-handed blocks are
-    /// turned over. What is not a face of two cells is boundary.
+    /// The mesh of blocks, with nodes merged within 1e-10 of the size; left-handed blocks are
+    /// inverted. Faces of one cell only are boundary.
     pub fn of_blocks<T: Real>(blocks: &[VolumeGrid<T>], names: &[FaceNames]) -> Self {
         Self::joined(blocks, names, &|| Ok(())).expect("nothing ends it")
     }
@@ -55,7 +55,7 @@ impl HexMesh {
     /// As [`Self::of_blocks`]; ends early when `budget` is spent.
     ///
     /// # Errors
-    /// What it is spent on.
+    /// The exceeded limit.
     pub fn of_blocks_until<T: Real>(
         blocks: &[VolumeGrid<T>],
         names: &[FaceNames],
@@ -136,7 +136,7 @@ impl HexMesh {
     }
 }
 
-/// So many cells are measured between two looks at what is left of the budget.
+/// Number of cells measured between two checks of the budget.
 const CELLS_AT_ONCE: usize = 1 << 12;
 
 impl VolumeGrid<f64> {
@@ -264,7 +264,8 @@ pub struct MeshCheck {
     /// Angles between the line of two cell centres and the normal of their face, in degrees: the largest, and the one
     /// whose cosine is the mean of the cosines, which checkMesh calls the average.
     pub non_orthogonality: [f64; 2],
-    /// Largest skewness: how far the line of two centres misses the face centre, over the face's size.
+    /// Largest skewness: distance between the face centre and the line of the two cell centres,
+    /// relative to the size of the face.
     pub skewness: f64,
     /// Largest aspect ratio, over Cartesian components: it depends on the axes.
     pub aspect: f64,
@@ -291,7 +292,7 @@ impl HexMesh {
     /// As [`Self::check`]; ends early when `budget` is spent.
     ///
     /// # Errors
-    /// What it is spent on.
+    /// The exceeded limit.
     pub fn check_until(&self, budget: &Budget) -> Result<MeshCheck, Spent> {
         self.checked(&|| budget.poll())
     }
@@ -415,7 +416,8 @@ impl HexMesh {
         self.take_skewness(check, quad, [middle - p, d, area], 0.2);
     }
 
-    /// By how far the line `d` of two centres misses the face centre, which is at `q` from the first.
+    /// Skewness for the line `d` between two centres and the face centre, which is at `q` from the
+    /// first.
     fn take_skewness(
         &self,
         check: &mut MeshCheck,

@@ -12,8 +12,8 @@ pub struct ZebraRows<T> {
     pub colours: [Vec<Vec<T>>; 2],
 }
 
-/// The terms of first derivatives, P and Q of the literature: `along` goes with the derivative along
-/// a row, `across` with the one from row to row. Whole planes, row by row.
+/// The terms of first derivatives, P and Q of the literature: `along` multiplies the derivative
+/// along a row, `across` that from row to row. Whole planes, row by row.
 #[derive(Clone)]
 pub struct Control<T> {
     pub along: Vec<T>,
@@ -76,5 +76,5 @@ pub fn larger(most: Change, x: Change) -> Change {
     if x <= most { most } else { x }
 }
 
-/// What a pass has done: the square of the greatest step.
+/// Result of a pass: the square of the largest step.
 pub type Change = f64;

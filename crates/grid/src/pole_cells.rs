@@ -1,4 +1,4 @@
-//! The cells of a mesh of hexahedra as what they are at poles: wedges, pyramids and tetrahedra.
+//! Classification of collapsed hexahedra at poles: wedges, pyramids and tetrahedra.
 
 use crate::{HEX_FACES, HexMesh};
 
@@ -16,8 +16,8 @@ pub enum PoleCell {
 }
 
 impl PoleCell {
-    /// The cell that is left of a hexahedron of which nodes coincide; `None` when that is none of these, as with one
-    /// edge that has no length.
+    /// The cell that a hexahedron with coincident nodes collapses to; `None` for other shapes, as
+    /// with one edge without length.
     ///
     /// # Example
     /// ```
@@ -83,7 +83,7 @@ impl PoleCell {
 }
 
 impl HexMesh {
-    /// All cells as what they are; `None` when one is none of the four.
+    /// All cells, classified; `None` if one is of another shape.
     pub fn pole_cells(&self) -> Option<Vec<PoleCell>> {
         self.cells.iter().map(|cell| PoleCell::of(*cell)).collect()
     }

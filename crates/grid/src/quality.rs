@@ -4,7 +4,7 @@ use crate::SurfaceGrid;
 use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 
-/// What is measured of each cell.
+/// Quality metric of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QualityMetric {
     /// Scaled Jacobian: the least, over the corners, of the sine of the angle between the two
@@ -60,7 +60,7 @@ impl QualityMetric {
     }
 }
 
-/// The metric of each cell, (i, j) at `i * (n - 1) + j`; a grid of fewer than two lines has none.
+/// The metric of each cell, (i, j) at `i * (n - 1) + j`; empty for a grid of fewer than two lines.
 ///
 /// Sides without length (at poles) do not count: the cell is a triangle then. A cell without area
 /// has scaled Jacobian 0 and skew 1, aspect and edge ratio infinite unless it is a point.
@@ -71,7 +71,7 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: QualityMetric) -> Vec<T> 
 /// As [`quality`]; ends early when `budget` is spent.
 ///
 /// # Errors
-/// What it is spent on.
+/// The exceeded limit.
 pub fn quality_until<T: Real>(
     grid: &SurfaceGrid<T>,
     metric: QualityMetric,
@@ -146,7 +146,7 @@ pub fn folded_cells<T: Real>(grid: &SurfaceGrid<T>) -> Vec<[usize; 2]> {
 /// As [`folded_cells`]; ends early when `budget` is spent.
 ///
 /// # Errors
-/// What it is spent on.
+/// The exceeded limit.
 pub fn folded_cells_until<T: Real>(
     grid: &SurfaceGrid<T>,
     budget: &Budget,

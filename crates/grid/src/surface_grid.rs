@@ -206,8 +206,8 @@ impl<T: Real> SurfaceGrid<T> {
 /// ascending index.
 ///
 /// # Errors
-/// [`GridError::TooFew`]; [`GridError::FaceSizes`] never; [`GridError::EdgesApart`] with the corner at
-/// which two edges end in different points, and how far they are apart.
+/// [`GridError::TooFew`]; [`GridError::FaceSizes`] never; [`GridError::EdgesApart`] with the corner
+/// at which the ends of two edges differ, and their distance.
 pub fn framed<T: Real>(edges: &[Vec<Vec3<T>>; 4]) -> Result<SurfaceGrid<T>, GridError> {
     let [first_i, last_i, first_j, last_j] = edges;
     let (m, n) = (first_j.len(), first_i.len());

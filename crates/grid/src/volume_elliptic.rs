@@ -17,14 +17,16 @@ pub struct FaceWall<T> {
     pub spacing: T,
 }
 
-/// How a volume grid is smoothed.
+/// Options of elliptic smoothing of a volume grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EllipticVolume<T> {
-    /// Whether the spacing of the edges is carried inward (Thomas and Middlecoff 1980); without, lines even out.
+    /// True to carry the spacing of the edges inward (Thomas and Middlecoff 1980); otherwise lines
+    /// become uniform.
     pub keep_spacing: bool,
     /// Maximum number of sweeps.
     pub sweeps: usize,
-    /// Stops when no point moves by more than this share of the size, and walls have what is asked.
+    /// Converged if no point moves by more than this, relative to the size, and the walls are as
+    /// specified.
     pub tolerance: f64,
     /// Over-relaxation, between 0 and 2.
     pub omega: f64,
@@ -32,12 +34,12 @@ pub struct EllipticVolume<T> {
     pub walls: Vec<FaceWall<T>>,
 }
 
-/// How far a wall is from what is asked.
+/// Deviations of a wall from its specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWallReport {
     /// The face.
     pub face: GridFace,
-    /// The least and the greatest first cell, as shares of the one asked for.
+    /// Smallest and largest first cell height, relative to the given one.
     pub cells: [f64; 2],
     /// The largest deviation from a right angle, in radians.
     pub angle: f64,
@@ -50,17 +52,18 @@ pub struct SmoothedVolume<T> {
     pub grid: VolumeGrid<T>,
     /// The sweeps that were done.
     pub sweeps: usize,
-    /// The greatest step of each sweep, as a share of the size.
+    /// Largest step of each sweep, relative to the size.
     pub history: Vec<f64>,
-    /// How far the walls are from what is asked.
+    /// Deviations of the walls from their specification.
     pub walls: Vec<FaceWallReport>,
     /// The least scaled Jacobian.
     pub jacobian: f64,
-    /// True when no point moves any more and the walls have what is asked.
+    /// True if the points have converged and the walls are as specified.
     pub converged: bool,
 }
 
-/// What of an error goes into a control in one sweep, and how fast controls fade away from the wall, by cells.
+/// Fraction of an error that is added to a control in one sweep, and decay of controls per cell
+/// from the wall.
 const SHARE: f64 = 0.2;
 const FADE: f64 = 0.3;
 
@@ -198,7 +201,7 @@ fn controls<T: Real>(
     p
 }
 
-/// What a wall is off, and with `terms` one step of its controls.
+/// Deviations of a wall, and with `terms` one step of its controls.
 fn wall_step<T: Real>(
     grid: &VolumeGrid<T>,
     wall: &FaceWall<T>,

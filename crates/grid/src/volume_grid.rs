@@ -160,9 +160,10 @@ impl<T: Real> VolumeGrid<T> {
         Ok(())
     }
 
-    /// Scaled Jacobian and equiangle skewness of each cell, cell (i, j, k) at `(i * (nj - 1) + j) * (nk - 1) + k`:
-    /// the least triple product of the unit edges at a corner, and how far the worst angle of a face is from a
-    /// right one, 0 to 1. Corners at edges without length do not count.
+    /// Scaled Jacobian and equiangular skewness of each cell, cell (i, j, k) at `(i * (nj - 1) + j)
+    /// * (nk - 1) + k`: the least triple product of the unit edges at a corner, and the deviation
+    /// of the worst angle of a face from 90°, relative to 90°. Corners at edges without length do
+    /// not count.
     pub fn cell_quality(&self) -> Vec<[f64; 2]> {
         self.cells_measured(&|| Ok(())).expect("nothing ends it")
     }
@@ -170,7 +171,7 @@ impl<T: Real> VolumeGrid<T> {
     /// As [`Self::cell_quality`]; ends early when `budget` is spent.
     ///
     /// # Errors
-    /// What it is spent on.
+    /// The exceeded limit.
     pub fn cell_quality_until(&self, budget: &Budget) -> Result<Vec<[f64; 2]>, Spent> {
         self.cells_measured(&|| budget.poll())
     }

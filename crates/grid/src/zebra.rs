@@ -1,8 +1,8 @@
 //! Zebra line relaxation: the rows of a grid in two colours, each row solved at once.
 //!
-//! Rows of one colour depend on rows of the other only, so a pass gives the same bits whatever the
-//! number of threads. The rows of a colour lie in banks, a number of each side by side, so that a bank is
-//! solved like one row: number l of a pack belongs to row l of the bank.
+//! Rows of one colour depend on rows of the other only, so a pass gives the same bits for any
+//! number of threads. The rows of a colour are stored in banks of interleaved rows, so that a bank
+//! is solved like one row: number l of a pack belongs to row l of the bank.
 
 use crate::lines::{Change, larger};
 use moldloft_num::Real;
@@ -70,7 +70,7 @@ impl<T: Real, const L: usize> Banks<T, L> {
             for (c, packs) in planes.iter_mut().enumerate() {
                 packs.resize(Self::count(m, colour) * n, [T::zero(); L]);
                 packs.par_chunks_mut(n).enumerate().for_each(|(b, bank)| {
-                    // What becomes lane l was column `column[l]`; a block of L by L at a time.
+                    // Lane l is filled from column `column[l]`, in blocks of L by L.
                     let column: [usize; L] =
                         std::array::from_fn(|l| (2 * (b * L + l) + colour).min(m - 1));
                     for (own, all) in self.colours.iter().enumerate() {
@@ -133,9 +133,10 @@ impl<T: Real, const L: usize> Banks<T, L> {
                 let row = |l: usize| 2 * (b * L + l) + colour;
                 let free: [bool; L] = std::array::from_fn(|l| row(l) > 0 && row(l) + 1 < m);
                 let bank = |c: usize, b: usize| other[c].get(b * n..(b + 1) * n);
-                // The row on one side of a lane is the same lane of the other colour's bank, the one on
-                // the other side the lane before or after it; for the outermost lane it is in the
-                // bank before or after. Rows at the border have none, and are not moved.
+                // The row on one side of a lane is the same lane of the other colour's bank, the
+                // one on the other side the lane before or after it; for the outermost lane it is
+                // in the bank before or after. Rows at the border have no such neighbour, and are
+                // not moved.
                 let beside = if colour == 0 { b.checked_sub(1) } else { Some(b + 1) };
                 let mut parts =
                     part.iter_mut().map(|plane| &mut plane[inside * n..(inside + 1) * n]);
@@ -181,8 +182,8 @@ struct Bank<'a, T, const L: usize, const C: usize> {
     omega: f64,
 }
 
-/// A loop that is compiled for the widest registers at hand. It is a struct because closures need not be
-/// inlined, and what is not inlined keeps the narrow ones.
+/// A loop compiled for the widest available registers. A struct, because code in closures that are
+/// not inlined uses the narrow ones.
 struct ZebraSolve<'a, 'b, T, const L: usize, const C: usize, const CONTROLLED: bool> {
     bank: Bank<'a, T, L, C>,
     factors: &'b mut [Pack<T, L>],

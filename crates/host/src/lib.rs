@@ -24,7 +24,7 @@ const MOST_READ: u64 = 1 << 30;
 pub struct FileWorld {
     /// Folders that may be read, links resolved; the model's own first.
     roots: Vec<PathBuf>,
-    /// Bytes that were read so far.
+    /// Number of bytes read so far.
     read: Arc<AtomicU64>,
 }
 
@@ -36,7 +36,7 @@ impl FileWorld {
         Self { roots, read: Arc::default() }
     }
 
-    /// A world for the model file at `path`: its folder, and that of what it links to.
+    /// A world for the model file at `path`: its folder, and that of its link target.
     pub fn around(path: &str, library: &[String]) -> Self {
         let path = Path::new(path);
         let folder = match path.parent() {
@@ -72,7 +72,7 @@ impl World for FileWorld {
             help,
         };
         let found = self.find(path, from).map_err(|error| failed(path, &error))?;
-        // What the user names may be a link to anywhere; what a model names must stay inside.
+        // A path given by the user may be a link to anywhere; one in a model must stay inside.
         if from.is_some() {
             let inside = self.roots.iter().find_map(|root| found.strip_prefix(root).ok());
             let Some(inside) = inside else {
@@ -163,17 +163,17 @@ fn open(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().read(true).open(path)
 }
 
-/// A text that was read: as it was asked for, by which text, and what it was.
+/// A text that was read: path as requested, requesting text, and content.
 pub type ReadAs = (String, Option<String>, ReadText);
 
-/// A world that notes what is read, so that a page can carry it.
+/// A world that records the texts that are read, so that a page can contain them.
 pub struct Noted<W> {
     world: W,
     read: Arc<Mutex<Vec<ReadAs>>>,
 }
 
 impl<W: World> Noted<W> {
-    /// That world; what is read is noted in `read`, each asking once.
+    /// The world `world`; each read is recorded in `read`.
     pub fn new(world: W, read: Arc<Mutex<Vec<ReadAs>>>) -> Self {
         Self { world, read }
     }

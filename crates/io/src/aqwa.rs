@@ -6,8 +6,9 @@
 //! categories 1 and 2; the columns are those that BEMRosetta reads). Corners are counter-clockwise
 //! seen from the water.
 //!
-//! Only the panels below z = 0 diffract, and AQWA takes none that crosses it, so the mesh must end
-//! there: see [`Mesh::immersed`]. Mass, environment and run (decks 3 and on) are the user's.
+//! Only the panels below z = 0 diffract, and AQWA accepts none that crosses it, so the mesh must
+//! end there: see [`Mesh::immersed`]. Mass, environment and run (decks 3 and on) are added by the
+//! user.
 
 use crate::solver::{SolverPanels, corners, title};
 use crate::text::put;
@@ -36,7 +37,7 @@ pub fn write(mesh: &Mesh, name: &str, options: PanelFileOptions) -> Result<Vec<u
     for (patch, n) in &panels.patches {
         for face in faces.by_ref().take(*n) {
             let top = face.iter().map(|&v| panels.points[v as usize][2]).fold(f64::MIN, f64::max);
-            // What the column shows as zero is in the water plane.
+            // A height that the column shows as zero is in the water plane.
             if top > 1e-7 {
                 return Err(WriteError::AboveWater { format: "AQWA", patch: patch.clone() });
             }

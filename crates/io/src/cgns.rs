@@ -36,7 +36,7 @@ fn labelled(file: &Hdf5File<'_>, node: StoredObject, label: &str) -> Result<Vec<
     Ok(found)
 }
 
-/// The numbers of a node; `None` of a node that has none.
+/// The numbers of a node; `None` for a node without numbers.
 fn data(file: &Hdf5File<'_>, node: StoredObject) -> Result<Option<StoredNumbers>, ReadError> {
     for link in file.children(node)? {
         if link.name == " data"

@@ -25,7 +25,7 @@ pub struct PlaneCut {
     pub width_mm: Option<f64>,
 }
 
-/// Which way the hull is looked at.
+/// View of the hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// Sections in the y-z plane.
@@ -46,7 +46,7 @@ impl View {
         }
     }
 
-    /// What it is called on a sheet.
+    /// Title on a sheet.
     fn title(self) -> &'static str {
         match self {
             Self::BodyPlan => "body plan",
@@ -70,7 +70,7 @@ impl View {
     }
 }
 
-/// How to draw.
+/// Options of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawingOptions {
     /// Title of the sheet.
@@ -203,9 +203,9 @@ fn open(out: &mut String, [width, height]: [f64; 2], title: &str) {
 /// A line on the drawing plane, in model units.
 struct DrawingLine {
     name: String,
-    /// Where the name stands.
+    /// Position of the name.
     label: Option<[f64; 2]>,
-    /// How far above that place, in millimetres: above the end of a line, or in its middle.
+    /// Distance above that position, in millimetres: above the end of a line, or at its middle.
     lift_mm: f64,
     width: Option<f64>,
     points: Vec<[f64; 2]>,
@@ -219,8 +219,8 @@ fn projected(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec
     let midship = options.midship.unwrap_or(0.5 * (low + high));
     let mut lines = Vec::new();
     for contour in shown() {
-        // Fore body to the right: the side of y that the section lies on is shown mirrored as
-        // needed; a section through midships belongs to the fore body.
+        // Fore body to the right: the side of y of the section is mirrored as needed; a section at
+        // midships belongs to the fore body.
         let fore =
             if options.bow_at_low_x { contour.value <= midship } else { contour.value >= midship };
         let side = if fore { 1.0 } else { -1.0 };
@@ -392,8 +392,8 @@ impl SheetLayout {
         );
     }
 
-    /// The name of a line on a white halo (a text of its own, as not every viewer knows
-    /// `paint-order`), so it breaks the lines it stands on.
+    /// The name of a line on a white halo (a text of its own, as not every viewer supports
+    /// `paint-order`), so it interrupts the lines behind it.
     fn name(&self, out: &mut String, line: &DrawingLine) {
         let Some([x, y]) = line.label.filter(|_| !line.name.is_empty()) else { return };
         let (x, y, name) = (self.x(x), self.y(y) - line.lift_mm, xml(&line.name));

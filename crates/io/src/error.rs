@@ -1,4 +1,4 @@
-//! Errors of readers and writers: what is wrong with the data, and where in the file.
+//! Errors of readers and writers: fault of the data, and position in the file.
 
 use moldloft_mesh::{Blocks, Mesh, MeshError};
 use moldloft_num::Vec3;
@@ -16,17 +16,17 @@ pub enum WriteError {
     },
     /// More items than the format's counters can name.
     TooLarge {
-        /// What there are too many of.
+        /// Name of the items.
         what: &'static str,
-        /// How many.
+        /// Number of items.
         count: usize,
     },
-    /// A structured format was asked for patches without a grid.
+    /// A structured format for patches without a grid.
     NoGrid {
         /// The patches without one; empty when there are no patches at all.
         patches: Vec<String>,
     },
-    /// A mesh said to be one half reaches to both sides of its symmetry plane.
+    /// A mesh declared as one half extends to both sides of its symmetry plane.
     BothSides {
         /// `x` or `y`: the coordinate that changes sign.
         axis: char,
@@ -37,7 +37,7 @@ pub enum WriteError {
     CannotHold {
         /// The format.
         format: &'static str,
-        /// What it cannot say.
+        /// Unsupported content.
         what: &'static str,
     },
     /// An object is of a dimension that the format has no place for.
@@ -49,7 +49,7 @@ pub enum WriteError {
         /// The object.
         name: String,
     },
-    /// A panel reaches above the water where the format allows none to.
+    /// A panel extends above the water, which the format does not allow.
     AboveWater {
         /// The format.
         format: &'static str,
@@ -71,10 +71,10 @@ pub enum WriteError {
         format: &'static str,
         /// The block, counted from 1, and the indices of both points, from 1.
         place: [usize; 7],
-        /// Their distance, and what single precision makes of it.
+        /// Their distance, and its value in single precision.
         length: [Bits; 2],
     },
-    /// The work was ended by who asked for it.
+    /// Cancelled by the caller.
     Ended,
     /// A number does not fit its column.
     TooWide {
@@ -173,11 +173,11 @@ pub enum FilePosition {
 pub struct ReadError {
     /// Name of the format.
     pub format: &'static str,
-    /// Where.
+    /// Position.
     pub place: FilePosition,
-    /// What should be there.
+    /// Expected input.
     pub expected: String,
-    /// What is there.
+    /// Found input.
     pub found: String,
 }
 
@@ -196,7 +196,7 @@ impl fmt::Display for ReadError {
 impl std::error::Error for ReadError {}
 
 impl ReadError {
-    /// A mesh that could not be built from what was read.
+    /// The error for a mesh that cannot be built from the data.
     pub(crate) fn mesh(format: &'static str, place: FilePosition, error: MeshError) -> Self {
         Self { format, place, expected: "a mesh".into(), found: error.to_string() }
     }

@@ -1,8 +1,9 @@
-//! Which way surfaces given as grids face: neighbours alike, and bodies outward.
+//! Orientation of surfaces given as grids: consistent with neighbours, and outward for bodies.
 //!
-//! A body is closed where edges meet, by coordinate planes in which its rims lie (mirrors, the water), and by flat
-//! openings, as a half body with an open base is. Its volume is positive then, or its surfaces are turned. What no planes
-//! close says itself which way it faces: along r_i x r_j, neighbours as the first of them does.
+//! A body is closed at common edges, by coordinate planes that contain its rims (mirrors, the
+//! water), and by flat openings, such as that of a half body with an open base. Its surfaces are
+//! then turned so that its volume is positive. Other surfaces keep their own orientation, along r_i
+//! x r_j, and neighbours follow the first of them.
 
 use crate::StructuredGrid;
 use moldloft_grid::{VolumeGrid, shared_nodes};
@@ -10,13 +11,15 @@ use moldloft_num::Vec3;
 use moldloft_num::union_find::{SignedUnionFind, UnionFind};
 use std::collections::{BTreeMap, HashMap};
 
-/// A step within this share of its length from a coordinate plane lies in it.
+/// Distance of a step from a coordinate plane, relative to its length, within which it is in the
+/// plane.
 const IN_PLANE: f64 = 1e-9;
 
 /// An opening whose points are within this share of its size of a plane is flat.
 const FLAT: f64 = 1e-6;
 
-/// A volume below this share of the volumes of its cones, without regard to signs, is none: a sheet on its own plane.
+/// Volume, relative to the sum of the absolute volumes of its cones, below which it is zero: a
+/// sheet in its own plane.
 const NO_VOLUME: f64 = 1e-9;
 
 /// A step along the rim of a grid.
@@ -34,7 +37,7 @@ impl RimStep {
         (a.min(b), a.max(b))
     }
 
-    /// The coordinate plane that it lies in.
+    /// The coordinate plane that contains it.
     fn plane(&self) -> Option<usize> {
         let [a, b] = self.points;
         let near = IN_PLANE * a.distance(b);
@@ -109,7 +112,7 @@ fn rim([m, n, _]: [usize; 3]) -> Vec<usize> {
     low.chain(last).chain(high).chain((0..n).rev()).collect()
 }
 
-/// What closes a body: nothing, coordinate planes, flat openings.
+/// Closure of a body: none, coordinate planes, flat openings.
 struct Caps {
     /// A point of the coordinate planes: from there they have no cone.
     centre: Vec3,

@@ -1,4 +1,5 @@
-//! What the readers of other programs' meshes share: points, polygons in named groups, remarks.
+//! Common parts of the readers of other programs' meshes: points, polygons in named groups,
+//! warnings.
 
 use crate::{FilePosition, ReadError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
@@ -10,7 +11,7 @@ pub struct ForeignMesh {
     /// Points and faces; a patch for each run of faces of one group. Polygons of more than four corners are fans of
     /// triangles around their first corner.
     pub mesh: Mesh,
-    /// What of the file is left out or doubtful.
+    /// Warnings about omitted or doubtful parts of the file.
     pub remarks: Vec<String>,
 }
 
@@ -51,7 +52,7 @@ impl MeshInProgress {
         self.remarks.push(text.into());
     }
 
-    /// Says of how many items that they are left out, where there are any.
+    /// Warns of the number of omitted items, unless 0.
     pub fn left_out(&mut self, count: usize, what: &str) {
         if count > 0 {
             self.remark(format!(
@@ -99,7 +100,7 @@ mod tests {
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     const PLY: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
 
-    /// A binary STL of so many triangles that says another count.
+    /// A binary STL with a number of triangles that differs from its count.
     fn binary(count: u32, triangles: usize, more: usize) -> Vec<u8> {
         let mut bytes = vec![b' '; 80];
         bytes.extend(count.to_le_bytes());
@@ -132,7 +133,7 @@ mod tests {
         bytes
     }
 
-    /// What other programs write, as their users have reported it, and the faces and remarks that are read.
+    /// Files of other programs, as reported by users, with the number of faces and warnings.
     #[test]
     fn files_of_other_programs_are_read() {
         let head =

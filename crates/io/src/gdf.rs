@@ -14,7 +14,7 @@ use moldloft_spline::{Basis, KnotVector};
 
 const FORMAT: &str = "GDF";
 
-/// What the header says.
+/// Content of the header.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// First line.
@@ -84,7 +84,7 @@ pub struct SplinePatch {
 }
 
 impl SplinePatch {
-    /// The knots of so many even spans of [-1, 1], end knots included.
+    /// The knots of uniform spans of [-1, 1], end knots included.
     ///
     /// # Panics
     /// When the degree is 0 or above the largest one, or there are no spans.
@@ -251,7 +251,7 @@ mod tests {
             p[0].y = y;
             Mesh::new(mesh.topology().clone(), p).unwrap()
         };
-        // A hair across is rounding; a millimetre is not.
+        // A tiny excess is rounding; a millimetre is not.
         let bytes = write(&moved(-1e-12), &header, false).unwrap();
         assert!(String::from_utf8(bytes).unwrap().contains("\n4\n0 0 0\n"));
         let error = write(&moved(-1e-3), &header, false).unwrap_err();

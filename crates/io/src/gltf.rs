@@ -122,8 +122,8 @@ pub fn write(
     container(text.into_bytes(), data)
 }
 
-/// Where the numbers of the file begin: the model's origin, or a round place near the model when it is so far away that
-/// single precision would lose digits. The file's root moves everything back.
+/// Origin of the file's coordinates: the model's origin, or a rounded point near the model if it is
+/// so far away that single precision would lose digits. The file's root translates everything back.
 fn origin(mesh: &Mesh) -> Vec3 {
     let bounds = mesh.bounds();
     let far = bounds.low.to_array().into_iter().chain(bounds.high.to_array());
@@ -168,7 +168,7 @@ fn list(x: [f32; 3]) -> String {
     format!("[{},{},{}]", x[0], x[1], x[2])
 }
 
-/// An 8-bit sRGB channel as the linear light that glTF asks for (IEC 61966-2-1), to three digits.
+/// An 8-bit sRGB channel as linear light, as glTF requires (IEC 61966-2-1), to three digits.
 fn linear(channel: u8) -> f64 {
     let c = f64::from(channel) / 255.0;
     let light = if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) };

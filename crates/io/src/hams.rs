@@ -18,7 +18,7 @@ pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteErr
     Ok(file(&SolverPanels::of(mesh, options)?, "Hull", options))
 }
 
-/// The file of the lids, HAMS's `WaterplaneMesh.pnl`; `None` when the mesh has none.
+/// The file of the lids, HAMS's `WaterplaneMesh.pnl`; `None` for a mesh without lids.
 ///
 /// # Errors
 /// As for [`write`].

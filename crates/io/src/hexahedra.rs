@@ -5,7 +5,7 @@ use moldloft_grid::{HexMesh, PoleCell};
 use moldloft_num::{Real, Vec3};
 use std::fmt::Write;
 
-/// The cells as what they are at poles.
+/// The cells, classified at poles.
 fn cells(mesh: &HexMesh, format: &'static str) -> Result<Vec<PoleCell>, WriteError> {
     let what = "hexahedra collapsed to other cells than wedges, pyramids and tetrahedra";
     mesh.pole_cells().ok_or(WriteError::CannotHold { format, what })
@@ -136,10 +136,10 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
     Ok(out.into_bytes())
 }
 
-/// Points of one plane are this near to it, as a share of their extent: what blockMesh takes for one.
+/// Maximum distance of points from a plane, relative to their extent, as in blockMesh.
 const PLANE: f64 = 1e-6;
 
-/// True of faces that lie in one plane.
+/// True for coplanar faces.
 pub fn is_plane(points: &[Vec3], faces: &[[usize; 4]]) -> bool {
     let mut normal = Vec3::zero();
     let (mut centre, mut count, mut size) = (Vec3::zero(), 0.0, 0.0f64);
@@ -166,7 +166,7 @@ pub fn is_plane(points: &[Vec3], faces: &[[usize; 4]]) -> bool {
     all().all(|p| p.dot(normal).abs() <= PLANE * size)
 }
 
-/// How the points of one periodic boundary lie to those of the other.
+/// Position of the points of a periodic boundary relative to those of the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Periodicity {
     /// Moved by a vector.
@@ -192,7 +192,8 @@ impl Periodicity {
     }
 }
 
-/// The other boundary of a periodic one, and how its points lie to those of this one.
+/// The other boundary of a periodic one, and the position of its points relative to those of this
+/// one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PeriodicPartner {
     /// The boundary.

@@ -1,9 +1,9 @@
 //! HydroStar's mesh file (`.hst`).
 //!
-//! Key words with their data: `PROJECT`, `SYMMETRY` (0 none, 1 in y = 0, 2 in x = 0 as well),
+//! Keywords with their data: `PROJECT`, `SYMMETRY` (0 none, 1 in y = 0, 2 in x = 0 as well),
 //! `COORDINATES` with `i x y z`, `PANEL TYPE 1` with `i n1 n2 n3 n4` (Bureau Veritas, HydroStar for
-//! Experts user manual; read by Capytaine's `_read_hst`). Corners are counter-clockwise seen from the
-//! water; a triangle has three.
+//! Experts user manual; read by Capytaine's `_read_hst`). Corners are counter-clockwise seen from
+//! the water; a triangle has three.
 
 use crate::solver::{SolverPanels, corners, title};
 use crate::text::put;

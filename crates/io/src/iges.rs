@@ -10,7 +10,7 @@ use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
 
-/// What a file says besides its shapes.
+/// Header of a file besides its shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IgesHeader<'a> {
     /// The name of the model.
@@ -389,8 +389,8 @@ fn rectangle(
     (surface, PlaneFrame { origin: corner, axes })
 }
 
-/// A side's curve in parameters, run as the loop runs; none where its pace is not that of the curve in space, for
-/// readers compare both at equal parameters.
+/// A side's curve in parameters, in the direction of the loop; `None` if its parametrisation
+/// differs from that of the curve in space, since readers compare both at equal parameters.
 fn traced(side: &Coedge, curve: &Nurbs<1>, flat: Option<&PlaneFrame>) -> Option<Nurbs<1>> {
     match flat {
         Some(flat) => Some(flat.trace(curve)),

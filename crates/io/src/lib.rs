@@ -77,7 +77,7 @@ pub use structured_grid::StructuredGrid;
 
 use moldloft_num::Vec3;
 
-/// What a model has besides surfaces.
+/// Content of a model besides surfaces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinesAndPoints {
     /// Polylines, each with the name of its object; a closed one repeats its first point.
@@ -87,7 +87,7 @@ pub struct LinesAndPoints {
 }
 
 impl LinesAndPoints {
-    /// True when there are none.
+    /// True if empty.
     pub fn is_empty(&self) -> bool {
         self.wires.is_empty() && self.dots.is_empty()
     }

@@ -73,9 +73,10 @@ pub fn write_with(mesh: &Mesh, strands: &LinesAndPoints) -> Result<Vec<u8>, Writ
     Ok(out.into_bytes())
 }
 
-/// The mesh: a patch per run of faces of one group or object. Texture and normal references, materials, colours and
-/// comments are skipped; polylines, points and free-form curves and surfaces are counted in the remarks. A face may
-/// name vertices that follow it, and a line go on after `\`.
+/// The mesh: a patch per sequence of faces of one group or object. Texture and normal references,
+/// materials, colours and comments are skipped; polylines, points and free-form curves and surfaces
+/// are counted in the warnings. A face may name vertices that follow it, and a line may be
+/// continued after `\`.
 ///
 /// # Errors
 /// Bad numbers, faces of fewer than three corners, references to vertices that are not there.
@@ -149,7 +150,7 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 fn vertex(line: &TextLine<'_>, word: &str, count: usize) -> Result<u32, ReadError> {
     let index = line.integer(word.split('/').next(), "a vertex number")?;
     let zero_based = if index < 0 { index.saturating_add(count as i64) } else { index - 1 };
-    // The greatest number marks none.
+    // The largest number marks an invalid one.
     u32::try_from(zero_based)
         .ok()
         .filter(|&v| v < u32::MAX)

@@ -72,7 +72,7 @@ pub fn read(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
     };
     let (vertices, faces) = (count()?, count()?);
     let mut mesh = MeshInProgress::default();
-    // Every vertex and face has a line, so that memory grows with what is there.
+    // Every vertex and face has a line, so that memory is proportional to the file.
     for k in 1..=vertices {
         let line = next(&|| format!("vertex {k} of {vertices}"))?;
         let mut words = line.words();

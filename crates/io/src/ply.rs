@@ -4,8 +4,8 @@
 //! A header is data: elements and properties of any names and types are stepped over, those of vertices and faces are
 //! taken. Memory grows with the bytes that are there, not with the counts of the header.
 //!
-//! The patches stand in comments, each with its run of faces: properties of faces besides their
-//! corners would say it too, but common readers (meshio 5.3, trimesh 5) refuse such files.
+//! The patches are in comments, each with its range of faces: properties of faces besides their
+//! corners would serve too, but common readers (meshio 5.3, trimesh 5) refuse such files.
 
 use crate::error::check_positions;
 use crate::foreign::{ForeignMesh, MeshInProgress};
@@ -165,7 +165,7 @@ fn shown(name: &str) -> String {
 struct PlyHeader {
     encoding: PlyEncoding,
     elements: Vec<PlyElement>,
-    /// Lines that are none of a header.
+    /// Lines that do not belong to a header.
     unknown: usize,
     lines: usize,
 }
@@ -242,7 +242,7 @@ fn property(words: &[&str]) -> Option<PlyProperty> {
     Some(PlyProperty { name: name.into(), length, value: PlyScalar::of(value)? })
 }
 
-/// What follows the header.
+/// Data after the header.
 struct PlyBody<'a> {
     rest: &'a [u8],
     at: usize,
@@ -262,7 +262,7 @@ impl PlyBody<'_> {
         }
     }
 
-    /// Where the next number is.
+    /// Position of the next number.
     fn place(&mut self) -> FilePosition {
         self.skip_blanks();
         self.here()

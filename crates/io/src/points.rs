@@ -2,7 +2,7 @@
 //! them, in and out.
 //!
 //! `bytes -> PointTable` keeps what a program needs to write the same file with other numbers: the
-//! headings, what separates the columns, the empty lines between curves, an aerofoil's two halves.
+//! headings, the separator of columns, the empty lines between curves, an aerofoil's two halves.
 
 use crate::text::{lines, pointed, quoted, text_of};
 use crate::{FilePosition, ReadError};
@@ -24,7 +24,7 @@ pub struct PointTable {
     pub blocks: Vec<Range<usize>>,
     /// Lines before the first row: comments first, then titles or names of columns.
     pub head: Vec<String>,
-    /// What separates the columns of the first row; `None` for blanks.
+    /// Separator of the columns of the first row; `None` for blanks.
     pub delimiter: Option<char>,
     /// Of an aerofoil in two halves, each from the nose, the numbers of their points. The rows are
     /// one run then, from the upper trailing edge round the nose.
@@ -154,8 +154,8 @@ impl<'a> DelimitedLine<'a> {
         self.words.iter().all(|word| Self::number(word).is_none())
     }
 
-    /// True for `NACA 0012` and `2412 airfoil`; a row with a slip of the pen, such as `1.0 O.5` or
-    /// `1, y`, is none.
+    /// True for `NACA 0012` and `2412 airfoil`; false for a row with a typing error, such as `1.0
+    /// O.5` or `1, y`.
     fn is_title(&self) -> bool {
         let begins = |word: &str, letters: usize| {
             word.chars().count() >= letters && word.chars().take(letters).all(char::is_alphabetic)
@@ -231,14 +231,14 @@ impl PointTable {
     }
 }
 
-/// How rows are laid out in a text.
+/// Layout of rows in a text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointLayout {
     /// Lines before the first row.
     pub head: Vec<String>,
-    /// What separates the columns, blanks included, such as `", "`.
+    /// Separator of the columns, blanks included, such as `", "`.
     pub separator: String,
-    /// Runs of rows with an empty line between them; one run when there are none.
+    /// Groups of rows with an empty line between them; one group without such lines.
     pub blocks: Vec<Range<usize>>,
     /// The counts of an aerofoil's two halves, each written from the nose.
     pub halves: Option<[usize; 2]>,

@@ -7,7 +7,7 @@ use moldloft_num::Vec3;
 
 const FORMAT: &str = "aerofoil";
 
-/// How an aerofoil file lists its points.
+/// Order of points in an aerofoil file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listing {
     /// From the trailing edge along the upper side to the nose and back along the lower.
@@ -26,7 +26,7 @@ pub struct AerofoilSection {
     pub points: Vec<Vec3>,
     /// The index of the nose: the point of least x.
     pub nose: usize,
-    /// How the file listed them.
+    /// Order of the points in the file.
     pub listing: Listing,
 }
 

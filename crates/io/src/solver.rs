@@ -1,14 +1,15 @@
-//! What panel codes have in common: the skin, on one side of its symmetry planes, and its vertices
-//! numbered from 1 without gaps.
+//! Common parts of panel codes: the skin, on one side of its symmetry planes, and its vertices
+//! numbered consecutively from 1.
 
 use crate::error::check_positions;
 use crate::{WriteError, text};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
 
-/// Vertices within this share of the size from the plane of symmetry or the water lie in it.
+/// Distance of vertices from the plane of symmetry or the water, relative to the size, within which
+/// they are in it.
 const SNAP: f64 = 1e-9;
 
-/// What the file of a panel code is made of.
+/// Options of a panel code's file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanelFileOptions {
     /// x = 0 is a symmetry plane and the mesh one side of it.
@@ -26,7 +27,7 @@ pub(crate) struct SolverPanels {
     /// Corners as indices of `points`, counter-clockwise seen from the water; a triangle repeats
     /// its last.
     pub faces: Vec<[u32; 4]>,
-    /// For each run of faces of one patch: its name and how many there are.
+    /// For each sequence of faces of one patch: its name and their number.
     pub patches: Vec<(String, usize)>,
 }
 

@@ -16,7 +16,7 @@ const FORMAT: &str = "STL";
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// So many triangles are written between two looks at whether the work goes on.
+/// Number of triangles written between two checks for cancellation.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
 /// The binary file. Quads are split along their shorter diagonal. Triangles two of whose corners
@@ -24,7 +24,8 @@ const TRIANGLES_AT_ONCE: usize = 1 << 14;
 /// because their neighbours need them.
 ///
 /// # Errors
-/// Positions that are not finite in single precision, or so far from the origin that shapes are lost in it; more than 2^32 - 1 triangles.
+/// Positions that are not finite in single precision, or so far from the origin that single
+/// precision does not resolve the shape; more than 2^32 - 1 triangles.
 pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
     write_while(mesh, name, &|| true)
 }
@@ -97,9 +98,10 @@ pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(out.into_bytes())
 }
 
-/// The triangles, corners at equal positions made one vertex; those without area by that rule are
-/// left out. A file is binary if it is of the size that its count says, else text if it begins with `solid` and has a
-/// facet. A count that is 0 or the greatest, as programs leave it that write without going back, is taken from the size.
+/// The triangles, with corners at equal positions merged; those that then have no area are left
+/// out. A file is binary if its size agrees with its count, otherwise text if it begins with
+/// `solid` and has a facet. A count of 0 or the maximum, as left by programs that write without
+/// seeking, is derived from the size.
 ///
 /// # Errors
 /// A size that does not fit the count, coordinates that are not finite, and text out of order.
@@ -137,7 +139,7 @@ pub fn read(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
     }
 }
 
-/// Whether a file is text: `solid` in any case, and a word of a facet or the end among what follows.
+/// True if a file is text: `solid` in any case, followed by a keyword of a facet or of the end.
 fn is_text(bytes: &[u8]) -> bool {
     const LOOKED_AT: usize = 4096;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
@@ -219,8 +221,8 @@ fn text(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
 /// as far as their rims say where that is; else along r_i x r_j. With `flip` they face the other way.
 ///
 /// # Errors
-/// No grids; blocks that are no surfaces; coordinates that are not finite in single precision; [`WriteError::Ended`]
-/// once `go_on`, which is asked in between, says so.
+/// Empty grids; blocks that are not surfaces; coordinates that are not finite in single precision;
+/// [`WriteError::Ended`] when `go_on`, which is called periodically, returns false.
 pub fn write_grids(
     blocks: &[StructuredGrid],
     name: &str,

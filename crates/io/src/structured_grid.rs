@@ -104,7 +104,8 @@ impl StructuredGrid {
     }
 }
 
-/// The share of an edge of a cell that single precision may change: what first cells at walls keep, too.
+/// Maximum change of a cell's edge by single precision, relative to its length: first cells at
+/// walls keep their height.
 const LOST: f64 = 0.05;
 
 #[cfg(test)]

@@ -137,7 +137,7 @@ pub(crate) fn text_of(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// [`text_of`] of a file of lines; UTF-16, whose letters would be read as none, is refused.
+/// [`text_of`] a file of lines; UTF-16, which would be read as garbage, is refused.
 pub(crate) fn lines_text<'a>(
     bytes: &'a [u8],
     format: &'static str,

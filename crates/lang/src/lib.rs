@@ -2,12 +2,13 @@
 //!
 //! `text -> syntax tree -> run -> Graph`
 //!
-//! [`run::program::RunContext`] runs the text of a program, [`model_file::ModelFileSource`] that of a model
-//! file; both declare objects in the graph of an [`Evaluation`] and leave behind what expressions may refer
-//! to afterwards. A run with seeded dual numbers gives exact derivatives of everything that a plain run
-//! computes.
+//! [`run::program::RunContext`] runs the text of a program, [`model_file::ModelFileSource`] that of
+//! a model file; both declare objects in the graph of an [`Evaluation`] and leave the names for
+//! later expressions. A run with seeded dual numbers gives exact derivatives of all results of a
+//! plain run.
 //!
-//! Invariant: this crate opens no file; what it reads comes from the host's [`World`]. It knows no document.
+//! Invariant: this crate opens no file; its input comes from the host's [`World`]. It does not
+//! depend on documents.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -20,10 +20,10 @@ fn seconds(begin: Instant) -> f64 {
     ns.map_or_else(|| begin.elapsed().as_secs_f64(), |ns| ns * 1e-9)
 }
 
-/// How often an intersection is made for one figure.
+/// Number of repetitions of an intersection for one figure.
 const REPEATS: usize = 20;
 
-/// How many such figures the least is taken of: what else the machine does only adds.
+/// Number of such figures, of which the minimum is taken: other load on the machine only adds time.
 const RUNS: usize = 8;
 
 fn main() {
@@ -52,7 +52,7 @@ fn main() {
             continue;
         }
         let points: Vec<Vec3> = by_place(&points).into_iter().map(|k| points[k as usize]).collect();
-        // The least of several runs: what else the machine does only adds.
+        // The minimum of several runs: other load on the machine only adds time.
         let run = |_| {
             let start = seconds(begin);
             let sum: f64 = points.iter().map(|p| prepared.nearest(&s, *p).distance).sum();

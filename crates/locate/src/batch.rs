@@ -10,8 +10,8 @@ use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
 
-/// Boxes of this share of a cell's side, or smaller, are not divided any more: what a minimum there
-/// may be nearer by is below rounding.
+/// Depth at which boxes are not divided further: the possible gain of a nearer minimum is below
+/// rounding.
 const DEEPEST: u32 = 9;
 
 /// Boxes that one point looks at before it takes the best it has, as where all points of a surface
@@ -23,9 +23,9 @@ const MOST_BOXES: u32 = 20_000;
 pub struct Nearest<const N: usize> {
     /// Its parameters.
     pub at: [f64; N],
-    /// Where it is.
+    /// Position.
     pub xyz: Vec3,
-    /// How far it is.
+    /// Distance.
     pub distance: f64,
     /// `Ok`, `EdgeClamped` at an end or edge, `Multiple` where others are equally near, `Tangent`
     /// where the distance is stationary to second order, `Diverged` for a point that is not finite.
@@ -42,12 +42,12 @@ impl<const N: usize> Nearest<N> {
 
 /// A surface prepared for many nearest-point questions.
 ///
-/// On surfaces that are cubic pieces exactly (B-splines up to degree three) the answer is the
-/// nearest point of all, to 1e-9 of the size: a cell is left out only when a bound of its distance
-/// exceeds the best, and a foot in it counts as its only one only when the second derivatives of
-/// the distance outweigh what its third ones can do there. Other surfaces are searched through
-/// cubic pieces near them and the feet brought to the surface itself; there the answer is right as
-/// far as the pieces' slack is (see [`crate::pieces`]).
+/// On surfaces that are exactly cubic pieces (B-splines up to degree three) the answer is the
+/// nearest point, to 1e-9 of the size: a cell is excluded only if a bound of its distance exceeds
+/// the best, and a foot in it is its only one only if the second derivatives of the distance
+/// dominate the bound of its third ones. Other surfaces are searched through cubic pieces near them
+/// and the feet moved to the surface itself; there the answer is right within the pieces' slack
+/// (see [`crate::pieces`]).
 ///
 /// Each answer depends on the surface and its point only.
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ fn nearest_flat(q: Vec3, flat: &Flat) -> ([f64; 2], f64) {
     ([s, t], (q - flat.a * s - flat.b * t).norm_sq())
 }
 
-/// Where g . w + w . H w / 2 is least over the square |w| <= 1, for a matrix that is positive
+/// Minimiser of g . w + w . H w / 2 over the square |w| <= 1, for a matrix that is positive
 /// definite or nearly so.
 #[inline]
 fn least_quadratic(g: [f64; 2], [aa, ab, bb]: [f64; 3]) -> [f64; 2] {
@@ -81,8 +81,8 @@ fn least_quadratic(g: [f64; 2], [aa, ab, bb]: [f64; 3]) -> [f64; 2] {
     on_side(g, [aa, ab, bb], [1.0 / aa, 1.0 / bb], [s, t])
 }
 
-/// The same where the least of the whole plane, (s, t), is outside: it lies on a side that this is
-/// beyond.
+/// The same if the minimiser (s, t) of the whole plane is outside: it is on a side beyond which (s,
+/// t) is.
 #[inline]
 fn on_side(g: [f64; 2], [aa, ab, bb]: [f64; 3], by: [f64; 2], [s, t]: [f64; 2]) -> [f64; 2] {
     let clamp = |x: f64| if x.is_finite() { x.clamp(-1.0, 1.0) } else { 0.0 };
@@ -103,7 +103,7 @@ struct FootCandidate {
     uv: [f64; 2],
     /// At an edge of the surface.
     edge: bool,
-    /// Held at the border of a box, beyond which the surface goes on.
+    /// Stopped at the border of a box, beyond which the surface continues.
     border: bool,
     flat: bool,
 }
@@ -344,7 +344,7 @@ impl<'a> Search<'a> {
         let h = [s.norm_sq() + ss.dot(r), s.dot(t) + st.dot(r), t.norm_sq() + tt.dot(r)];
         let [n0, n1, n2, n3] = part.third;
         let convex = h[0] > 0.0 && h[2] > 0.0 && h[0] * h[2] > h[1] * h[1];
-        // No nearer than the least of the quadratic, or of the plane, less what they leave out.
+        // Lower bound: the minimum of the quadratic, or of the plane, less their remainders.
         let start = if convex {
             let w = least_quadratic(g, h);
             let value = g[0] * w[0]
@@ -370,8 +370,8 @@ impl<'a> Search<'a> {
             }
             w
         };
-        // Where the distance falls towards one side all over the box, its least is there: in the
-        // neighbour, unless nothing or something else is beyond it.
+        // If the distance decreases towards one side all over the box, its minimum is there: in the
+        // neighbour, unless the border ends there.
         let slack_slope = if slack > 0.0 { 20.0 * slack * (s.norm() + t.norm()) } else { 0.0 };
         let wobble = [
             h[0].abs() + h[1].abs() + 0.5 * (n0 + 2.0 * n1 + n2) + slack_slope,
@@ -458,7 +458,7 @@ impl<'a> Search<'a> {
             let r = x - self.p;
             let (s, t) = (s * a, t * b);
             let d = r.norm_sq();
-            // Every step goes down, but for rounding.
+            // Every step decreases the distance, up to rounding.
             if d > before * (1.0 + 1e-12) && step_share > 1e-4 {
                 step_share *= 0.25;
                 w = [0, 1].map(|k| last[k] + 0.25 * (w[k] - last[k]));
@@ -535,15 +535,15 @@ impl<'a> Search<'a> {
     }
 }
 
-/// An order in which points near each other come after one another, so that what a search reads is
-/// still at hand: along a curve of Morton through the box around them (Morton 1966).
+/// An order in which consecutive points are near each other, so that data of a search stay in the
+/// cache: along a Morton curve through the box around them (Morton 1966).
 pub fn by_place(points: &[Vec3]) -> Vec<u32> {
     let finite = points.iter().copied().filter(|p| p.is_finite());
     let around = Box3::around(finite);
     let side = around.high - around.low;
     let cell = |x: f64, low: f64, side: f64| -> u64 {
         let share = if side > 0.0 { (x - low) / side } else { 0.0 };
-        // Ten bits; NaN goes to 0.
+        // Ten bits; NaN becomes 0.
         let mut k = (share * 1024.0).clamp(0.0, 1023.0) as u64;
         k = (k | k << 16) & 0x0300_00ff;
         k = (k | k << 8) & 0x0300_f00f;

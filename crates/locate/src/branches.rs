@@ -2,21 +2,20 @@
 //!
 //! `cells of both shapes -> pairs whose bounds meet -> seeds that no branch passes -> branches`
 //!
-//! Each shape is cut into nearly flat cells with bounds of how they bend (see `cells`), in trees of
-//! boxes. Of two surfaces a search goes down the halvings from pieces to cells on both sides (see
-//! `plates`). A pair of cells, or of all below two larger parts, is left out only when bounds show
-//! that they are apart, or that they meet in one line at most, which is a branch that was found
-//! before. In a pair whose normals cannot become parallel the shapes meet in one line at most; other
-//! pairs are halved until they are so, or smaller than [`SMALLEST`] of the size. Each pair that no
-//! branch found so far passes through gives a start to Newton's method, and what it finds starts a
-//! branch.
+//! Each shape is divided into nearly flat cells with bounds of their curvature (see `cells`), in
+//! trees of boxes. For two surfaces a search descends the halvings from pieces to cells on both
+//! sides (see `plates`). A pair of cells, or all below two larger parts, is excluded only if bounds
+//! show that they are apart, or that they intersect in at most one line, which is a known branch.
+//! In a pair whose normals cannot become parallel the shapes intersect in at most one line; other
+//! pairs are halved until that is so, or to less than [`SMALLEST`] of the size. Each pair without a
+//! known branch gives a start to Newton's method, whose result starts a branch.
 //!
 //! So, while [`Branches::complete`] is true, every branch is found that somewhere crosses at an
 //! angle larger than the shapes turn within [`SMALLEST`] of the size and that is longer than that,
 //! closed or from edge to edge. Missed may be: closed branches smaller than that; one of two
-//! branches that run nearer to each other than that all along. On shapes that are no cubic pieces
-//! the bounds are measured and not proved (see [`crate::pieces`]). Where the shapes touch without
-//! crossing there is no branch, but a [`Touch`].
+//! branches closer to each other than that all along. On shapes that are not cubic pieces the
+//! bounds are measured and not proved (see [`crate::pieces`]). A contact without crossing is not a
+//! branch, but a [`Touch`].
 
 use crate::cells::{Cells, Flat, Fork, LEAF, Polynomials, forks};
 use crate::implicit::solve;
@@ -28,7 +27,7 @@ use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
 
-/// Branches at least this long, as a share of the size, are found.
+/// Minimum length of branches that are found, relative to the size.
 pub const SMALLEST: f64 = 0.02;
 
 /// Pairs that a search looks at before it gives up, as it does where shapes coincide.
@@ -57,7 +56,7 @@ const MOST_TOUCHES: usize = 64;
 pub struct Touch {
     /// The unknowns there.
     pub q: Unknowns,
-    /// Where it is.
+    /// Position.
     pub x: Vec3,
 }
 
@@ -79,13 +78,13 @@ pub struct Branches {
 #[derive(Clone, Copy, Debug)]
 struct CellPart {
     flat: Flat,
-    /// The parallelogram's unit normal, zero where it has none.
+    /// The parallelogram's unit normal, zero if undefined.
     normal: Vec3,
     /// Sine of the greatest angle between that and the normals of the surface here, or more.
     turn: f64,
     /// The longer side.
     longest: f64,
-    /// How fast the part's own parameters, from -1 to 1, change in space at most.
+    /// Maximum rate of the part's own parameters, from -1 to 1, in space.
     fastest: [f64; 2],
     middle: [f64; 2],
     half: [f64; 2],
@@ -114,7 +113,7 @@ impl CellPart {
         let (la, lb) = (a.norm(), b.norm());
         let n = a.cross(b);
         let area = n.norm();
-        // How far both tangents change, and with them their product: of the first order exactly.
+        // Bound of the change of both tangents, and thus of their product: exact to first order.
         let rest = [
             0.5 * (far[0] + 2.0 * far[1] + far[2]) + 5.0 * slack,
             0.5 * (far[1] + 2.0 * far[2] + far[3]) + 5.0 * slack,
@@ -155,8 +154,8 @@ impl CellPart {
         })
     }
 
-    /// The part's own parameters at `at` and their rates along `d`, a unit vector; `stretch` is cut to
-    /// what is over the part, which is `reach` wider than its parallelogram.
+    /// The part's own parameters at `at` and their rates along `d`, a unit vector; `stretch` is
+    /// limited to the part, extended by `reach` beyond its parallelogram.
     #[inline]
     fn clip(&self, at: Vec3, d: Vec3, reach: f64, stretch: &mut [f64; 2]) -> [f64; 4] {
         let Flat { a, b, products: [aa, ab, bb], inverses: [by, ..], .. } = self.flat;
@@ -280,7 +279,7 @@ struct Finder<'a> {
 }
 
 impl Crossing<'_> {
-    /// All branches; see the module for what is claimed.
+    /// All branches; the module states which are guaranteed.
     pub fn branches(&self) -> Branches {
         let first = CutSurface::rough(self.first);
         match self.other {
@@ -292,7 +291,7 @@ impl Crossing<'_> {
     /// All branches of surfaces that were cut up before: the crossing's first, and its second unless
     /// that is a plane.
     pub fn branches_in(&self, first: &CutSurface, second: Option<&CutSurface>) -> Branches {
-        // Where the pieces are the surface itself they are the quicker to evaluate.
+        // Pieces that are the surface itself are faster to evaluate.
         fn chosen<'b>(
             cut: Option<&'b CutSurface>,
             own: &'b dyn Surface<f64>,
@@ -379,7 +378,7 @@ impl Finder<'_> {
             if !crosses(&Box3 { low: flat.c - half, high: flat.c + half }) {
                 return None;
             }
-            // How far the level's normal turns over the cell, by its second derivatives.
+            // Bound of the turn of the level's normal over the cell, from its second derivatives.
             let (_, g, h) = field.second_order(flat.c);
             let steep = g.norm();
             let bent = h.iter().map(|row| row.norm_sq()).sum::<f64>().sqrt();
@@ -534,14 +533,14 @@ impl Finder<'_> {
         self.found.branches.push(branch);
     }
 
-    /// Where the planes of a pair's cells meet, near both.
+    /// Intersection of the planes of a pair's cells, near both.
     fn straight(&self, a: &CellPart, b: Option<&CellPart>, near: Vec3) -> PlaneMeeting {
         let m = a.normal;
         let (n, point, bend) = match (b, self.crossing.other) {
             (Some(b), _) => (b.normal, b.flat.c, a.flat.bend + b.flat.bend),
             (None, Other::Plane(plane)) => (plane.normal, plane.point, a.flat.bend),
             (None, Other::Level(field)) => {
-                // Its tangent plane near the cell, and how far it may bend away from it there.
+                // Its tangent plane near the cell, and a bound of its deviation there.
                 let (f, g, h) = field.second_order(a.flat.c);
                 let Some(n) = g.normalized() else {
                     return PlaneMeeting::Parallel;
@@ -564,7 +563,7 @@ impl Finder<'_> {
         let by = by_sine * by_sine;
         let at = near + m * ((e - cosine * f) * by) + n * ((f - cosine * e) * by);
         let reach = bend * by_sine;
-        // The stretch of it over both cells, with what they bend as a margin.
+        // The interval of it over both cells, extended by their deviations.
         let mut stretch = [f64::NEG_INFINITY, f64::INFINITY];
         let first = a.clip(at, d, reach, &mut stretch);
         let second = b.map_or([0.0; 4], |b| b.clip(at, d, reach, &mut stretch));
@@ -693,7 +692,7 @@ struct Chord {
     way: Vec3,
     /// One over its squared length.
     inverse: f64,
-    /// How far the branch bows away from it: an eighth of its turn.
+    /// Maximum distance of the branch from it: an eighth of its turn.
     bow: f64,
     branch: u32,
     /// Of the first station.
@@ -716,7 +715,7 @@ impl Chord {
     }
 }
 
-/// What the planes of a pair of cells say.
+/// Result for the planes of a pair of cells.
 enum PlaneMeeting {
     /// They do not meet where both cells are.
     Beside,
@@ -727,7 +726,7 @@ enum PlaneMeeting {
     Parallel,
 }
 
-/// The bins that a stretch of a parameter lies in.
+/// The bins of an interval of a parameter.
 fn bins_between(a: f64, b: f64) -> std::ops::Range<usize> {
     let bin = |x: f64| ((x * BINS as f64) as usize).min(BINS - 1);
     bin(a.min(b))..bin(a.max(b)) + 1
@@ -775,7 +774,7 @@ impl Crossing<'_> {
         None
     }
 
-    /// What is zero where both shapes have one normal and are above each other along it, as lengths,
+    /// Equations of points with a common normal along which the shapes are opposite, as lengths,
     /// with derivatives: S1_u . r, S1_v . r, n1 . S2_p, n1 . S2_r with r = S1 - S2, or n . S_u and
     /// n . S_v for a plane.
     fn parallel(&self, q: Unknowns) -> ([f64; 4], [[f64; 4]; 4]) {

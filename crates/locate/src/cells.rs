@@ -1,11 +1,11 @@
-//! A surface as small cells that are nearly flat, with bounds of how they bend, for searches that
-//! ask the same surface many questions.
+//! A surface as small, nearly flat cells, with bounds of their curvature, for repeated searches on
+//! the same surface.
 //!
 //! `pieces -> cells -> tree of boxes`
 //!
-//! The piece that a cell is a part of holds the polynomial; the cell holds a parallelogram, the
-//! second derivatives at its middle, and bounds of what is left out. A first test looks at the
-//! parallelogram only, so that lies by itself.
+//! The piece of a cell has the polynomial; the cell has a parallelogram, the second derivatives at
+//! its centre, and bounds of the remainder. A first test uses the parallelogram only, which is
+//! therefore stored separately.
 
 use crate::pieces::BezierPatch;
 use crate::tree::{Boxes, SurfaceTree};
@@ -29,11 +29,12 @@ pub(crate) struct PolynomialPiece {
     pub uv: [[f64; 2]; 2],
     /// Coefficient of s^i t^j at [i * 4 + j], with s and t in [-1, 1].
     pub powers: [Vec3; 16],
-    /// How far the surface may be from it.
+    /// Bound of the surface's distance from it.
     pub slack: f64,
 }
 
-/// The parallelogram c + a s + b t, |s| and |t| <= 1, and how far the surface may be from it.
+/// The parallelogram c + a s + b t, |s| and |t| <= 1, and a bound of the surface's distance from
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
     pub c: Vec3,
@@ -47,7 +48,7 @@ pub(crate) struct Flat {
     pub bend: f64,
 }
 
-/// What a cell has besides its parallelogram.
+/// Data of a cell besides its parallelogram.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bent {
     /// Second derivatives by s and t at the middle.
@@ -56,7 +57,7 @@ pub(crate) struct Bent {
     /// a point: `fixed` + `far` times the greatest distance.
     pub fixed: [f64; 4],
     pub far: [f64; 4],
-    /// How far the cell reaches from its middle.
+    /// Maximum distance of the cell's points from its centre.
     pub reach: f64,
     /// Middle and half sides in the piece's own parameters.
     pub middle: [f64; 2],
@@ -67,7 +68,7 @@ pub(crate) struct Bent {
     pub open: [[bool; 2]; 2],
 }
 
-/// Two boxes of a tree, side by side, and what is below them.
+/// Two boxes of a tree, side by side, and their contents.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fork {
     pub bounds: [Box3; 2],
@@ -75,8 +76,7 @@ pub(crate) struct Fork {
     pub below: [u32; 2],
 }
 
-/// Four boxes of a tree, side by side, and what is below them; where there are fewer, boxes that
-/// contain nothing.
+/// Four boxes of a tree, side by side, and their contents; missing ones are empty boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quad {
     /// By axis.
@@ -158,11 +158,11 @@ pub(crate) struct Cells {
     /// The cells, in the order of the leaves of the tree.
     pub flats: Vec<Flat>,
     pub bents: Vec<Bent>,
-    /// The tree; its root is the first. A single cell has none.
+    /// The tree, root first; empty for a single cell.
     pub forks: Vec<Fork>,
     /// The same for nearest points, with four children each.
     pub quads: Vec<Quad>,
-    /// How the pieces were halved, for intersections: the pieces first, in their order.
+    /// Halvings of the pieces, for intersections: the pieces first, in their order.
     pub twigs: Vec<Twig>,
 }
 
@@ -409,7 +409,7 @@ impl Cells {
 /// The pieces as one surface, where they are the surface itself, to rounding.
 #[derive(Clone, Debug)]
 pub(crate) struct Polynomials {
-    /// Where pieces begin along u and v, and where the last one ends.
+    /// Starts of pieces along u and v, and the end of the last one.
     ends: [Vec<f64>; 2],
     /// Two over their widths.
     scales: [Vec<f64>; 2],
@@ -481,8 +481,8 @@ fn span(ends: &[f64], x: f64) -> usize {
     k
 }
 
-/// Position and first derivatives of a piece by Horner's rule, as many numbers at a time as the
-/// processor can. Each is computed as by itself, without fused operations: the bits are the same.
+/// Position and first derivatives of a piece by Horner's rule, on as many numbers at a time as the
+/// processor can. There are no fused operations, so that the bits do not depend on that.
 struct First<'a> {
     powers: &'a [[f64; 4]; 16],
     s: f64,

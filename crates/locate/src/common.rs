@@ -24,13 +24,13 @@ impl<const N: usize> Three<'_, N> {
         })
     }
 
-    /// Which unknowns run round.
+    /// For each unknown, true if closed.
     fn closed(&self) -> [bool; N] {
         let mut all = self.surfaces().flat_map(|surface| surface.closed());
         std::array::from_fn(|_| all.next().unwrap_or(false))
     }
 
-    /// What is left of the equations, and its derivatives by the unknowns.
+    /// Residuals of the equations, and their derivatives with respect to the unknowns.
     fn residual(&self, q: [f64; N]) -> ([f64; N], [[f64; N]; N]) {
         let (mut r, mut m) = ([0.0; N], [[0.0; N]; N]);
         let mut row = 0;
@@ -99,7 +99,7 @@ impl<const N: usize> Three<'_, N> {
     /// to the place `near` if that is given.
     ///
     /// # Errors
-    /// The report when there is none.
+    /// The report if there is no solution.
     pub fn point(
         &self,
         start: Option<[f64; N]>,

@@ -1,10 +1,12 @@
-//! Where two curves meet, and where they come nearest: pairs of pieces with bounds of the distance and its slopes.
+//! Intersections and nearest points of two curves: pairs of pieces with bounds of the distance and
+//! its slopes.
 //!
-//! A pair is dropped when it is too far apart for a meeting, or when the distance falls towards a side beyond which a
-//! neighbour goes on. Where the distance is convex all over a pair there is one least place, which a descent held in the
-//! pair finds. Other pairs are halved. So on curves whose pieces are exact (see [`crate::pieces`]) no meeting is missed;
-//! contacts are resolved to [`SMALLEST`] of the size. Where there is no meeting, the same search with the nearest place
-//! known as its bound finds where the curves come nearest; of curves that run side by side it finds one such place.
+//! A pair is excluded if it is too far apart for an intersection, or if the distance decreases
+//! towards a side beyond which a neighbour continues. If the distance is convex over a pair there
+//! is one minimum, found by a descent within the pair. Other pairs are halved. So on curves whose
+//! pieces are exact (see [`crate::pieces`]) no intersection is missed; contacts are resolved to
+//! [`SMALLEST`] of the size. Without an intersection, the same search with the smallest distance as
+//! its bound finds the nearest points; for parallel curves it finds one such pair.
 
 use crate::newton::NewtonResult;
 use crate::pieces::{CurvePiece, ball, size_of};
@@ -39,7 +41,7 @@ struct LeastPlace {
     steps: u32,
 }
 
-/// What is certain of a pair.
+/// Result of the bounds for a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PairVerdict {
     /// The least distance is that of a neighbouring pair.
@@ -79,7 +81,7 @@ fn apart(p: &CurvePiece, q: &CurvePiece) -> f64 {
     boxes.max(-reach(&q.net, -1.0) - reach(&p.net, 1.0) - p.slack - q.slack)
 }
 
-/// A set of vectors: its middle, and how far it reaches from there.
+/// A set of vectors: its centre, and its radius.
 type VectorBall = (Vec3, f64);
 
 /// The places, slopes and curvatures of a piece by its share of the way.
@@ -96,7 +98,7 @@ fn balls(piece: &CurvePiece) -> [VectorBall; 3] {
     [with(b, s), with(&first, 10.0 * s * w), with(&second, 40.0 * s * w * w)]
 }
 
-/// What the derivatives of the distance say over a whole pair.
+/// Result of the derivatives of the distance over a whole pair.
 fn verdict(p: &CurvePiece, q: &CurvePiece) -> PairVerdict {
     let ([x, d, dd], [y, e, ee]) = (balls(p), balls(q));
     let (away, reach) = (x.0 - y.0, x.1 + y.1);
@@ -214,11 +216,12 @@ fn newton_step(slope: [f64; 2], [h, m, k]: [f64; 3], plain: [f64; 2], free: [boo
     }
 }
 
-/// Where two curves meet, as (t, s). From a start it is the meeting that descent leads to; without one, or when that
-/// leads to none, of all meetings the nearest to the start in parameters.
+/// Intersection of two curves, as (t, s). From a start it is the one that descent leads to; without
+/// one, or if that fails, the one of all intersections nearest to the start in parameters.
 ///
 /// # Errors
-/// The report when there is none: with the place where the curves come nearest, ends included, and the distance there.
+/// The report if there is none: with the nearest points of the curves, ends included, and their
+/// distance.
 pub fn curve_curve(
     a: &dyn Curve<f64>,
     b: &dyn Curve<f64>,
@@ -243,8 +246,9 @@ pub fn curve_curve(
     from_all(all, start.as_ref().map(<[f64; 2]>::as_slice), |all| all.nearest_to(&from))
 }
 
-/// All meetings of two curves, as (t, s); [`Roots::closest`] is where they come nearest when there is none.
-/// Curves nearer to each other than `tolerance`, or than 1e-9 of their size, meet.
+/// All intersections of two curves, as (t, s); [`Roots::closest`] is the pair of nearest points if
+/// there is none. Curves closer to each other than `tolerance`, or than 1e-9 of their size,
+/// intersect.
 pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>, tolerance: f64) -> Roots<2> {
     let (ta, tb) = (CurveTree::new(a), CurveTree::new(b));
     PairSearch::new(a, b, size_of_both(&ta, &tb), tolerance).run(&ta, &tb)
@@ -348,7 +352,7 @@ impl<'a> PairSearch<'a> {
         }
     }
 
-    /// Keeps a place as a meeting, or as the nearest so far.
+    /// Records a point as an intersection, or as the nearest so far.
     fn take(&mut self, least: LeastPlace, convex: bool) {
         if !least.distance.is_finite() {
             return;

@@ -9,12 +9,13 @@
 //! scalar so); derivatives follow from the solution by the implicit function theorem
 //! ([`implicit`]).
 //!
-//! What is claimed of completeness is stated in [`pieces`], [`roots`], [`curve_pairs`] and [`branches`].
+//! Guarantees of completeness are stated in [`pieces`], [`roots`], [`curve_pairs`] and
+//! [`branches`].
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-// A report is what a failed search is asked for; it is made once a search.
+// The report is needed after a failed search; it is made once per search.
 #![allow(clippy::result_large_err)]
 
 mod batch;

@@ -1,11 +1,11 @@
 //! Intersections of a surface with a plane or another surface: marching along them.
 //!
 //! A point of the intersection has the unknowns (u, v) on the first surface and, on a second
-//! surface, (p, r). A step goes along the tangent n1 x n2 and is corrected by Newton's method in
-//! the plane across it. Branches end at the edges of the surfaces, or come back to their start. An
-//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is not an end: the
-//! branch goes on from the opposite edge, with two stations at one place there. So it does where a
-//! surface is creased along one of its joints and the branch turns by more than a step may.
+//! surface, (p, r). A step is along the tangent n1 x n2 and is corrected by Newton's method in the
+//! normal plane. Branches end at the edges of the surfaces, or return to their start. An edge that
+//! is joined to its own opposite edge (the seam of a cylinder) is not an end: the branch continues
+//! from the opposite edge, with two stations at the same point. The same applies where a surface
+//! has a crease along one of its joints and the branch turns by more than a step may.
 //!
 //! The search for all branches is in [`crate::branches`].
 
@@ -20,7 +20,7 @@ use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scal
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
 pub type Unknowns = [f64; 4];
 
-/// What the first surface is intersected with.
+/// The shape that the first surface is intersected with.
 #[derive(Clone, Copy)]
 pub enum Other<'a> {
     /// A plane.
@@ -31,7 +31,7 @@ pub enum Other<'a> {
     Level(&'a dyn Field<f64>),
 }
 
-/// A surface and what it is intersected with.
+/// A surface and the shape it is intersected with.
 #[derive(Clone, Copy)]
 pub struct Crossing<'a> {
     /// The surface.
@@ -53,7 +53,7 @@ pub struct TracePoint {
     pub q: Unknowns,
     /// Their derivatives by the length along the branch.
     pub rate: Unknowns,
-    /// Where it is.
+    /// Position.
     pub x: Vec3,
     /// The unit tangent of the branch.
     pub tangent: Vec3,
@@ -64,7 +64,7 @@ pub struct TracePoint {
 pub enum BranchEnd {
     /// Unknown `k` reached `value`: an edge.
     Edge {
-        /// Which unknown.
+        /// Index of the unknown.
         unknown: usize,
         /// 0 or 1.
         value: f64,
@@ -99,10 +99,10 @@ const MOST_STATIONS: usize = 20_000;
 /// A place at which the sine of the angle is less than this begins no branch.
 pub(crate) const TANGENT: f64 = 1e-5;
 
-/// A step this short, as a share of the size, leaves an error of its square: below rounding.
+/// Length of a step, relative to the size, after which the error (its square) is below rounding.
 const CLOSE: f64 = 1e-8;
 
-/// Both shapes at a place, and what is left of the equations there, as lengths.
+/// Both shapes at a point, and the residuals of the equations there, as lengths.
 struct MarchResidual {
     /// Between the shapes.
     gap: f64,
@@ -117,7 +117,7 @@ struct MarchResidual {
 /// When a few Newton steps are enough.
 #[derive(Clone, Copy, PartialEq)]
 enum Until {
-    /// What is left is zero to rounding.
+    /// The residual is zero to rounding.
     There,
     /// The last step is [`CLOSE`].
     Close,
@@ -138,8 +138,8 @@ fn tangents(surface: &dyn Surface<f64>, u: f64, v: f64) -> Tangents {
 const TURN: f64 = 0.28;
 const LARGEST_TURN: f64 = 0.909;
 
-/// While a branch is followed, a step this short as a share of the size is the last one if Newton's
-/// method leaves an error below rounding, as the last two steps tell.
+/// Length of a step, relative to the size, after which the iteration on a branch may end, if the
+/// last two steps show that the error is below rounding.
 const LAST_STEP: f64 = 1e-7;
 
 /// At a crease the surface, and with it the branch, turns by an angle of at least this cosine.
@@ -148,8 +148,8 @@ const CREASE: f64 = 0.9999;
 /// A distance from a joint that separates its sides.
 const SAME_POINT: f64 = 1e-9;
 
-/// A step may end this share of it away from where the last two stations lead: farther off is another
-/// branch, or a bend that asks for shorter steps.
+/// Maximum deviation of a step's end from the extrapolation of the last two stations, relative to
+/// the step: larger ones indicate another branch, or a bend that requires shorter steps.
 const MAX_STEP_DEVIATION: f64 = 0.05;
 
 /// Steps of a walk as shares of the size: the first, the longest, the least.
@@ -260,8 +260,8 @@ impl<'a> Crossing<'a> {
         settled.or_else(|| self.across(guess, x, d))
     }
 
-    /// The same from a guess that is good to half the digits: one Newton step doubles them. Where
-    /// the step is longer than that the iteration goes on.
+    /// The same from a guess with half of the digits: one Newton step doubles them. After a longer
+    /// step the iteration continues.
     pub fn across_close(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
         let view = self.view(guess, x, d);
         if let Some((q, way)) = self.next(guess, &view, d)
@@ -296,14 +296,14 @@ impl<'a> Crossing<'a> {
         (view.j, view.k, u.cross(v).normalized().unwrap_or_default(), view.normal)
     }
 
-    /// The direction n1 x n2 at a point that need not lie on the intersection; its length is the
+    /// The direction n1 x n2 at a point that need not be on the intersection; its length is the
     /// sine of the angle between the shapes.
     pub fn direction(&self, q: Unknowns) -> Vec3 {
         let (_, _, a, b) = self.normals(q);
         a.cross(b.normalized().unwrap_or_default())
     }
 
-    /// How far apart two places with nearly the same unknowns are, on the shape where that is more.
+    /// Distance of two points with nearly the same unknowns, the larger of those on both shapes.
     pub fn distance(&self, a: &Unknowns, b: &Unknowns) -> f64 {
         let on = |surface: &dyn Surface<f64>, k: usize| {
             let j = surface.jet(a[k], a[k + 1], Order::First);
@@ -523,7 +523,7 @@ impl<'a> Crossing<'a> {
             };
             let x = last.x + tangent * step;
             let near = if since > 0 { MAX_STEP_DEVIATION * step } else { 1.5 * step };
-            // A better guess, but not what reports whether it goes astray: its steps would be others.
+            // A better guess; not used to detect deviations, since its steps would differ.
             let guess = match &all[..] {
                 [.., a, b, c] if since > 1 => predict([a, b, c], step, sign),
                 _ => guess,
@@ -611,7 +611,7 @@ impl<'a> Crossing<'a> {
                 }
             }
             if let Some(both) = self.crease(&lines, &last, next.q, sign) {
-                // A bend that the step did not notice: what leads on is on one side of it.
+                // A bend within the step: the continuation is on one side of it.
                 self.extend_over_crease(&mut all, both);
                 since = 0;
                 continue;
@@ -699,7 +699,7 @@ impl<'a> Crossing<'a> {
         })
     }
 
-    /// Where a branch that comes to an edge goes on, if the edge is a seam.
+    /// Continuation of a branch at an edge, if the edge is a seam.
     fn beyond_seam(&self, at: &TracePoint, end: BranchEnd) -> Option<TracePoint> {
         let BranchEnd::Edge { unknown, value } = end else { return None };
         if !self.closed[unknown] {
@@ -756,7 +756,7 @@ impl<'a> Crossing<'a> {
 
     /// The whole branch through a point of the intersection, in the direction n1 x n2.
     pub fn branch(&self, seed: Unknowns) -> Option<Branch> {
-        // A seed may be outside by a hair.
+        // A seed may be outside by `OUTSIDE`.
         let mut seed = seed;
         for k in 0..self.unknowns() {
             let edge = seed[k].clamp(0.0, 1.0);
@@ -831,7 +831,7 @@ fn onward(a: &TracePoint, b: &TracePoint, step: f64, sign: f64) -> (Unknowns, Ve
     (unknowns, a.x * p + a.tangent * r + b.x * q + b.tangent * s)
 }
 
-/// True when the cubic of two stations inside goes over an edge and back between them.
+/// True if the cubic of two inner stations leaves the domain and returns between them.
 #[inline(always)]
 fn strays(a: &TracePoint, b: &TracePoint, sign: f64, unknowns: usize) -> bool {
     let run = sign * a.x.distance(b.x);

@@ -11,9 +11,9 @@ use smallvec::SmallVec;
 /// Feet whose distances differ by less than this share of the size are equally near.
 const TIE: f64 = 1e-9;
 
-/// So many sizes away a point is taken for one in the same direction at that distance: from there on all
-/// distances agree to 1e-8 of the size in the order that the direction gives them, and what is nearer
-/// would be lost in rounding.
+/// Distance, in sizes, at which a farther point is replaced by one in the same direction: from
+/// there on all distances agree to 1e-8 of the size in the order given by the direction, and
+/// differences would be lost in rounding.
 const FAR: f64 = 1e8;
 
 /// Descents follow slopes, which keep their digits farther out, as long as squares do not overflow.
@@ -33,7 +33,7 @@ pub(crate) struct Sought {
     pub near: Vec3,
     /// At most [`FARTHEST`] away: for descents.
     pub p: Vec3,
-    /// What rounding makes of distances.
+    /// Rounding error of distances.
     pub slop: f64,
 }
 
@@ -58,19 +58,19 @@ fn pulled(p: Vec3, centre: Vec3, most: f64) -> Vec3 {
     centre + direction * (most / direction.norm())
 }
 
-/// How far two points are from each other, also where the square of that overflows.
+/// Distance of two points, also if its square overflows.
 pub(crate) fn apart(a: Vec3, b: Vec3) -> f64 {
     let d = a - b;
     let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
     if largest < 1e150 { d.norm() } else { (d / largest).norm() * largest }
 }
 
-/// Where a descent ended.
+/// End of a descent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Foot<const N: usize> {
     pub at: [f64; N],
     pub xyz: Vec3,
-    /// What is left of the slope of the distance, as a length.
+    /// Residual slope of the distance, as a length.
     residual: f64,
     iterations: u32,
     /// True when the unknown is held at an end of its range.
@@ -91,9 +91,9 @@ fn slope_of<const N: usize>(d: &[Vec3; N], r: Vec3, held: &[bool; N]) -> f64 {
     (0..N).map(along).fold(0.0, f64::max)
 }
 
-/// Minimises |X(q) - p|^2 over the box `low`..`high` by Newton's method with Gauss-Newton as its
-/// guard: every step goes down. `f` gives the position, first derivatives, and second ones in
-/// the order uu, uv, vv.
+/// Minimises |X(q) - p|^2 over the box `low`..`high` by Newton's method, with Gauss-Newton as a
+/// safeguard: every step decreases it. `f` gives the position, first derivatives, and second ones
+/// in the order uu, uv, vv.
 fn descend<const N: usize>(
     p: Vec3,
     start: [f64; N],
@@ -192,7 +192,7 @@ fn descend<const N: usize>(
             }
             let (x2, d2, dd2) = f(next);
             let after = (x2 - p).norm_sq();
-            // Near the foot the distance no longer tells, but its slope does.
+            // Near the foot the distance is dominated by rounding, but its slope is not.
             let level = (after - before).abs() <= 1e-14 * (before + size * size);
             if after < before && !level || level && slope_of(&d2, x2 - p, &held) < residual {
                 (q, x, d, dd) = (next, x2, d2, dd2);
@@ -202,7 +202,7 @@ fn descend<const N: usize>(
             share *= 0.5;
         }
         if !moved {
-            // No step goes down: as near as rounding lets it come.
+            // No step decreases it: converged to rounding.
             foot.converged |= residual <= 1e-7 * size.max(r.norm());
             break;
         }
@@ -256,7 +256,7 @@ fn on_whole_curve(curve: &dyn Curve<f64>, p: Vec3, start: f64, size: f64) -> Foo
     foot
 }
 
-/// How far on both sides of a joint its slopes are looked at.
+/// Distance on both sides of a joint at which its slopes are evaluated.
 const BESIDE: f64 = 1e-8;
 
 /// The joint nearest to a parameter.
@@ -365,7 +365,7 @@ fn at_knuckle(
 /// Directions in which a descent may leave a pole.
 const AROUND: usize = 24;
 
-/// A descent that ends at a pole goes on from there on the side where the distance falls most steeply.
+/// A descent that ends at a pole continues from there on the side of steepest decrease.
 fn across_poles(surface: &dyn Surface<f64>, p: Vec3, mut foot: Foot<2>, size: f64) -> Foot<2> {
     for _ in 0..3 {
         let Some(k) = (0..2).find(|k| foot.held[*k]) else { break };
@@ -404,9 +404,9 @@ fn across_poles(surface: &dyn Surface<f64>, p: Vec3, mut foot: Foot<2>, size: f6
 const CREASE_WITHIN: f64 = 1e-4;
 const CREASE: f64 = 0.9999;
 
-/// The least distance from `p` along a crease near `near`, that is not at a joint: where a spline's
-/// knots move with the other parameter. Descent comes to no end there, for the distance has a kink
-/// across the crease. `None` where there is no crease, or none with such a place.
+/// The minimum distance from `p` along a crease near `near` that is not at a joint: where a
+/// spline's knots depend on the other parameter. Descent does not converge there, since the
+/// distance has a kink across the crease. `None` without a crease, or without such a minimum.
 ///
 /// With one parameter given, the other one's place on the crease is found by halving; along the crease,
 /// whose tangent is n1 x n2 with the normals of its sides, the slope of the distance is brought to zero
@@ -453,7 +453,7 @@ pub(crate) fn on_crease(
     let slope = |(_, x, t): &([f64; 2], Vec3, Vec3)| t.dot(*x - p);
     let mut before = place(near)?;
     let mut step = if near[other] < 0.5 { 1e-5 } else { -1e-5 };
-    // How the crease's place moves with the other parameter.
+    // Derivative of the crease's parameter with respect to the other one.
     let mut rate = 0.0;
     for iterations in 1..80 {
         let mut q = before.0;
@@ -462,7 +462,7 @@ pub(crate) fn on_crease(
         if !(0.0..=1.0).contains(&q[other]) {
             return None;
         }
-        // Not so far that the crease is elsewhere.
+        // Within the range in which the crease is unique.
         let Some(next) = place(q) else {
             step *= 0.25;
             continue;

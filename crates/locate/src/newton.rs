@@ -6,7 +6,7 @@ use moldloft_num::period::principal;
 /// Steps are cut to this length in any parameter.
 pub const LONGEST_STEP: f64 = 0.2;
 
-/// How far a solution may lie outside of [0, 1].
+/// Maximum excess of a solution beyond [0, 1].
 pub const OUTSIDE: f64 = 1e-6;
 
 /// Maximum number of steps.
@@ -15,7 +15,7 @@ pub const MOST_STEPS: u32 = 50;
 /// Residuals below this share of the size count as zero.
 pub const ACCURACY: f64 = 1e-12;
 
-/// What an iteration came to.
+/// Result of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonResult<const N: usize> {
     /// The last unknowns.
@@ -69,9 +69,9 @@ impl UnknownBounds {
         UnknownBounds { low: f64::NEG_INFINITY, high: f64::INFINITY, step: f64::INFINITY };
 }
 
-/// The root of `f` from `start`: full Newton steps cut to the ranges' longest, halved while the
-/// residual does not fall, held within the ranges. `size` is the length that [`ACCURACY`] is a
-/// share of; `f` gives residuals in lengths and their derivatives.
+/// The root of `f` from `start`: full Newton steps limited to the longest of the ranges, halved
+/// while the residual does not decrease, held within the ranges. [`ACCURACY`] is relative to the
+/// length `size`; `f` gives residuals in lengths and their derivatives.
 pub fn newton<const N: usize>(
     start: [f64; N],
     ranges: &[UnknownBounds; N],
@@ -125,7 +125,7 @@ pub fn newton<const N: usize>(
         walk.iterations += u32::from(better);
         walk.at = x;
         walk.residual = residual;
-        // One more step than the accuracy asks for: it doubles the digits.
+        // One step more than the accuracy requires: it doubles the digits.
         if !better || polished {
             break;
         }

@@ -1,15 +1,15 @@
 //! Curves and surfaces as cubic pieces in Bernstein form, with bounds.
 //!
-//! Every piece lies in the box around its control points, widened by its `slack`. Between the
-//! joints that a shape states, a piece that is a polynomial of degree three or less in each
-//! parameter is represented exactly (slack of rounding): this is so for all B-splines up to the
-//! cubic, and the searches built on it then miss nothing. Other shapes are interpolated and split
-//! until they are close; their slack is twice the largest error met at points between the nodes,
-//! which is a measurement and no proof.
+//! Every piece is in the box around its control points, widened by its `slack`. Between the joints
+//! of a shape, a piece that is a polynomial of degree three or less in each parameter is
+//! represented exactly (slack of rounding): this holds for all B-splines up to the cubic, and
+//! searches on it then miss nothing. Other shapes are interpolated and split until they are
+//! accurate; their slack is twice the largest error at points between the nodes, which is a
+//! measurement and no proof.
 
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 
-/// Pieces are split until they are this close, as a share of the size …
+/// Accuracy at which pieces are not split further, relative to the size …
 const CLOSE: f64 = 1e-5;
 
 /// … but no more often than this,
@@ -25,7 +25,7 @@ pub struct CurvePiece {
     pub t: [f64; 2],
     /// Bernstein control points.
     pub net: [Vec3; 4],
-    /// How far the curve may be from the piece.
+    /// Bound of the curve's distance from the piece.
     pub slack: f64,
     /// Its part of the piece that the slack was measured on.
     pub share: f64,
@@ -41,7 +41,7 @@ pub struct BezierPatch {
     pub uv: [[f64; 2]; 2],
     /// Bernstein control points, [i * 4 + j] with i along u.
     pub net: [Vec3; 16],
-    /// How far the surface may be from the piece.
+    /// Bound of the surface's distance from the piece.
     pub slack: f64,
     /// Its parts, along u and v, of the piece that the slack was measured on.
     pub share: [f64; 2],
@@ -94,8 +94,8 @@ impl CurvePiece {
         ]
     }
 
-    /// How far the inner control points are from the chord's thirds: a bound of how far the piece
-    /// is from a line run evenly, and of how much its tangent turns.
+    /// Distance of the inner control points from the chord's thirds: a bound of the distance from a
+    /// line of constant speed, and of the turn of the tangent.
     pub fn bend(&self) -> f64 {
         let [a, b, c, d] = self.net;
         let third = (d - a) * (1.0 / 3.0);
@@ -141,8 +141,8 @@ impl BezierPatch {
         [leg(0, 12).max(leg(3, 15)), leg(0, 3).max(leg(12, 15))]
     }
 
-    /// How far its control points are from those of the parallelogram of three of its corners: a
-    /// bound of how far it is from an affine map.
+    /// Distance of its control points from those of the parallelogram of three of its corners: a
+    /// bound of the distance from an affine map.
     pub fn bend(&self) -> f64 {
         let n = &self.net;
         let centre = (n[0] + n[3] + n[12] + n[15]) * 0.25;
@@ -160,10 +160,10 @@ impl BezierPatch {
     }
 }
 
-/// What is certain of the distance from a point on a piece.
+/// Result of the bounds for the distance from a point to a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feet {
-    /// The least distance lies on a border with a neighbouring piece, which has it too.
+    /// The minimum is on a border shared with a neighbouring piece, which has it too.
     Elsewhere,
     /// There is at most one minimum.
     One,
@@ -172,7 +172,7 @@ pub enum Feet {
 }
 
 impl CurvePiece {
-    /// What the derivatives of the distance from `p` say, with bounds of their change along the
+    /// Result of the derivatives of the distance from `p`, with bounds of their change along the
     /// piece from their own control points.
     pub fn feet(&self, p: Vec3) -> Feet {
         let b = &self.net;
@@ -197,7 +197,7 @@ impl CurvePiece {
     }
 }
 
-/// A middle of a set of points, and how far they reach from it.
+/// A centre of a set of points, and their maximum distance from it.
 pub(crate) fn ball(all: &[Vec3]) -> (Vec3, f64) {
     let c = Box3::around(all.iter().copied()).centre();
     (c, all.iter().map(|q| (*q - c).norm_sq()).fold(0.0, f64::max).sqrt())
@@ -241,7 +241,8 @@ impl BezierPatch {
         let vv = with(&dvv, 40.0 * s * z * z);
         let away = x - p;
         let far = away.norm();
-        // Where the distance falls towards one side all over the piece, the least is on that side.
+        // If the distance decreases towards one side all over the piece, the minimum is on that
+        // side.
         let mut to_edge = [false; 2];
         for (k, (d, reach)) in [a, b].into_iter().enumerate() {
             let slope = d.dot(away);
@@ -324,7 +325,7 @@ fn with_ends(breaks: Vec<f64>) -> Vec<f64> {
     all
 }
 
-/// Where a piece is sampled: the nodes of its cubic, and between them.
+/// Sample parameters of a piece: the nodes of its cubic, and points between them.
 const NODES: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
 const BETWEEN: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
 

@@ -1,9 +1,9 @@
-//! Where a branch goes on, from its last three stations.
+//! Prediction of a branch from its last three stations.
 
 use crate::march::{TracePoint, Unknowns};
 use moldloft_num::Vec3;
 
-/// What a branch has at a length along it, side by side: the unknowns and the place.
+/// Unknowns and position of a branch at a length along it, side by side.
 type Row = [f64; 8];
 
 fn values(s: &TracePoint) -> Row {
@@ -36,18 +36,18 @@ fn plus(a: &Row, b: &Row, by: f64) -> Row {
     out
 }
 
-/// How much longer than its chord an arc is that turns by an angle whose chord is `turn`: w / (2 sin
-/// w/2), by its series.
+/// Ratio of an arc to its chord, for a turn by an angle whose chord is `turn`: w / (2 sin w/2), by
+/// its series.
 #[inline(always)]
 fn bulge(turn: f64) -> f64 {
     let square = turn * turn;
     1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0))
 }
 
-/// The unknowns where a step along the last station's tangent ends, in the plane across it: by the
-/// polynomial of degree 5 in the length that three stations and their tangents have in common, in
-/// Newton's form. Its error is of the sixth order in the step, so that two evaluations settle what
-/// takes three from a cubic's guess.
+/// The unknowns at the end of a step along the last station's tangent, in the normal plane: by the
+/// polynomial of degree 5 in the length through three stations and their tangents, in Newton's
+/// form. Its error is of the sixth order in the step, so that two evaluations suffice instead of
+/// three from a cubic prediction.
 #[inline(always)]
 pub(crate) fn predict([a, b, c]: [&TracePoint; 3], step: f64, sign: f64) -> Unknowns {
     let turn = b.tangent.distance(c.tangent);

@@ -1,4 +1,4 @@
-//! Solutions of searches and reports about how they were found, or why there is none.
+//! Solutions of searches with reports, and reasons of failures.
 
 use moldloft_num::Vec3;
 use moldloft_num::period::parameter_distance;
@@ -8,7 +8,7 @@ use std::fmt;
 /// Parameters of one solution: (t), (u, v), (t, u, v), …
 pub type Parameters = SmallVec<[f64; 4]>;
 
-/// How a search ended.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LocateStatus {
     /// Found from the start that was given, or the only solution there is.
@@ -16,7 +16,7 @@ pub enum LocateStatus {
     /// The iteration from the start failed; the solution is the one nearest to the start, in
     /// parameter space, of all that subdivision found.
     Fallback,
-    /// The solution lies at an end or edge because the unbounded one lies beyond it.
+    /// The solution is at an end or edge because the unbounded one is beyond it.
     EdgeClamped,
     /// The shapes touch, or nearly so: the system of equations is singular at the solution.
     Tangent,
@@ -26,9 +26,9 @@ pub enum LocateStatus {
     Unfinished,
     /// There are several solutions, and nothing that says which is meant.
     Multiple {
-        /// How many.
+        /// Number of solutions.
         count: usize,
-        /// Which was taken, from 0, in the order of the parameters.
+        /// Index of the result, from 0, in the order of the parameters.
         chosen: usize,
         /// Distance in space from the chosen one to the next nearest of the others.
         next: f64,
@@ -77,16 +77,16 @@ impl fmt::Display for LocateStatus {
 pub struct Alternative {
     /// Its parameters.
     pub parameters: Parameters,
-    /// Where it is.
+    /// Position.
     pub xyz: Vec3,
 }
 
-/// How a solution was found, or why there is none.
+/// Report of a search, successful or not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocateReport {
-    /// How the search ended.
+    /// Result of the search.
     pub status: LocateStatus,
-    /// What is left of the equations, in the unit of length.
+    /// Residual of the equations, in the unit of length.
     pub residual: f64,
     /// Steps of the iteration that led to the solution.
     pub iterations: u32,
@@ -103,10 +103,10 @@ pub struct LocateReport {
 pub struct Solution<const N: usize> {
     /// The parameters.
     pub at: [f64; N],
-    /// Which of them are those of a joint at which the shape is bent: the least distance to a corner or a
-    /// knuckle is there, and stays there.
+    /// For each parameter, true if it is that of a joint with a kink: the minimum distance to a
+    /// corner or a knuckle is there, and stays there.
     pub joint: [bool; N],
-    /// How they were found.
+    /// Report of the search.
     pub report: LocateReport,
 }
 
@@ -115,9 +115,9 @@ pub struct Solution<const N: usize> {
 pub struct FoundRoot<const N: usize> {
     /// Its parameters.
     pub at: [f64; N],
-    /// Where it is.
+    /// Position.
     pub xyz: Vec3,
-    /// What is left of the equations, in the unit of length.
+    /// Residual of the equations, in the unit of length.
     pub residual: f64,
     /// Steps of the iteration.
     pub iterations: u32,
@@ -135,7 +135,7 @@ pub struct Roots<const N: usize> {
     pub complete: bool,
     /// The parameters of the least residual that was met, for messages.
     pub closest: Option<([f64; N], f64)>,
-    /// Which parameters run round, so that 0 and 1 are one.
+    /// For each parameter, true if closed, so that 0 and 1 are one.
     pub closed: [bool; N],
 }
 
@@ -178,7 +178,8 @@ impl<const N: usize> Roots<N> {
         Solution { at: root.at, joint: [false; N], report }
     }
 
-    /// The report that there is no root, or that none was found before the search ran into its limit.
+    /// The report that there is no root, or that none was found before the search reached its
+    /// limit.
     pub fn none(&self, start: &[f64]) -> LocateReport {
         let (last, residual) = match self.closest {
             Some((at, residual)) => (at.iter().copied().collect(), residual),

@@ -1,10 +1,10 @@
 //! Intersections of curves with planes, curves and surfaces: from a start, and all of them.
 //!
-//! Searches for all roots subdivide the pieces of both shapes while their boxes meet, until the
-//! pieces are so flat that Newton's method from the middle finds the one root there can be, or
-//! leaves; then the roots are brought to full accuracy on the shapes themselves. On shapes whose
-//! pieces are exact (see [`crate::pieces`]) every transversal root is found. Where the search
-//! meets its limit, as it does where shapes coincide, [`Roots::complete`] is false.
+//! Searches for all roots subdivide the pieces of both shapes while their boxes intersect, until
+//! the pieces are so flat that Newton's method from the middle finds the only possible root, or
+//! leaves; then the roots are refined to full accuracy on the shapes themselves. On shapes whose
+//! pieces are exact (see [`crate::pieces`]) every transversal root is found. If the search reaches
+//! its limit, as it does for coincident shapes, [`Roots::complete`] is false.
 
 use crate::newton::{NewtonResult, OUTSIDE, UnknownBounds, newton};
 use crate::pieces::{BezierPatch, CurvePiece, meet, size_of};
@@ -16,13 +16,13 @@ use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 /// Pairs of pieces that a search looks at before it gives up.
 const MOST_PAIRS: usize = 100_000;
 
-/// Pieces this flat, as a share of their length, hold one root at most.
+/// Relative flatness at which a piece has at most one root.
 pub(crate) const FLAT: f64 = 0.05;
 
 /// A contact whose sine of the angle is below this is tangent.
 pub(crate) const TANGENT: f64 = 1e-6;
 
-/// Residuals of contacts that no transversal root explains, as a share of the size.
+/// Residual, relative to the size, of contacts without a transversal root.
 const TOUCH: f64 = 1e-10;
 
 /// A function g of space of which a level is sought along a curve: zero on it.
@@ -130,7 +130,7 @@ pub(crate) fn taken<const N: usize>(
     Some(Solution { at: walk.at, joint: [false; N], report })
 }
 
-/// What to do when there is no start or it led nowhere: all roots, the one nearest to the start.
+/// Result without a start, or after a failure from it: of all roots, the one nearest to the start.
 pub(crate) fn from_all<const N: usize>(
     all: Roots<N>,
     start: Option<&[f64]>,
@@ -143,11 +143,11 @@ pub(crate) fn from_all<const N: usize>(
     }
 }
 
-/// Where a curve crosses a level. From a `start` it is what Newton's method leads to; else, or when
-/// that fails, of all crossings the one nearest to the start (0.5 without one).
+/// Intersection of a curve with a level. From a `start` it is the result of Newton's method;
+/// otherwise, or if that fails, the one of all intersections nearest to the start (default 0.5).
 ///
 /// # Errors
-/// The report when there is none.
+/// The report if there is none.
 pub fn curve_level(
     curve: &dyn Curve<f64>,
     level: &Level<'_>,
@@ -248,7 +248,7 @@ impl<const N: usize> RootCollector<N> {
         self.pairs > MOST_PAIRS || self.roots.len() > 2_000
     }
 
-    /// Whether there is a root.
+    /// True if there is a root.
     pub fn any(&self) -> bool {
         !self.roots.is_empty()
     }
@@ -336,13 +336,13 @@ fn sine_to_surface(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>, [t, u, v]
     n.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE)
 }
 
-/// Which of (t, u, v) run round.
+/// For each of (t, u, v), true if closed.
 fn round_of(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>) -> [bool; 3] {
     let [u, v] = surface.closed();
     [curve.closed(), u, v]
 }
 
-/// Where a curve meets a surface, as (t, u, v); see [`curve_level`].
+/// Intersection of a curve with a surface, as (t, u, v); see [`curve_level`].
 ///
 /// # Errors
 /// The report when they do not meet.
@@ -438,9 +438,9 @@ pub fn meetings(
     search.finish()
 }
 
-/// Where the line through `p` along `d` meets a surface, as (u, v, distance in lengths of `d`).
-/// From a start (u, v) it is what Newton's method leads to; without one, or when that fails, of all
-/// meetings the one nearest to `p`.
+/// Intersection of the line through `p` along `d` with a surface, as (u, v, distance in lengths of
+/// `d`). From a start (u, v) it is the result of Newton's method; without one, or if that fails,
+/// the one of all intersections nearest to `p`.
 ///
 /// # Errors
 /// The report when the line misses the surface.

@@ -1,9 +1,9 @@
 //! Pairs of large parts of two surfaces that need no closer look.
 //!
-//! The halvings that lead from the pieces of a surface to its cells make a tree of plates: each is a
-//! parallelogram with bounds of how far the surface bends away from it and of how its normals turn.
-//! A search goes down the trees of both surfaces at once. A pair of plates is done when they are
-//! apart, or when they meet in one line at most and a branch that was found before is that line.
+//! The halvings from the pieces of a surface to its cells form a tree of plates: each is a
+//! parallelogram with bounds of the surface's distance from it and of the turn of its normals. A
+//! search descends the trees of both surfaces together. A pair of plates is finished if they are
+//! apart, or if they intersect in at most one line that is a known branch.
 
 use crate::cells::{Cells, Flat, MOST_HALVINGS, derivative, patch_powers};
 use crate::march::{TracePoint, Unknowns};
@@ -19,18 +19,18 @@ const GROWTH_MARGIN: f64 = 1.2;
 /// Boxes that overlap by less than this share of the size only touch.
 const TOUCH_TOLERANCE: f64 = 1e-12;
 
-/// Rounding of single precision, several times over, as a share of the numbers that go in.
+/// A multiple of the rounding of single precision, relative to the input numbers.
 const ROUNDING: f64 = 1.0 / (1u32 << 20) as f64;
 
 /// Room for pairs that wait: pieces are halved a few times each.
 const STACK: usize = 2 * MOST_HALVINGS as usize + 2;
 
-/// A part of a surface, from a piece down to a cell: the parallelogram c + a s + b t with |s| and |t|
-/// at most 1, and how far the surface may be from it.
+/// A part of a surface, between piece and cell: the parallelogram c + a s + b t with |s| and |t| at
+/// most 1, and a bound of the surface's distance from it.
 ///
-/// A search looks at many plates for a moment each, so that the time goes to fetch them: this is one
-/// line of a processor's cache, in single precision with the bounds widened by its rounding. What else
-/// there is of a plate is a [`SlabBox`] and a [`NormalVariation`].
+/// A search touches many plates briefly, so that memory access dominates: this is one cache line,
+/// in single precision with the bounds widened by its rounding. Other data of a plate are in a
+/// [`SlabBox`] and a [`NormalVariation`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Slab {
@@ -41,7 +41,7 @@ struct Slab {
     bend: f32,
     /// The longer side.
     longest: f32,
-    /// A bound of how the normals change beside what [`NormalVariation`] states.
+    /// A bound of the change of the normals in addition to [`NormalVariation`].
     rest: f32,
 }
 
@@ -75,25 +75,25 @@ impl Slab {
     }
 }
 
-/// Where a plate is.
+/// Position of a plate.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct SlabBox {
-    /// The lower ends of its box by axis, and the upper ones with the other sign. Where the surface
-    /// goes over a side of the box into the next plate the side is moved in by a hair: plates that do
-    /// nothing but touch there need not be looked at, for a line in which both surfaces meet goes on
-    /// to plates that overlap, or has such on one of its sides.
+    /// The lower ends of its box by axis, and the negated upper ones. A side that the surface
+    /// crosses into the next plate is moved inward slightly: plates that only touch there need not
+    /// be tested, since an intersection continues to overlapping plates, or has such on one of its
+    /// sides.
     ends: [f64; 6],
     /// The first of its halves, which follow each other; 0 for a cell.
     below: u32,
     /// The cell that it is, if it is one.
     cell: u32,
-    /// True when the surface goes on beyond it in the same direction.
+    /// True if the surface continues beyond it in the same direction.
     smooth: bool,
 }
 
 impl SlabBox {
-    /// What no end is above of a box that meets this one.
+    /// Upper bounds of the ends of a box that intersects this one.
     #[inline(always)]
     fn facing(&self) -> [f64; 6] {
         let [a, b, c, d, e, f] = self.ends;
@@ -111,8 +111,8 @@ impl SlabBox {
     }
 }
 
-/// How a plate's normals turn: how they change across the middle one, as shares of what is left of
-/// them along it.
+/// Variation of a plate's normals: the change across the central one, relative to the minimum along
+/// it.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct NormalVariation {
@@ -123,7 +123,7 @@ struct NormalVariation {
 }
 
 impl NormalVariation {
-    /// How far they change along a unit vector.
+    /// Bound of their change along a unit vector.
     #[inline(always)]
     fn along(&self, [l, m, n]: [f32; 3]) -> f32 {
         let ([x, y, z], [a, b, c, margin]) = (&self.rows, self.last);
@@ -175,10 +175,10 @@ impl<'a> Sight<'a> {
 
     /// True when both surfaces certainly meet in one line at most here and beside.
     ///
-    /// Seen along n1 x n2, the direction of the line, the normals of each turn by an angle of at most
-    /// their change across n over what is left along n. While these angles together are less than the
-    /// angle between n1 and n2, the distance of one surface from the other grows all the way across
-    /// the line.
+    /// Seen along n1 x n2, the direction of the line, the normals of each turn by an angle of at
+    /// most their change across n over the minimum along n. While the sum of these angles is less
+    /// than the angle between n1 and n2, the distance of one surface from the other increases
+    /// monotonically across the line.
     #[inline(always)]
     pub fn meet_in_one_line(&self, o: &Sight) -> bool {
         let (p, q) = (self.plate(), o.plate());
@@ -205,10 +205,10 @@ pub(crate) struct Plates {
     turns: Vec<NormalVariation>,
     /// Their parameters.
     ranges: Vec<[[f64; 2]; 2]>,
-    /// Where plates are measured from, and how far they are from there at most.
+    /// Origin of the plates' coordinates, and their maximum distance from it.
     origin: Vec3,
     radius: f64,
-    /// How many bins a side of the parameter square is divided into.
+    /// Number of bins per side of the parameter square.
     pub bins: usize,
 }
 
@@ -280,7 +280,8 @@ impl Plates {
             }
             // Up to the next number in single precision, and above its rounding.
             let up = |x: f64| (x * (1.0 + ROUNDING)) as f32;
-            // Squares go from 0 to 1 only: with half of what they add it is half as far to either side.
+            // Squares range from 0 to 1 only: with half of their contribution, the bound is half as
+            // wide to either side.
             let squares = [x[8], x[2], x[10]];
             let c = squares.iter().fold(flat.c, |c, x| c + *x * 0.5) - origin;
             let bend = flat.bend - 0.5 * squares.iter().map(|x| x.norm()).sum::<f64>();
@@ -327,7 +328,7 @@ struct Leg {
 pub(crate) struct Trails {
     bins: usize,
     legs: Vec<Leg>,
-    /// For each bin the last of its entries, plus one; 0 for none.
+    /// For each bin the last of its entries, plus one; 0 for an empty bin.
     last: Vec<u32>,
     /// A leg, and the entry of the same bin before it, plus one.
     entries: Vec<[u32; 2]>,
@@ -413,7 +414,7 @@ impl Leg {
     }
 }
 
-/// What a descent does with pairs of plates.
+/// Treatment of pairs of plates in a descent.
 pub(crate) trait Visitor {
     /// True when a pair needs no closer look although both may meet.
     fn done(&mut self, p: &Sight, q: &Sight) -> bool;
@@ -477,8 +478,8 @@ impl<V: Visitor> pulp::NullaryFnOnce for Descent<'_, V> {
                 }
                 continue;
             }
-            // The longer one is halved. Whether a half stays is as good as a coin's fall, which no
-            // processor foresees: both are written down, and the count tells which stays.
+            // The longer one is halved. Whether a half is kept is unpredictable, so both are
+            // written without a branch, and the count decides.
             let longer = p.plate().longest >= q.plate().longest;
             if at.below > 0 && (other.below == 0) | longer {
                 let halves = [first.sight(at.below + 1), first.sight(at.below)];

@@ -1,4 +1,5 @@
-//! What the server answers: each method from the text, from what came of its run, or from the names of the workspace.
+//! Answers of the server: each method from the text, from the result of its run, or from the names
+//! of the workspace.
 
 use crate::index::{Index, MOST_FILES, OpenText};
 use crate::lines::LineIndex;
@@ -19,10 +20,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A result, or a code of the protocol and why there is none.
+/// A result, or a code of the protocol with the reason of the failure.
 pub type Answer = Result<Value, (i32, String)>;
 
-/// A text that is asked about.
+/// The text of a request.
 pub struct Asked<'a> {
     pub uri: &'a str,
     pub text: &'a str,
@@ -44,7 +45,7 @@ const TOKEN_MODIFIERS: [SemanticTokenModifier; 3] = [
     SemanticTokenModifier::READONLY,
 ];
 
-/// What the server can do.
+/// Capabilities of the server.
 pub fn capabilities() -> Value {
     let legend = SemanticTokensLegend {
         token_types: TOKEN_TYPES.to_vec(),
@@ -70,7 +71,7 @@ pub fn capabilities() -> Value {
     })
 }
 
-/// True for methods that are answered from what came of a text's run.
+/// True for methods that are answered from the result of a run.
 pub fn needs_run(method: &str) -> bool {
     [
         ask::HoverRequest::METHOD,
@@ -146,7 +147,7 @@ pub fn of_text(method: &str, text: &str) -> Option<Answer> {
     }
 }
 
-/// The answers that what came of a text's run gives.
+/// Answers from the result of a run.
 pub fn of_document(
     method: &str,
     params: &Value,
@@ -225,7 +226,7 @@ fn completion(found: moldloft::document::Completion) -> CompletionItem {
     let argument = found.kind == CompletionKind::Argument;
     CompletionItem {
         insert_text: argument.then(|| format!("{} = ", found.word)),
-        // What the call takes comes before everything else that has a name.
+        // Arguments of the call are listed before all other names.
         sort_text: argument.then(|| format!(" {}", found.word)),
         kind: Some(kind),
         detail: Some(found.detail).filter(|detail| !detail.is_empty()),
@@ -234,7 +235,7 @@ fn completion(found: moldloft::document::Completion) -> CompletionItem {
     }
 }
 
-/// Inside of a text: the files beside the program that its words so far may mean.
+/// Inside a quoted text: the files beside the program that match it so far.
 fn files(asked: &Asked<'_>, at: u32) -> Vec<CompletionItem> {
     /// The most names that are proposed.
     const MOST: usize = 200;
@@ -270,7 +271,8 @@ fn signature(found: moldloft::document::CallSignature) -> SignatureHelp {
             value: text,
         })
     };
-    // The protocol counts UTF-16 units; names of arguments are ASCII, what is before them need not be.
+    // The protocol counts UTF-16 units; names of arguments are ASCII, the text before them need not
+    // be.
     let unit = |byte: u32| found.label[..byte as usize].encode_utf16().count() as u32;
     let arguments = found.arguments.iter().map(|(start, end, help)| ParameterInformation {
         label: ParameterLabel::LabelOffsets([unit(*start), unit(*end)]),
@@ -288,7 +290,7 @@ fn signature(found: moldloft::document::CallSignature) -> SignatureHelp {
     }
 }
 
-/// The corrections of what is at fault in a range.
+/// The quick fixes of errors in a range.
 fn actions(document: &Document, lines: &LineIndex<'_>, range: Range, uri: &str) -> Answer {
     let sources = document.sources();
     let main = sources.ids().next();
@@ -320,7 +322,7 @@ fn actions(document: &Document, lines: &LineIndex<'_>, range: Range, uri: &str) 
     Ok(found.into())
 }
 
-/// The names of a text, each by its distance from the last, as the protocol asks.
+/// The names of a text, each by its distance from the last, as the protocol requires.
 fn tokens(document: &Document, text: &str, lines: &LineIndex<'_>) -> SemanticTokens {
     let mut data = Vec::new();
     let mut last = Position::default();

@@ -25,7 +25,7 @@ pub fn run() -> ExitCode {
     if orderly && flushed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// True when the editor said goodbye as the protocol asks.
+/// True if the editor ended the session as the protocol requires.
 fn serve(connection: &Connection) -> bool {
     let Ok((id, params)) = connection.initialize_start() else { return false };
     let reported = json!({

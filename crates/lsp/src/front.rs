@@ -24,7 +24,7 @@ const BEGIN_AGAIN: &str = "moldloft-begin-again";
 /// Ends of engines without a message of the editor between them, after which no other is started.
 const MOST_ENDS: u32 = 5;
 
-/// How long answers are waited for that were asked for before the goodbye.
+/// Maximum wait at the end of a session for pending answers.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(10);
 
 enum FrontEvent {
@@ -35,12 +35,12 @@ enum FrontEvent {
     EngineGone(u32),
 }
 
-/// What starts an engine: a program that calls [`crate::engine`](crate::engine()).
+/// Command that starts an engine: a program that calls [`crate::engine`](crate::engine()).
 #[derive(Clone, Debug)]
 pub struct EngineCommand {
     /// The program.
     pub program: PathBuf,
-    /// What it is given.
+    /// Its arguments.
     pub arguments: Vec<OsString>,
 }
 
@@ -97,7 +97,7 @@ impl EngineProcess {
     }
 }
 
-/// What an engine must be given to go on where another ended.
+/// State from which a new engine continues after another ended.
 struct EditorFront<'c> {
     editor: &'c Connection,
     engine: EngineProcess,
@@ -106,7 +106,7 @@ struct EditorFront<'c> {
     begin: Option<Request>,
     begun: bool,
     texts: BTreeMap<String, TextDocumentItem>,
-    /// Texts that ended an engine, and what is said of them.
+    /// Texts that ended an engine, with the message about them.
     held: BTreeMap<String, String>,
     /// Runs under way: text and number.
     running: HashSet<(String, u64)>,
@@ -117,7 +117,7 @@ struct EditorFront<'c> {
     leaving: bool,
 }
 
-/// Serves until the editor has gone; a success when it said goodbye as the protocol asks.
+/// Serves until the editor disconnects; a success if it ended the session as the protocol requires.
 pub fn run(command: EngineCommand) -> ExitCode {
     let wire = to_editor();
     let (events, received) = mpsc::channel();
@@ -176,7 +176,7 @@ pub fn run(command: EngineCommand) -> ExitCode {
             FrontEvent::Engine(..) | FrontEvent::EngineGone(_) => {}
         }
     }
-    // An editor that said goodbye in one breath still gets the answers that it asked for.
+    // An editor that sends everything at once still gets the requested answers.
     let deadline = Instant::now() + EXIT_TIMEOUT;
     while orderly && !front.pending.is_empty() {
         match received.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
@@ -216,7 +216,7 @@ impl EditorFront<'_> {
         self.engine.send(&message);
     }
 
-    /// Keeps what a notice says of the texts.
+    /// Records the texts of a notification.
     fn keep(&mut self, notice: &Notification) {
         match notice.method.as_str() {
             note::Initialized::METHOD => self.begun = true,
@@ -284,7 +284,7 @@ impl EditorFront<'_> {
         let why = format!(
             "this text ended the process that ran it ({how}); it runs again when it is changed"
         );
-        // What was running ended it. Where nothing was, all texts are left alone after a few ends.
+        // The running text ended it. If there was none, no text is run after a few ends.
         let mut blamed: Vec<String> = self.running.drain().map(|(uri, _)| uri).collect();
         if blamed.is_empty() && self.ends > 1 {
             blamed = self.texts.keys().cloned().collect();

@@ -11,13 +11,13 @@ pub const MOST_FILES: usize = 5_000;
 /// The most folders and files that are looked at.
 const MOST_ENTRIES: usize = 100_000;
 
-/// A text that is open: its address, how often it was changed, the text.
+/// An open text: address, number of changes, text.
 pub type OpenText<'a> = (&'a str, u64, &'a str);
 
-/// As what a file was read.
+/// Source of a file's content.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stamp {
-    /// The open text, after so many changes.
+    /// The open text, after a number of changes.
     Open(u64),
     /// The file of that time and length.
     Saved(Option<SystemTime>, u64),
@@ -93,7 +93,7 @@ impl Index {
                 self.workspace.set(&name, text, |path| resolve(&name, path));
                 self.stamps.insert(name.clone(), stamp);
             }
-            // What it loads may be outside of the folders that were listed.
+            // A loaded file may be outside the listed folders.
             for load in self.workspace.loads(&name) {
                 if !done.contains(load)
                     && let Some(stamp) = saved_stamp(Path::new(load))

@@ -2,10 +2,10 @@
 //!
 //! `editor <-> front, which keeps the texts <-> engine, a process that runs them`
 //!
-//! Every open text is a [`moldloft::document::Document`] that is run at each change, without writing any
-//! file, on a thread of its own; all answers come from there. A change stops the run under way, and one
-//! that does not come to an end soon is stopped and reported. A text that ends its process takes nothing
-//! with it: another engine begins with all texts, and that text waits until it is changed.
+//! Every open text is a [`moldloft::document::Document`] that is run at each change, without
+//! writing any file, on a thread of its own; all answers come from there. A change stops the
+//! current run; one that exceeds the time limit is stopped and reported. If a text ends its
+//! process, another engine starts with all texts, and that text waits until it is changed.
 //!
 //! It has no process of its own: the program `moldloft-lsp` and the Python package both call [`serve`], and start
 //! themselves once more for [`engine`](engine()).

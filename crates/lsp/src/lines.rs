@@ -2,7 +2,7 @@
 
 use lsp_types::{Position, Range};
 
-/// Where the lines of a text begin.
+/// Starts of the lines of a text.
 #[derive(Debug)]
 pub struct LineIndex<'t> {
     text: &'t str,

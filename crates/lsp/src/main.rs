@@ -19,7 +19,7 @@ fn main() -> ExitCode {
             let arguments = vec!["--engine".into()];
             moldloft_lsp::serve(EngineCommand { program, arguments })
         }
-        // What the front starts.
+        // The engine, started by the front.
         Some("--engine") => moldloft_lsp::engine(),
         Some("--version" | "-V") => {
             println!("moldloft-lsp {}", env!("CARGO_PKG_VERSION"));

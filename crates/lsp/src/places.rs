@@ -1,4 +1,4 @@
-//! Files and addresses: what an editor calls a file, where texts find the files that they load.
+//! Files and addresses: editors' names of files, and the search for loaded files.
 
 use moldloft::host::FileWorld;
 use moldloft::lang::{LIBRARIES, ReadText, TextReadError, World};
@@ -53,19 +53,21 @@ pub fn path_of(uri: &str) -> Option<PathBuf> {
     Some(PathBuf::from(if drive { &path[1..] } else { &path }))
 }
 
-/// Where the built-in libraries are laid to be shown: beside other temporary files.
+/// Folder in which copies of the built-in libraries are shown: among temporary files.
 fn folder_of_libraries() -> PathBuf {
     std::env::temp_dir().join("moldloft-libraries")
 }
 
-/// Lays out the built-in libraries, which an editor shows as files; before the engine is confined, which may write none.
+/// Writes the built-in libraries, which an editor shows as files; before the engine is confined,
+/// which may not write.
 pub fn lay_out_libraries() {
     let folder = folder_of_libraries();
     for (file, text) in LIBRARIES {
         let path = folder.join(file);
         let same = std::fs::read_to_string(&path).is_ok_and(|there| there == *text);
         if !same {
-            // Whole at once, as another engine may read it. Without the file the editor says itself that there is none.
+            // Written atomically, as another engine may read it. If the file is missing the editor
+            // reports that.
             let new = folder.join(format!("{file}.{}", std::process::id()));
             let _ = std::fs::create_dir_all(&folder)
                 .and_then(|()| std::fs::write(&new, text))

@@ -1,4 +1,4 @@
-//! The open texts and their runs: what is run when, what is reported of it, which requests wait for it.
+//! The open texts and their runs: scheduling, reports, pending requests.
 
 use crate::answers::{self, Answer};
 use crate::index::{Index, OpenText};
@@ -18,9 +18,9 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long a program may run before it is stopped, so that an endless loop is reported soon.
+/// Time limit of a program, so that an endless loop is reported soon.
 const STOP_TIMEOUT: Duration = Duration::from_secs(2);
-/// How long a run may take to notice that it was stopped; then it is left to itself.
+/// Maximum time for a stopped run to end; then it is abandoned.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The notice of the engine that a run of a text begins or has ended.
@@ -28,7 +28,7 @@ pub const RUNNING: &str = "$/moldloft/running";
 /// The notice to the engine that a text ended an engine and is not run before it is changed.
 pub const HELD: &str = "$/moldloft/held";
 
-/// What the server waits for.
+/// Events of the server.
 pub enum Event {
     /// A message of the editor.
     Message(Message),
@@ -49,7 +49,7 @@ pub struct Ran {
 pub struct OpenDocument {
     pub text: String,
     version: Option<i32>,
-    /// How often it was changed.
+    /// Number of changes.
     changes: u64,
     /// Other texts that diagnostics of this one were reported for.
     reported: Vec<String>,
@@ -58,9 +58,9 @@ pub struct OpenDocument {
     waiting: Vec<Request>,
 }
 
-/// What is known of a text.
+/// State of a text's run.
 enum RunState {
-    /// What came of its run; whether that was stopped.
+    /// Result of its run; true if that was stopped.
     Ready(Box<Document>, bool),
     Running(Running),
     /// Nothing: its run did not stop in time, or panicked.
@@ -69,11 +69,11 @@ enum RunState {
 
 /// A run under way, on a thread of its own.
 struct Running {
-    /// Which run it is.
+    /// Number of the run.
     serial: u64,
     budget: Arc<Budget>,
     since: Instant,
-    /// When it was asked to stop.
+    /// Time at which it was stopped.
     stopped: Option<Instant>,
     /// True when the text was changed since.
     outdated: bool,
@@ -99,7 +99,7 @@ pub struct Server {
     index: Index,
     events: Sender<Event>,
     runs: u64,
-    /// Texts that ended an engine, and what to say of them.
+    /// Texts that ended an engine, with the message about them.
     held: HashMap<String, String>,
     /// Messages that go out with the next.
     out: Vec<Message>,
@@ -175,12 +175,12 @@ impl Server {
         }
     }
 
-    /// What concerns the names of all texts of the workspace.
+    /// Answers about the names of all texts of the workspace.
     fn of_workspace(&mut self, method: &str, params: &Value, uri: &str) -> Answer {
         let open: Vec<OpenText> =
             self.open.iter().map(|(uri, o)| (uri.as_str(), o.changes, o.text.as_str())).collect();
         self.index.refresh(&self.folders, &open);
-        // What a kind, a function or a library declares is known to a run alone.
+        // Declarations of kinds, functions and libraries are known to a run only.
         let document = self.open.get(uri).and_then(|o| match &o.state {
             RunState::Ready(document, _) => Some(&**document),
             _ => None,
@@ -224,7 +224,7 @@ impl Server {
         }
     }
 
-    /// Takes what came of a run.
+    /// Receives the result of a run.
     pub fn ran(&mut self, ran: Ran) {
         let Ran { uri, serial, document } = ran;
         self.out.push(running(&uri, serial, false));
@@ -254,7 +254,7 @@ impl Server {
         }
     }
 
-    /// Runs the text that is there now, on what its last run left when there is that.
+    /// Runs the present text, on the document of its last run if there is one.
     fn start(&mut self, uri: &str, document: Option<Box<Document>>) {
         let Some(open) = self.open.get_mut(uri) else { return };
         self.runs += 1;
@@ -312,7 +312,7 @@ impl Server {
         }
     }
 
-    /// What waits asked about another text.
+    /// Pending requests refer to an earlier text.
     fn refuse_waiting(&mut self, uri: &str, why: &str) {
         let Some(open) = self.open.get_mut(uri) else { return };
         for request in std::mem::take(&mut open.waiting) {
@@ -320,7 +320,7 @@ impl Server {
         }
     }
 
-    /// Takes a notice; one that cannot be read is passed over, as the protocol asks.
+    /// Handles a notification; an invalid one is ignored, as the protocol requires.
     pub fn notice(&mut self, notice: Notification) {
         match notice.method.as_str() {
             note::DidOpenTextDocument::METHOD => {
@@ -338,7 +338,7 @@ impl Server {
                 }
             }
             note::DidSaveTextDocument::METHOD => {
-                // Other texts may read what was saved by other ways than `load`.
+                // Other texts may read the saved file by other functions than `load`.
                 let uri = notice.params["textDocument"]["uri"].as_str().unwrap_or("");
                 let all: Vec<String> = self.open.keys().filter(|o| *o != uri).cloned().collect();
                 all.iter().for_each(|other| self.run_again(other, true));
@@ -406,7 +406,7 @@ impl Server {
         self.run_dependents(uri);
     }
 
-    /// Other texts see what is open, not what was saved.
+    /// Other texts use the open text, not the saved one.
     fn buffer(&mut self, uri: &str) {
         let path = path_of(uri).and_then(|path| path.canonicalize().ok());
         if let (Some(path), Some(open)) = (path, self.open.get(uri)) {
@@ -525,7 +525,7 @@ fn running(uri: &str, serial: u64, begins: bool) -> Message {
     Notification::new(RUNNING.into(), params).into()
 }
 
-/// What is reported for a run that took too long.
+/// The report of a run that exceeded its time.
 fn stopped_text() -> String {
     format!(
         "the program was stopped after {} s, to keep the editor responsive\n\
@@ -542,7 +542,7 @@ fn published(uri: &str, version: Option<i32>, all: &[Value]) -> Message {
     Notification::new(note::PublishDiagnostics::METHOD.into(), params).into()
 }
 
-/// The text of a diagnostic: what is wrong, what was expected, how to fix it.
+/// The text of a diagnostic: fault, expectation, remedy.
 fn message(data: &DiagnosticData) -> String {
     let mut text = data.message.clone();
     for (word, said) in [("expected", &data.expected), ("found", &data.found)] {
@@ -572,7 +572,7 @@ fn related(label: &LabelData, uri: &str) -> Value {
     })
 }
 
-/// The model of a text: what it loads is sought beside its file.
+/// The model of a text, which loads files from the folder of its file.
 fn opened(uri: &str, text: &str, budget: Arc<Budget>, buffers: Buffers) -> Document {
     let (world, name): (Box<dyn World>, String) = match path_of(uri) {
         Some(path) => {

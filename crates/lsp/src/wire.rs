@@ -14,7 +14,7 @@ const LONGEST: u64 = 512 << 20;
 /// The longest line of a header.
 const LONGEST_LINE: u64 = 8 << 10;
 
-/// A connection, and the thread that writes what is sent on it.
+/// A connection, and the thread that writes its messages.
 pub struct MessageWire {
     pub connection: Connection,
     writer: JoinHandle<io::Result<()>>,
@@ -27,7 +27,7 @@ impl MessageWire {
         self.writer.join().is_ok_and(|written| written.is_ok())
     }
 
-    /// `read` takes the next messages, none at the end; `write` sends one.
+    /// `read` returns the next messages, `None` at the end; `write` sends one.
     fn of(
         mut read: impl FnMut() -> io::Result<Option<Vec<Message>>> + Send + 'static,
         mut write: impl FnMut(&Message) -> io::Result<()> + Send + 'static,
@@ -74,8 +74,8 @@ pub fn write_message(output: &mut impl Write, message: &Message) -> io::Result<(
     write_frame(output, &serde_json::to_vec(message)?)
 }
 
-/// What an editor sends next on `input`, headers and one message or a batch; faults are answered on `output`, and leave
-/// no message. `None` when it has gone.
+/// The next input of an editor, headers and one message or a batch; errors are answered on
+/// `output`, and give no message. `None` at the end.
 ///
 /// # Errors
 /// Those of `input` and `output`.

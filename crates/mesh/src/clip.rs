@@ -70,7 +70,7 @@ impl<T: Real> Mesh<T> {
     }
 }
 
-/// Where the line from `low` to `high` passes the level.
+/// Intersection of the line from `low` to `high` with the level.
 fn crossing<T: Real>(low: Vec3<T>, high: Vec3<T>, level: T) -> Vec3<T> {
     let t = (level - low.z) / (high.z - low.z);
     Vec3 { z: level, ..low + (high - low) * t }

@@ -1,11 +1,11 @@
-//! Where a mesh is open, by the names of patches and edges, and what would close it.
+//! Open edges of a mesh, by the names of patches and edges, and remedies.
 
 use crate::half_edge::{edges, half_edges};
 use crate::{Block, Mesh};
 use moldloft_num::{Box3, Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Which edge of a patch.
+/// Name of an edge of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EdgeName {
     /// Edge 0..4 of a structured patch: v = 0, u = 1, v = 1, u = 0.
@@ -26,7 +26,7 @@ impl std::fmt::Display for EdgeName {
     }
 }
 
-/// What closes an open edge besides panels.
+/// Remedies of an open edge besides panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Closes {
     /// The mirror image in the plane through zero of axis 0..3.
@@ -42,11 +42,11 @@ pub enum Closes {
 pub struct OpenEdge {
     /// Index of the patch.
     pub patch: usize,
-    /// Which of its edges.
+    /// Edge of the patch.
     pub edge: EdgeName,
-    /// What would close it.
+    /// Remedy.
     pub closes: Closes,
-    /// How many panel edges of it are open.
+    /// Number of open panel edges.
     pub panels: usize,
     /// Their length in the model's unit.
     pub length: f64,
@@ -54,7 +54,7 @@ pub struct OpenEdge {
     pub bounds: Box3,
 }
 
-/// What is open, in the order of patches and edges.
+/// Open edges, in the order of patches and edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closure {
     /// The open edges.
@@ -83,7 +83,7 @@ impl Closure {
 /// Two heights count as one within this share of the mesh's size: waterlines are found by iteration.
 const LEVEL_ACCURACY: f64 = 1e-9;
 
-/// Names what is open.
+/// Open edges with their names.
 ///
 /// `mirrors` are the axes whose plane through zero mirrors the model: an open panel edge with both
 /// ends exactly in it is closed by the image. `level` is the height of the water: an open panel edge

@@ -2,16 +2,16 @@
 
 use std::fmt;
 
-/// What is wrong with the data offered as a mesh.
+/// Fault of the data given for a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MeshError {
     /// A face or block names a vertex that does not exist.
     UnknownVertex {
         /// The patch being built.
         patch: String,
-        /// The vertex asked for.
+        /// The given vertex.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         count: usize,
     },
     /// A block's vertex list does not have `nu * nv` entries, or has fewer than two in a direction.
@@ -42,7 +42,7 @@ pub enum MeshError {
     },
     /// More vertices, or corners of faces, than 32-bit indices can name.
     TooLarge {
-        /// The number asked for.
+        /// The given number.
         count: usize,
     },
 }

@@ -65,7 +65,7 @@ pub(crate) fn half_edges(topology: &Topology) -> Vec<HalfEdge> {
     sorted
 }
 
-/// The runs of half edges that lie between the same two vertices.
+/// Groups of half edges between the same two vertices.
 pub(crate) fn edges(sorted: &[HalfEdge]) -> impl Iterator<Item = &[HalfEdge]> {
     sorted.chunk_by(|a, b| a.ends() == b.ends())
 }

@@ -1,13 +1,14 @@
-//! Skins that lie inside other skins: plates within a body, bodies that overlap.
+//! Skins inside other skins: plates within a body, overlapping bodies.
 //!
-//! The skin falls into pieces that share no vertex. How often one piece winds round a place of another is a sum of solid
-//! angles (van Oosterom and Strackee 1983): 1 inside a closed piece, 0 outside, a half on it.
+//! The skin is divided into pieces without common vertices. The winding number of a piece about a
+//! point of another is a sum of solid angles (van Oosterom and Strackee 1983): 1 inside a closed
+//! piece, 0 outside, one half on it.
 
 use crate::Mesh;
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 
-/// A piece of the skin of which places lie inside another one.
+/// A piece of the skin with points inside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerSkin {
     /// A patch of it.
@@ -16,11 +17,11 @@ pub struct InnerSkin {
     pub around: usize,
     /// True for one with open edges: a plate.
     pub open: bool,
-    /// A place of it that is inside.
+    /// A point of it that is inside.
     pub at: Vec3,
 }
 
-/// So many panels of a piece are looked at.
+/// Number of panels of a piece that are tested.
 const PLACES: usize = 48;
 
 /// A place round which a piece winds more than this is inside it: no place on a skin is, but in a sharp hollow.
@@ -38,8 +39,8 @@ struct SkinPiece {
     image_of: Option<usize>,
 }
 
-/// The pieces of the skin that lie inside others, wholly or in part; `mirrors` are the axes in whose planes the model
-/// is mirrored.
+/// The pieces of the skin that are inside others, wholly or in part; `mirrors` are the axes normal
+/// to the model's planes of symmetry.
 pub fn inner_skins(mesh: &Mesh<f64>, mirrors: &[u8]) -> Vec<InnerSkin> {
     let mut pieces = pieces(mesh);
     let size = mesh.bounds().diagonal();

@@ -1,10 +1,10 @@
-//! Panel meshes: what they are, how large and how good.
+//! Panel meshes: connectivity, size and quality.
 //!
 //! `vertices and blocks -> Topology (+ positions) = Mesh -> report, measures, quality, sections`
 //!
-//! The connectivity ([`Topology`]) stands apart from the positions, so the same panels are measured
-//! with plain numbers or with dual numbers. Everything that measures is generic over
-//! [`moldloft_num::Real`]; the report of a topology, the quality and the sections look at real parts.
+//! The connectivity ([`Topology`]) is separate from the positions, so the same panels are measured
+//! with plain numbers or with dual numbers. All measures are generic over [`moldloft_num::Real`];
+//! the report of a topology, the quality and the sections use real parts.
 //!
 //! Conventions: panels are counter-clockwise seen from outside, so their normals point from the solid
 //! to the air or water; z points up; lengths are in the model's unit. A triangle is a face whose

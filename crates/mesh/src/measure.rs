@@ -15,7 +15,7 @@ pub struct Measures<T> {
     /// Integral of the unit normal; zero for a closed mesh.
     pub vector_area: Vec3<T>,
     /// Signed volume of the cone from the origin to the surface: the enclosed volume of a closed,
-    /// outward mesh; of no meaning by itself for an open one.
+    /// outward mesh; without a meaning for an open one.
     pub volume: T,
     /// Centre of that volume; `None` when the volume is zero.
     pub centroid: Option<Vec3<T>>,

@@ -22,11 +22,12 @@ impl HasPosition for PlanarVertex {
     }
 }
 
-/// Triangles, counter-clockwise, of the region between `loops` (the first counter-clockwise round the
-/// others, which are clockwise), with the points `inner` inside it as vertices. Every edge of the loops
-/// is an edge of a triangle; within them no vertex lies in the circumcircle of a triangle unless an edge of a loop is
-/// between them (Chew 1989). A point of `inner` that lies on an edge of a loop or outside of all is left out. There are
-/// none when edges of the loops cross or a coordinate is not finite.
+/// Triangles, counter-clockwise, of the region between `loops` (the first counter-clockwise around
+/// the others, which are clockwise), with the points `inner` inside it as vertices. Every edge of
+/// the loops is an edge of a triangle; no vertex is in the circumcircle of a triangle unless an
+/// edge of a loop is between them (Chew 1989). A point of `inner` on an edge of a loop or outside
+/// the region is left out. The result is empty if edges of the loops cross or a coordinate is not
+/// finite.
 ///
 /// # Example
 /// ```
@@ -134,7 +135,7 @@ mod tests {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
 
-    /// Positive when `d` is in the circumcircle of a triangle; and by how much rounding may change it.
+    /// Positive if `d` is in the circumcircle of a triangle; and a bound of the rounding error.
     fn in_circle(points: &[[f64; 2]], corners: [usize; 3], d: usize) -> (f64, f64) {
         let o = points[d];
         let [a, b, c] = corners.map(|k| {
@@ -209,7 +210,8 @@ mod tests {
         }
     }
 
-    /// Where an ear is cut off, what is left may be vertices of one line, of which rounding says anything.
+    /// When an ear is cut off, the remaining vertices may be on one line, with orientations by
+    /// rounding.
     #[test]
     fn rims_with_vertices_in_one_line_leave_no_slit() {
         let mut state = 1u64;

@@ -25,7 +25,7 @@ pub struct WorstPanel {
     pub centre: Vec3,
 }
 
-/// How well shaped the panels of a patch are.
+/// Quality of the panels of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchQuality {
     /// Quads.
@@ -47,8 +47,8 @@ pub struct PatchQuality {
     pub warp: Statistics,
     /// Smallest angle between two sides of a panel, in radians.
     pub angle: Statistics,
-    /// How many times as large as a neighbour a panel is, or a neighbour as it, whichever is more: 1
-    /// or more. Neighbours across the edges of patches count; panels without area do not.
+    /// Ratio of the sizes of a panel and a neighbour, the larger over the smaller. Neighbours
+    /// across the edges of patches count; panels without area do not.
     pub jump: Statistics,
     /// The panels of greatest aspect, skew, warp and jump; `None` for a patch of panels without area.
     pub worst: Option<[WorstPanel; 4]>,

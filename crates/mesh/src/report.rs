@@ -1,4 +1,5 @@
-//! What the sides of faces say of a mesh: closed or open and where, manifold, oriented, outward.
+//! Report of a mesh from the sides of its faces: closed or open with positions, manifold, oriented,
+//! outward.
 
 use crate::half_edge::{HalfEdge, edges, half_edges};
 use crate::sum::chunked_sum;
@@ -6,10 +7,10 @@ use crate::{Mesh, Topology};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Real, Vec3};
 
-/// What was found by matching the sides of all faces by vertex number.
+/// Result of matching the sides of all faces by vertex number.
 ///
-/// Joins are by identity: two patches that only touch in space are open along the seam. Nothing is
-/// said about faces that cut each other.
+/// Joins are by identity: two patches that only touch in space are open along the seam.
+/// Intersections of faces are not tested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TopologyReport {
     /// Vertices that some face uses.
@@ -40,7 +41,8 @@ pub struct TopologyReport {
     pub misoriented_edges: usize,
     /// Vertices whose faces form several fans.
     pub pinched_vertices: usize,
-    /// Where the mesh is open: the edges of one face only, chained, in the order of their lowest face.
+    /// Open loops of the mesh: the edges of one face only, chained, in the order of their lowest
+    /// face.
     pub open_loops: Vec<OpenLoop>,
 }
 
@@ -136,7 +138,7 @@ fn report<T: Real>(mesh: &Mesh<T>) -> TopologyReport {
     }
 }
 
-/// Counts used vertices, and those of them whose corners lie in more than one fan.
+/// Counts used vertices, and those of them whose corners belong to more than one fan.
 fn count_fans(topology: &Topology, fans: &mut UnionFind) -> (usize, usize) {
     const UNSEEN: u32 = u32::MAX;
     const PINCHED: u32 = u32::MAX - 1;
@@ -170,15 +172,16 @@ fn part_volumes<T: Real>(mesh: &Mesh<T>, parts: &mut UnionFind) -> Vec<f64> {
 
 /// Chains open edges, following each face's direction where possible.
 fn chain<T: Real>(mesh: &Mesh<T>, open: Vec<HalfEdge>) -> Vec<OpenLoop> {
-    // The open edges at each vertex, those that leave it first: a wrongly turned neighbour has none.
+    // The open edges at each vertex, those that leave it first: a neighbour of the wrong
+    // orientation has none.
     let mut at: Vec<(u32, bool, usize)> = Vec::with_capacity(2 * open.len());
     for (k, e) in open.iter().enumerate() {
         at.extend([(e.from, false, k), (e.to, true, k)]);
     }
     at.sort_unstable();
     let mut used = vec![false; open.len()];
-    // How many leading entries of each vertex's run are used up, kept at the run's first entry; it
-    // makes the search linear over all calls.
+    // Number of used leading entries of each vertex's group, stored at its first entry; it makes
+    // the search linear over all calls.
     let mut spent = vec![0usize; at.len()];
     let mut next = |used: &[bool], vertex: u32| {
         let first = at.partition_point(|&(v, ..)| v < vertex);

@@ -70,7 +70,7 @@ pub fn section_where(
         }
         let (a, b) = (d(node.low), d(node.high));
         let flat = p.lerp(q, a / (a - b));
-        // Where the height is not linear along the side, its root.
+        // If the height is not linear along the side, its root.
         if height(flat).abs() <= FLAT_HEIGHT * (a.abs() + b.abs()) {
             return flat;
         }
@@ -83,7 +83,7 @@ pub fn section_where(
         .collect()
 }
 
-/// Where the plane passes a panel side: between two vertices, or at one (twice the same).
+/// Intersection of the plane with a panel side: between two vertices, or at one (twice the same).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct SectionVertex {
     low: u32,

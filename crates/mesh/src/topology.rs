@@ -1,11 +1,11 @@
-//! Vertices by number, the faces between them and the patches that these belong to. Positions play no part: what is
-//! joined shares a number.
+//! Vertices by number, the faces between them and their patches. Positions have no influence:
+//! joined vertices share a number.
 
 use crate::MeshError;
 use moldloft_num::Vec3;
 use std::ops::Range;
 
-/// What a patch is to a flow solver or a builder.
+/// Role of a patch for a flow solver or a builder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Tag {
     /// Skin of the body, the usual case.
@@ -33,7 +33,7 @@ impl Tag {
         }
     }
 
-    /// The role that a word names; a word that names none is one of the user's own.
+    /// The role of a word; any other word is a role of the user's own.
     pub fn named(word: &str) -> Self {
         match word {
             "wetted" => Self::Wetted,
@@ -44,7 +44,8 @@ impl Tag {
         }
     }
 
-    /// The role among several words: the first that names one, else the first; wetted for none.
+    /// The role among several words: the first known one, otherwise the first; wetted without
+    /// words.
     pub fn among<'w>(words: impl IntoIterator<Item = &'w str>) -> Self {
         let mut own = None;
         for tag in words.into_iter().map(Self::named) {
@@ -69,7 +70,7 @@ pub struct PatchInfo {
     pub name: String,
     /// Role of the patch.
     pub tag: Tag,
-    /// All that the user calls it besides, roles included; empty when nothing was said.
+    /// Further names given by the user, roles included; may be empty.
     pub tags: Vec<String>,
     /// Colour index 0 to 15 of the sixteen-colour palette of model files, if one was given.
     pub colour: Option<u8>,
@@ -170,7 +171,7 @@ impl Topology {
         &self.patches
     }
 
-    /// Where a face lies in its patch: (i, j) of its corner of lowest u and v, when the patch has a
+    /// Position of a face in its patch: (i, j) of its corner of lowest u and v, if the patch has a
     /// block.
     pub fn place_of(&self, face: usize) -> Option<[usize; 2]> {
         let patch = self.patches.get(self.patch_of(face))?;
@@ -233,7 +234,7 @@ impl TopologyBuilder {
         Self::default()
     }
 
-    /// Goes on with what another one built.
+    /// Continues from an existing topology.
     pub fn extending(topology: Topology) -> Self {
         Self { topology }
     }

@@ -23,11 +23,11 @@ pub const DEEPEST_NESTING: u32 = 100;
 /// Fewer pending objects than this are evaluated on the calling thread.
 const WORTH_A_THREAD: usize = 64;
 
-/// The named objects of a model and what depends on what, evaluated with one scalar.
+/// The named objects of a model with their dependencies, evaluated with one scalar.
 ///
-/// There is one way to change it: [`Graph::apply`]. What was declared with the same name, kind,
-/// data bits and parents keeps its shape; the rest, and what depends on it, is evaluated again,
-/// until results come out bitwise equal.
+/// The only way to change it is [`Graph::apply`]. An object declared with the same name, kind, data
+/// bits and parents keeps its shape; others, and their dependants, are evaluated again, until
+/// results are bitwise equal.
 #[derive(Debug, Default)]
 pub struct Graph<T: Scalar> {
     /// By key; `None` where an object has gone.
@@ -36,7 +36,7 @@ pub struct Graph<T: Scalar> {
     /// Keys of objects that have gone, free for others; and those that will be so after a run.
     free: Vec<Key>,
     gone: Vec<Key>,
-    /// (parent, child) that the parent still lists though it is no longer so.
+    /// (parent, child) pairs that the parent still lists although they are obsolete.
     loose: HashSet<(Key, Key)>,
     /// Objects whose rank must be looked at; and those of them that the run has yet to declare.
     unranked: Vec<Key>,
@@ -52,18 +52,19 @@ pub struct Graph<T: Scalar> {
     declared: u32,
     evaluated: usize,
     failed: usize,
-    /// How many objects have something to say of how they were found.
+    /// Number of objects with warnings about their construction.
     remarked: usize,
     any_read: bool,
     memo: Memo<T>,
-    /// Objects that sweep a point; some may have gone, some stand twice.
+    /// Objects that sweep a point; the list may contain deleted ones and duplicates.
     sweeps: Vec<Key>,
-    /// Objects that were not evaluated because the budget was spent; some may no longer exist.
+    /// Objects that were not evaluated because the budget was spent; the list may contain deleted
+    /// ones.
     unfinished: Vec<Key>,
     context: Context,
 }
 
-/// Whether an application states the whole model or changes part of it.
+/// Whether an application defines the whole model or changes a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// A run: objects that it does not declare disappear.
@@ -72,14 +73,14 @@ pub enum Extent {
     Edit,
 }
 
-/// What an application did.
+/// Statistics of an application.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Applied {
-    /// How many objects were evaluated.
+    /// Number of evaluated objects.
     pub evaluated: usize,
-    /// How many objects there are now.
+    /// Number of existing objects.
     pub objects: usize,
-    /// How many of them failed or are blocked.
+    /// Number of failed or blocked objects.
     pub failed: usize,
 }
 
@@ -92,9 +93,9 @@ pub struct Declaration<'a, T: Scalar> {
     pub row: &'a Arc<Row>,
     /// The arguments in the order of the row's fields, checked.
     pub args: Vec<Value<T>>,
-    /// How it is drawn and divided.
+    /// Display attributes and divisions.
     pub head: Attributes,
-    /// Where it was declared, in the producer's own numbering.
+    /// Position of its declaration, in the producer's own numbering.
     pub origin: u32,
 }
 
@@ -111,8 +112,8 @@ impl<T: Scalar> Graph<T> {
         Self { context, ..Default::default() }
     }
 
-    /// Changes the model: `produce` declares (or edits) objects, reading others as it goes; what
-    /// it left pending is evaluated at the end.
+    /// Changes the model: `produce` declares (or edits) objects, and may read others; pending
+    /// objects are evaluated at the end.
     pub fn apply<R>(
         &mut self,
         extent: Extent,
@@ -131,7 +132,7 @@ impl<T: Scalar> Graph<T> {
             self.remove_undeclared();
         }
         self.unlink();
-        // What was cancelled, or went beyond its budget, may succeed now.
+        // Cancelled objects, and those beyond the budget, may succeed now.
         for key in std::mem::take(&mut self.unfinished) {
             if self.get(key).is_some() {
                 self.mark_pending(key);
@@ -139,7 +140,7 @@ impl<T: Scalar> Graph<T> {
         }
         self.evaluate_pending();
         if extent == Extent::Whole {
-            // Nothing refers to them any more: everything was declared anew or has gone.
+            // There are no references left: everything was declared again or removed.
             self.free.append(&mut self.gone);
         }
         self.memo.forget_unused(self.clock);
@@ -158,17 +159,17 @@ impl<T: Scalar> Graph<T> {
         self.objects.get(key.0 as usize)?.as_ref()
     }
 
-    /// What calls may know besides their arguments.
+    /// Context of calls besides their arguments.
     pub fn context(&self) -> Context {
         self.context.clone()
     }
 
-    /// What evaluations may use.
+    /// Limits of evaluations.
     pub fn budget(&self) -> &Budget {
         &self.context.budget
     }
 
-    /// Sets what evaluations may use.
+    /// Sets the limits of evaluations.
     pub fn set_budget(&mut self, budget: Arc<Budget>) {
         self.context.budget = budget;
     }
@@ -188,7 +189,7 @@ impl<T: Scalar> Graph<T> {
 
     /// All objects in the order of declaration.
     ///
-    /// While a run declares objects, those that it has declared so far.
+    /// While a run declares objects, those declared so far.
     pub fn objects(&self) -> impl Iterator<Item = &Object<T>> {
         let there = |o: &&Object<T>| !self.running || o.declared_at == self.clock;
         let objects = self.objects.iter().flatten().filter(there);
@@ -197,17 +198,17 @@ impl<T: Scalar> Graph<T> {
         keys.into_iter().map(|(_, key)| self.object(key))
     }
 
-    /// How many objects there are.
+    /// Number of objects.
     pub fn len(&self) -> usize {
         self.names.len()
     }
 
-    /// How many objects failed or are blocked.
+    /// Number of failed or blocked objects.
     pub fn failed(&self) -> usize {
         self.failed
     }
 
-    /// How many objects were found in a way that deserves a warning.
+    /// Number of objects whose construction deserves a warning.
     pub fn remarked(&self) -> usize {
         self.remarked
     }
@@ -227,8 +228,8 @@ impl<T: Scalar> Graph<T> {
         nearest(name, self.names.keys().map(|n| &**n))
     }
 
-    /// When some value, head or name changed last: what was computed from the whole model is
-    /// stale when this has grown.
+    /// Time of the last change of a value, head or name: results derived from the whole model are
+    /// stale if this has increased.
     pub fn last_change(&self) -> u64 {
         self.last_change
     }
@@ -285,8 +286,8 @@ impl<T: Scalar> Graph<T> {
         }
     }
 
-    /// Takes children that are none any more out of their parents' lists, all at once: one by one
-    /// would be quadratic.
+    /// Removes obsolete children from their parents' lists, all at once: one by one would be
+    /// quadratic.
     fn unlink(&mut self) {
         let loose = std::mem::take(&mut self.loose);
         let parents: HashSet<Key> = loose.iter().map(|(parent, _)| *parent).collect();
@@ -310,7 +311,7 @@ impl<T: Scalar> Graph<T> {
     /// other, so they may be evaluated at once, in any order, with the same bits.
     fn evaluate_pending(&mut self) {
         self.evaluate_ranks();
-        // What a sweep goes through may have changed without its point having changed.
+        // The objects between a sweep and its point may have changed although its point has not.
         let mut sweeps = std::mem::take(&mut self.sweeps);
         sweeps.retain(|&key| self.get(key).is_some_and(|o| o.row.sweep.is_some()));
         sweeps.sort_unstable_by_key(|&key| (self.object(key).rank, key));
@@ -359,7 +360,7 @@ impl<T: Scalar> Graph<T> {
         }
     }
 
-    /// Evaluates `key` and what it depends on, as far as pending.
+    /// Evaluates `key` and its ancestors, if pending.
     fn force(&mut self, key: Key) {
         self.rank_all();
         let mut wanted = vec![key];
@@ -414,7 +415,7 @@ impl<T: Scalar> Graph<T> {
         }
         for (k, arg) in args.iter().enumerate() {
             let largest = arg.largest();
-            // The largest double stands for a literal that was refused.
+            // The largest double marks a literal that was refused.
             if largest > LARGEST && largest < f64::MAX {
                 let fault = too_large("a number", largest).in_field(object.row.id(k));
                 return State::Failed(Failure::CallError(fault));
@@ -567,9 +568,9 @@ impl<T: Scalar> Graph<T> {
         }
     }
 
-    /// Ranks what was noted and all that depends on it, in the order of declaration, so that each
-    /// object is ranked after its parents, once. What a run has yet to declare must wait: its
-    /// parents may still change.
+    /// Ranks the noted objects and their dependants, in the order of declaration, so that each
+    /// object is ranked after its parents, once. Objects that a run has not declared yet must wait:
+    /// their parents may still change.
     fn rank_all(&mut self) {
         if !self.running {
             self.unranked.extend(self.unranked_later.drain());
@@ -613,7 +614,7 @@ fn too_many_objects(most: u64) -> CallError {
 }
 
 impl<T: Scalar> Run<'_, T> {
-    /// Declares an object. What the previous run declared alike keeps its shape.
+    /// Declares an object. An object equal to that of the previous run keeps its shape.
     ///
     /// # Errors
     /// A [`CallError`] when this run has declared the name before, or when the object would depend on
@@ -678,7 +679,7 @@ impl<T: Scalar> Run<'_, T> {
             self.check_cycle(key, &args)?;
             self.graph.connect(key, args);
         }
-        // What was cancelled, or went beyond its budget, was never found out.
+        // Cancelled objects, and those beyond the budget, have no result.
         let unknown = matches!(
             &self.graph.object(key).state,
             State::Failed(Failure::CallError(fault)) if Spent::is_id(fault.id)
@@ -782,10 +783,10 @@ impl<T: Scalar> Run<'_, T> {
     /// The value of an object, evaluated now with all that it depends on.
     ///
     /// # Errors
-    /// The reason why it has none.
+    /// The reason why it has no value.
     pub fn force(&mut self, key: Key) -> Result<Value<T>, Failure> {
         self.graph.force(key);
-        // What is asked afterwards, in an edit, is not a part of the program.
+        // Reads by an edit are not part of the program.
         if self.extent == Extent::Whole {
             self.graph.object_mut(key).read_by_program = true;
             self.graph.any_read = true;
@@ -800,18 +801,18 @@ impl<T: Scalar> Run<'_, T> {
     /// The value of an anonymous call, remembered by its arguments from this and the last run.
     ///
     /// # Errors
-    /// What the row's body reports.
+    /// Errors of the row's implementation.
     pub fn call(&mut self, row: &Arc<Row>, args: Vec<Value<T>>) -> Result<Value<T>, CallError> {
         let graph = &mut *self.graph;
         graph.memo.call(row, args, graph.clock, &graph.context)
     }
 
-    /// Whether this is a run or an edit.
+    /// Whole for a run, part for an edit.
     pub fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// The graph as it stands.
+    /// The graph in its present state.
     pub fn graph(&self) -> &Graph<T> {
         self.graph
     }
@@ -842,7 +843,7 @@ impl<T: Scalar> Run<'_, T> {
             .help("delete or rebuild those first"))
     }
 
-    /// Renames an object; what refers to it goes on doing so.
+    /// Renames an object; references to it remain.
     ///
     /// # Errors
     /// A [`CallError`] when the name is taken.

@@ -25,7 +25,7 @@ struct Remembered<T: Scalar> {
     row: Arc<Row>,
     args: Vec<Value<T>>,
     value: Value<T>,
-    /// What the call said besides; said again when it is remembered.
+    /// Notes of the call; repeated when its result is reused.
     remarks: Vec<CallRemark>,
     numbers: usize,
     used_at: u64,
@@ -94,7 +94,7 @@ impl<T: Scalar> Memo<T> {
         }
     }
 
-    /// Forgets what neither this nor the last application used.
+    /// Removes results that neither this nor the last application used.
     pub(crate) fn forget_unused(&mut self, clock: u64) {
         let mut held = 0;
         self.calls.retain(|_, bucket| {

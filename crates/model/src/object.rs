@@ -1,4 +1,4 @@
-//! Named objects: a call of a row, its parents and children, and what became of its evaluation.
+//! Named objects: a call of a row, its parents and children, and the result of its evaluation.
 
 use moldloft_num::trace::Key;
 use moldloft_registry::{Attributes, CallError, Row, Scalar, Value};
@@ -17,14 +17,14 @@ pub enum Failure {
     },
 }
 
-/// What became of an object's evaluation.
+/// Result of an object's evaluation.
 #[derive(Clone, Debug)]
 pub enum State<T: Scalar> {
     /// Not evaluated yet.
     New,
     /// Its value.
     Ok(Value<T>),
-    /// Why there is none: a failed object is a value too, and everything else lives on.
+    /// Reason of the failure: a failed object is a value too, and other objects are not affected.
     Failed(Failure),
 }
 
@@ -47,7 +47,7 @@ impl<T: Scalar> State<T> {
         self.value().is_some_and(Value::warns)
     }
 
-    /// True when what depends on it need not be evaluated again.
+    /// True if dependants need not be evaluated again.
     pub fn same(&self, other: &Self) -> bool {
         match (self, other) {
             (State::Ok(a), State::Ok(b)) => a.same(b),
@@ -64,21 +64,21 @@ pub struct Object<T: Scalar> {
     pub key: Key,
     /// Its name.
     pub name: Arc<str>,
-    /// What it is a call of.
+    /// Row of the call.
     pub row: Arc<Row>,
     /// The arguments, in the order of the row's fields; parents as [`Value::Object`].
     pub args: Vec<Value<T>>,
-    /// How it is drawn and divided.
+    /// Display attributes and divisions.
     pub head: Attributes,
-    /// Where it was declared, in the producer's numbering.
+    /// Position of its declaration, in the producer's numbering.
     pub origin: u32,
-    /// What it depends on directly, in order of mention.
+    /// Direct dependencies, in order of mention.
     pub parents: SmallVec<[Key; 4]>,
-    /// What depends on it directly.
+    /// Direct dependants.
     pub children: Vec<Key>,
     /// Its place in the order of declaration.
     pub order: u32,
-    /// What became of its evaluation.
+    /// Result of its evaluation.
     pub state: State<T>,
     /// The clock at which its value changed last.
     pub changed_at: u64,

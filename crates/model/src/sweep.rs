@@ -1,5 +1,5 @@
-//! Parts of the graph evaluated anew with a bead moved, for curves that a point describes and surfaces
-//! that a curve does.
+//! Evaluation of a part of the graph with a moved bead, for curves swept by a point and surfaces
+//! swept by a curve.
 
 use crate::Graph;
 use moldloft_num::trace::Key;
@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 impl<T: Scalar> Graph<T> {
-    /// What `follower` is when `bead` is moved along its curve.
+    /// The locus of `follower` when `bead` moves along its curve.
     ///
     /// # Errors
     /// `constant-point` when the one does not depend on the other.
@@ -68,11 +68,11 @@ impl<T: Scalar> Graph<T> {
     }
 }
 
-/// One object to evaluate anew.
+/// One object to evaluate again.
 struct SweepStep<T: Scalar> {
     key: Key,
     row: Arc<Row>,
-    /// Those that move stand as objects.
+    /// Arguments; moving ones are objects.
     args: Vec<Value<T>>,
 }
 

@@ -1,7 +1,8 @@
-//! Hashes of results, bit for bit: all examples, every kind's and function's own example, the programs of the corpus.
-//! `cargo run -p moldloft --example bits > there.txt` on another processor or system, and compare with `tests/bits.txt`, which
-//! `make bits` writes anew after a change of results. The two must be equal: no result depends on the width of registers, the
-//! compiler's level, threads or the C library.
+//! Hashes of results, bit for bit: all examples, every kind's and function's own example, the
+//! programs of the corpus. Run `cargo run -p moldloft --example bits > there.txt` on another
+//! processor or system, and compare with `tests/bits.txt`, which `make bits` updates after a change
+//! of results. The two must be equal: no result depends on the width of registers, the optimisation
+//! level, threads or the C library.
 
 use moldloft::{Document, FileWorld, NoFiles, Value, WriteOptions, format_named, registry, write};
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ impl Hash {
 /// Formats whose bytes name no version of the program.
 const FORMATS: [&str; 6] = ["gdf", "svg", "p3d", "volume-p3d", "sdl", "ms2"];
 
-/// Everything that a document is asked for, under one hash, and how many vertices that was, if any.
+/// All results of a document under one hash, and its number of vertices, if any.
 fn of(mut document: Document, formats: &[&str]) -> String {
     let mut hash = Hash::new();
     let mut reported = String::new();
@@ -99,7 +100,7 @@ fn of(mut document: Document, formats: &[&str]) -> String {
     format!("{:016x} {reported}", hash.0)
 }
 
-/// Where the repository is.
+/// Root folder of the repository.
 pub fn root() -> PathBuf {
     // Elsewhere than where it was built it is given.
     std::env::var_os("MOLDLOFT_ROOT")
@@ -139,7 +140,7 @@ fn programs(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// One line for each result: a hash, what it is of, and how much that was.
+/// One line for each result: a hash, its name, and its size.
 pub fn lines(examples: bool) -> Vec<String> {
     let mut found = Vec::new();
     if examples {

@@ -40,7 +40,7 @@ pub fn panels(path: Option<&str>) -> Result<Vec<u8>, String> {
     Ok(files.into_iter().next().map(|file| file.bytes).unwrap_or_default())
 }
 
-/// Writes the panels, or says what is wrong.
+/// Writes the panels, or the errors.
 #[cfg_attr(test, allow(dead_code))]
 pub fn main() -> ExitCode {
     match panels(std::env::args().nth(1).as_deref()) {

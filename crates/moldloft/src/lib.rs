@@ -21,9 +21,9 @@
 //! Two programs to start from: `cargo run -p moldloft --example hull_to_gdf` and
 //! `cargo run -p moldloft --example derivative`.
 //!
-//! Each room of the house is a module here: [`document`] opens, runs, measures and derives; [`export`] writes; the
-//! kinds and algorithms are in [`fair`], [`field`], [`sketch`], [`spline`], [`locate`]; [`mesh`] and [`panel`] hold panels; [`session`] keeps a document
-//! under a person's hands, as the workbench does.
+//! Modules: [`document`] opens, runs, measures and differentiates; [`export`] writes; the kinds and
+//! algorithms are in [`fair`], [`field`], [`sketch`], [`spline`], [`locate`]; [`mesh`] and
+//! [`panel`] have the panels; [`session`] edits a document interactively, as the workbench does.
 //!
 //! Invariant: re-exports only. Files are opened by [`FileWorld`] alone, and by the caller.
 

@@ -1,5 +1,6 @@
-//! The system refuses memory at every n-th allocation: what is under way is done, or refused by name with everything as
-//! before; nothing ends the process. An allocator that refuses stands below [`moldloft::budget::Counting`].
+//! The system refuses memory at every n-th allocation: the operation succeeds, or fails with an
+//! error and an unchanged state; the process never ends. The refusing allocator is below
+//! [`moldloft::budget::Counting`].
 //!
 //! Two kinds of refusal: the n-th allocation alone, and a heap that is full from the n-th on, until something is freed.
 #![expect(unsafe_code, reason = "an allocator that hands everything to the system's, or refuses")]
@@ -26,7 +27,7 @@ static COUNT: AtomicI64 = AtomicI64::new(0);
 static AT: AtomicI64 = AtomicI64::new(NEVER);
 /// The most bytes that may be held.
 static CEILING: AtomicI64 = AtomicI64::new(NEVER);
-/// Whether the heap is full from then on.
+/// True if all later allocations fail too.
 static FULL: AtomicI64 = AtomicI64::new(0);
 /// Allocations that were refused.
 static REFUSALS: AtomicU64 = AtomicU64::new(0);
@@ -64,8 +65,8 @@ unsafe impl GlobalAlloc for Refusing {
 #[global_allocator]
 static ALLOCATOR: Counting<Refusing> = Counting::over(Refusing);
 
-/// Does it while the allocation of that number and, with `full`, all later ones beyond what is held then, are refused.
-/// Allocations, refusals, and what it gave; `None` after a panic.
+/// Runs `work` while the allocation of that number fails and, with `full`, all later ones beyond
+/// the memory then in use. Returns allocations, refusals, and the result; `None` after a panic.
 fn armed<R>(at: i64, full: bool, work: impl FnOnce() -> R) -> (i64, u64, Option<R>) {
     FULL.store(i64::from(full), Ordering::Relaxed);
     REFUSALS.store(0, Ordering::Relaxed);
@@ -77,7 +78,7 @@ fn armed<R>(at: i64, full: bool, work: impl FnOnce() -> R) -> (i64, u64, Option<
     (COUNT.load(Ordering::Relaxed), REFUSALS.load(Ordering::Relaxed), made.ok())
 }
 
-/// What an operation gave: its result as text, or the ids of why not.
+/// Result of an operation as text, or the ids of its errors.
 type Outcome = Result<String, Vec<String>>;
 
 fn ids(faults: &[moldloft::Diagnostic]) -> Vec<String> {
@@ -104,7 +105,7 @@ fn model(text: &str) -> Document {
     Document::from_text(registry(), Box::new(NoFiles), "model.sdl", text)
 }
 
-/// Everything that one asks of a model, as text with every digit.
+/// All results of a model, as text with every digit.
 fn reported(document: &mut Document) -> Outcome {
     if document.has_errors() {
         return Err(ids(&document.diagnostics()));
@@ -164,7 +165,8 @@ const OPERATIONS: &[Operation] = &[
     ("body", BODY, reported),
 ];
 
-/// The operation; when it was refused, with what the model says of itself: why it has no mesh, say.
+/// The operation; after a refusal, with the diagnostics of the model, such as the reason for a
+/// missing mesh.
 fn explained(operation: fn(&mut Document) -> Outcome, document: &mut Document) -> Outcome {
     operation(document).map_err(|mut found| {
         found.extend(ids(&document.diagnostics()));
@@ -172,14 +174,14 @@ fn explained(operation: fn(&mut Document) -> Outcome, document: &mut Document) -
     })
 }
 
-/// Words that say that memory or time was the reason, and what follows from that.
+/// True for ids of exhausted memory, and of their consequences.
 fn is_refusal(found: &[String]) -> bool {
     let spent = |id: &String| id == "out-of-memory";
     found.iter().any(spent)
         && found.iter().all(|id| spent(id) || id == "blocked" || id == "no-mesh")
 }
 
-/// Numbers at which to refuse: all of the first, then ever fewer, so many in all.
+/// Numbers of the allocations to refuse, evenly spaced, at most `points`.
 fn places(count: i64, points: usize) -> Vec<i64> {
     let step = (count as f64 / points as f64).max(1.0);
     (0..points).map(|k| (k as f64 * step) as i64).filter(|n| *n < count).collect()
@@ -193,7 +195,7 @@ struct Tally {
 }
 
 impl Tally {
-    /// One point: what it gave is right or a refusal by name.
+    /// One point: the result is correct or a refusal by name.
     fn judge(&mut self, what: &str, outcome: Option<Outcome>, right: &str) {
         self.points += 1;
         match outcome {
@@ -235,7 +237,7 @@ fn of_documents(points: usize, tally: &mut Tally) {
                     explained(*operation, &mut document)
                 });
                 tally.judge(&format!("{name} at {at}, full {full}"), outcome, &right);
-                // Everything as before: the same model goes on and gives the same, and so does a new one.
+                // The state is unchanged: the same model, and a new one, give the same results.
                 request();
                 document.set_text(text);
                 assert_eq!(
@@ -332,7 +334,7 @@ fn of_sketches(points: usize, tally: &mut Tally) {
     }
 }
 
-/// Work that goes on for long after the refusal ends by name, within what was kept back.
+/// Long work after the refusal ends by name, within the reserve.
 fn of_great_work(tally: &mut Tally) {
     let text = BODY.replace("depth = 3", "depth = 9");
     let (_, _, outcome) = armed(20_000, true, || {

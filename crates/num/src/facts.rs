@@ -1,6 +1,7 @@
-//! The usual statements of what shapes are, for `impl` blocks of [`Curve`](crate::Curve), [`Surface`](crate::Surface) and
-//! their formulas: facts ([`curve_facts!`](crate::curve_facts), [`surface_facts!`](crate::surface_facts)), and batches that
-//! are evaluated point by point ([`curve_one_by_one!`](crate::curve_one_by_one),
+//! The usual statements about shapes, for `impl` blocks of [`Curve`](crate::Curve),
+//! [`Surface`](crate::Surface) and their formulas: facts ([`curve_facts!`](crate::curve_facts),
+//! [`surface_facts!`](crate::surface_facts)), and batches that are evaluated point by point
+//! ([`curve_one_by_one!`](crate::curve_one_by_one),
 //! [`surface_one_by_one!`](crate::surface_one_by_one)).
 
 /// Facts of a curve:
@@ -215,8 +216,9 @@ macro_rules! surface_one_by_one {
     };
 }
 
-/// What a field does without: `value_with_gradient`, a way to its value alone; `second_by_differences`, second derivatives;
-/// `no_bounds`, bounds of its values over a box.
+/// The usual methods of a field: `value_with_gradient`, the value from value and gradient;
+/// `second_by_differences`, second derivatives by differences; `no_bounds`, no bounds of its values
+/// over a box.
 #[macro_export]
 macro_rules! field_facts {
     ($scalar:ty: $($which:ident),+ $(,)?) => {

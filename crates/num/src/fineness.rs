@@ -1,8 +1,8 @@
-//! How near panels are to what they are made of: a chord and an angle, and the divisions that they ask for.
+//! Accuracy of panels: chord error and angle, and the resulting divisions.
 
 use crate::{SurfJet, Vec3};
 
-/// How near panels are to a surface.
+/// Accuracy of panels relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
     /// The greatest turn of the surface, or of its border, along a panel, in radians.
@@ -13,7 +13,7 @@ pub struct Fineness {
     pub side: f64,
 }
 
-/// The longest side of a panel is at most this multiple of the shortest that curvature asks for there.
+/// Maximum ratio of a panel's longest side to the shortest that curvature requires there.
 const MAX_ASPECT: f64 = 6.0;
 
 /// A place with a sine between S_u and S_v below this has no normal.
@@ -53,7 +53,7 @@ impl Fineness {
         let reach = (half * half + b01 * b01).sqrt();
         let k = [(mean + reach).abs(), (mean - reach).abs()];
         let (most, least) = (k[0].max(k[1]), k[0].min(k[1]));
-        // What is lost along both directions adds up.
+        // The errors of both directions add up.
         let share = if most > 0.0 { 1.0 + least / most } else { 1.0 };
         let side = |k: f64| {
             let by_angle = self.angle / (k * share.sqrt());
@@ -72,7 +72,7 @@ impl Fineness {
     }
 }
 
-/// The unit normal S_u x S_v and the length of that; `None` where there is none.
+/// The unit normal S_u x S_v and its length before normalisation; `None` if undefined.
 pub fn unit_normal(s: &SurfJet<f64>) -> Option<(Vec3, f64)> {
     let n = s.u.cross(s.v);
     let size = n.norm();

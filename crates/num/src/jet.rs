@@ -10,7 +10,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number of a shape's formula: the scalar `T` with derivatives by the shape parameters.
 pub trait Jet<T: Real>: Real {
-    /// How many derivatives it carries.
+    /// Order of its derivatives.
     const ORDER: Order;
     /// A number that does not depend on the parameters.
     fn fixed(value: T) -> Self;
@@ -71,7 +71,8 @@ pub fn lift_surface<T: Real, J: Jet<T>>(jet: &SurfJet<T>, u: J, v: J) -> Vec3<J>
     x
 }
 
-// In a page what is downloaded counts: there the compiler decides which operations of the larger numbers are inlined.
+// In the browser the size of the download matters: there the compiler decides which operations of
+// the larger numbers are inlined.
 macro_rules! jet_type {
     ($(#[$doc:meta])* $name:ident, $order:expr, [$($part:ident),*], chain = |$x:ident, $d1:ident, $d2:ident| [$($chain:expr),*], times = |$a:ident, $b:ident| [$($times:expr),*]) => {
         $(#[$doc])*
@@ -241,7 +242,7 @@ impl<T: Real> Bi2<T> {
     }
 }
 
-/// The curve jet of a formula `at(t)`, computed to the asked order.
+/// The curve jet of a formula `at(t)`, computed to the requested order.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! curve_jet_of {
@@ -264,7 +265,7 @@ macro_rules! curve_jet_of {
     }};
 }
 
-/// The surface jet of a formula `at(u, v)`, computed to the asked order.
+/// The surface jet of a formula `at(u, v)`, computed to the requested order.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! surface_jet_of {

@@ -131,7 +131,7 @@ impl<T: Real> Banded<T> {
         Self { n, width, rows: vec![T::zero(); n * (2 * width + 1)] }
     }
 
-    /// The entry at (`row`, `column`), which must lie in the band.
+    /// The entry at (`row`, `column`), which must be in the band.
     pub fn entry(&mut self, row: usize, column: usize) -> &mut T {
         debug_assert!(row < self.n && column < self.n && row.abs_diff(column) <= self.width);
         &mut self.rows[row * (2 * self.width + 1) + column + self.width - row]

@@ -2,7 +2,7 @@
 
 use crate::{Curve, Order, Real, Surface, Vec3};
 
-/// How far beyond 0 and 1 a parameter is still that of the end.
+/// Distance beyond 0 and 1 at which a parameter still belongs to the end.
 const NEAR: f64 = 1e-9;
 
 /// Ends nearer to each other than this share of the size are one.
@@ -14,31 +14,31 @@ const SMOOTH: f64 = 1e-9;
 /// Places along two opposite sides at which they are compared, corners included.
 const PLACES: [f64; 9] = [0.37, 0.0, 0.11, 0.25, 0.5, 0.63, 0.79, 0.93, 1.0];
 
-/// The parameter in 0 .. 1 of one that lies whole turns beyond; at 0 and 1, to a hair, it stays as it is.
+/// The parameter reduced to 0 .. 1 by whole turns; within `NEAR` of 0 and 1 it is unchanged.
 pub fn principal<J: Real>(t: J) -> J {
     let re = t.re();
     if (-NEAR..=1.0 + NEAR).contains(&re) { t } else { turned_back(t) }
 }
 
-/// The place on a surface of one that may lie beyond its seams; see [`principal`].
+/// Parameters on a surface, reduced across closed directions; see [`principal`].
 pub fn within<J: Real>(closed: [bool; 2], w: [J; 2]) -> [J; 2] {
     [0, 1].map(|a| if closed[a] { principal(w[a]) } else { w[a] })
 }
 
-/// The parameter for an evaluation: 0 and 1 to the bit, and what lies between, are not touched.
+/// The parameter for an evaluation; values from 0 to 1 are unchanged.
 pub fn turned_back<J: Real>(t: J) -> J {
     let re = t.re();
     if (0.0..=1.0).contains(&re) || !re.is_finite() { t } else { t - re.floor() }
 }
 
-/// How far two parameters are apart, over the seam if that is shorter.
+/// Distance of two parameters, across the seam if that is shorter.
 pub fn parameter_distance(a: f64, b: f64, closed: bool) -> f64 {
     let d = (a - b).abs();
     if closed { (d - d.round()).abs() } else { d }
 }
 
-/// The breaks of a shape in `low` .. `high`, which may lie beyond 0 and 1: of a closed shape they come
-/// back with each turn, and so does its seam, over which it may bend.
+/// The breaks of a shape in `low` .. `high`, which may extend beyond 0 and 1: those of a closed
+/// shape recur with each turn, and so does its seam, which may be a break.
 pub fn breaks_between(breaks: &[f64], closed: bool, low: f64, high: f64) -> Vec<f64> {
     let (low, high) = (low.min(high), low.max(high));
     if !closed || low >= 0.0 && high <= 1.0 || high - low > 1e4 {
@@ -58,15 +58,15 @@ pub fn closes<T: Real>(curve: &dyn Curve<T>) -> bool {
     let (first, last) = (at(0.0), at(1.0));
     let gap = first.distance(last);
     let reach = |t: f64| at(t).distance(first);
-    // What is far from its beginning everywhere may still come back to it.
+    // A curve may return to its start however far away it is elsewhere.
     gap.is_finite() && {
         let size = reach(0.37).max(reach(0.63)).max(reach(0.5));
         size > 0.0 && gap <= GAP * size
     }
 }
 
-/// Which parameters of a surface, u and v, run round: those whose two sides are one line, to rounding. A
-/// side that is one point all along, a pole, does not count.
+/// For u and v of a surface, true if closed: the two sides are one line, to rounding. A side that
+/// is a single point, a pole, does not count.
 pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
     let at = |axis: usize, end: f64, w: f64| {
         let [u, v] = if axis == 0 { [end, w] } else { [w, end] };
@@ -136,8 +136,9 @@ pub fn corner_rate<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> Option<T
 /// Places along a crease at which its rate is looked for.
 const ALONG: [f64; 7] = [0.03, 0.19, 0.37, 0.52, 0.68, 0.83, 0.96];
 
-/// The derivatives of the place of a crease of a surface, the parameter `at` of u (0) or v (1), as a number whose real part is 0; its
-/// sides are looked at so far before and after it.
+/// The derivatives of the parameter of a crease of a surface, the parameter `at` of u (0) or v (1),
+/// as a number whose real part is 0; its sides are evaluated at the given distances before and
+/// after it.
 ///
 /// Both sides of a corner meet there whatever becomes of it: with S- and S+ the sides,
 /// dt = (dS+ - dS-) . n / n . n with n = S-' - S+', over places along the break. Zero where the tangent does not

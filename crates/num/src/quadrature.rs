@@ -89,7 +89,7 @@ pub fn gauss_points(a: f64, b: f64) -> [(f64, f64); 8] {
 /// Intervals are halved this often at most: down to the rounding of a place between them.
 const DEEPEST: i32 = 44;
 
-/// After so many intervals, only to this depth.
+/// Number of intervals after which the depth is limited.
 const MANY: usize = 1 << 12;
 const DEEP: i32 = 12;
 

@@ -1,15 +1,15 @@
-//! What makes a shape rational, for those that need its exact form as a NURBS.
+//! Rational form of a shape, for exact conversion to a NURBS.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// How a parameter t in [0, 1] follows from the parameter s in [0, 1] of a rational form.
+/// A parameter t in [0, 1] as a function of the parameter s in [0, 1] of a rational form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
     /// t = s.
     Even,
-    /// t is even in an angle, of so many radians in all. The form has equal pieces of at most a right
-    /// angle; each is the rational quadratic of an arc, of weights 1, cos(half the piece), 1 (Piegl and
-    /// Tiller 1997, section 7.3).
+    /// t is proportional to an angle, with the given total in radians. The form has equal pieces of
+    /// at most a right angle; each is the rational quadratic of an arc, of weights 1, cos(half the
+    /// piece), 1 (Piegl and Tiller 1997, section 7.3).
     Angle(f64),
 }
 
@@ -32,7 +32,7 @@ impl Pace {
         (1..count).map(|k| k as f64 / count as f64).collect()
     }
 
-    /// The piece that holds `s`, the share of it that is behind `s`, and the number of pieces.
+    /// The piece that contains `s`, the fraction of it before `s`, and the number of pieces.
     fn place(self, s: f64) -> (f64, f64, f64) {
         let count = self.pieces().0 as f64;
         let piece = (s * count).floor().clamp(0.0, count - 1.0);
@@ -81,10 +81,10 @@ impl Pace {
 /// A weight as a function of the parameters of a form.
 pub type Weight<const D: usize> = Box<dyn Fn([f64; D]) -> f64>;
 
-/// What makes a shape of D parameters rational: its position times all weights, and the weights, are
+/// Rational form of a shape of D parameters: its position times all weights, and the weights, are
 /// polynomials of the parameters of the form between joints.
 pub struct Rational<const D: usize> {
-    /// How its parameters are run.
+    /// Its parameters.
     pub paces: [Pace; D],
     /// The weight besides those of the paces, where it is not 1.
     pub weight: Option<Weight<D>>,

@@ -30,7 +30,7 @@ pub trait Real:
     + SubAssign
     + MulAssign
 {
-    /// How many plain numbers it consists of: itself and its derivatives.
+    /// Number of plain numbers in it: itself and its derivatives.
     const PARTS: usize;
 
     /// True when the parts after the first are first derivatives, each in a direction of its own.

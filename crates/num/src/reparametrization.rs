@@ -6,7 +6,7 @@ use crate::roots::find_root;
 use crate::shape::Order;
 use std::sync::Arc;
 
-/// Value, first and second derivative of a law; entries above the asked order are zero.
+/// Value, first and second derivative of a law; entries above the requested order are zero.
 pub type ReparametrizationJet<T> = [T; 3];
 
 /// A monotone law R of [0, 1] with R(0) = 0 and R(1) = 1 exactly: it redistributes the parameter of
@@ -43,7 +43,7 @@ pub fn lift_reparametrization<T: Real, J: Jet<T>>(jet: &ReparametrizationJet<T>,
     r
 }
 
-/// The law's jet of a formula `at(t)` that is generic over jets, computed to the asked order.
+/// The law's jet of a formula `at(t)` that is generic over jets, computed to the requested order.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! reparametrization_jet_of {
@@ -76,7 +76,7 @@ pub fn inv_reparametrization<T: Real>(law: &dyn Reparametrization<T>, r: f64) ->
 }
 
 /// The same with derivatives: the root in plain numbers, then one Newton step in `T` (implicit
-/// function theorem). Where the slope vanishes the root has none.
+/// function theorem). If the slope vanishes the root has no derivatives.
 pub fn inv_reparametrization_in<T: Real>(law: &dyn Reparametrization<T>, r: T) -> T {
     let t = inv_reparametrization(law, r.re());
     let [at, slope, _] = law.jet(T::from(t), Order::First);

@@ -12,7 +12,7 @@ pub enum NoRoot {
     },
     /// The function returned a number that is not finite.
     NotFinite {
-        /// Where.
+        /// Position.
         at: f64,
     },
 }

@@ -1,5 +1,6 @@
-//! The traits of curves, surfaces and implicit fields: what evaluates, its derivatives by the shape parameters (jets),
-//! its breaks and its evaluation on grids. `grid` gives what `jet` gives point by point.
+//! The traits of curves, surfaces and implicit fields: evaluation, derivatives with respect to the
+//! shape parameters (jets), breaks and evaluation on grids. `grid` gives the same as `jet` point by
+//! point.
 
 use crate::jet::{Jet, lift_curve, lift_surface};
 use crate::reparametrization::Reparametrization;
@@ -7,7 +8,7 @@ use crate::trace::{Edges, Key, Trace};
 use crate::{Rational, Real, Vec3, find_root};
 use std::sync::Arc;
 
-/// How many derivatives by the shape parameters are wanted.
+/// Order of derivatives with respect to the shape parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
     /// Position only.
@@ -18,10 +19,10 @@ pub enum Order {
     Second,
 }
 
-/// Position, first and second derivative of a curve; entries above the asked order are zero.
+/// Position, first and second derivative of a curve; entries above the requested order are zero.
 pub type CurveJet<T> = [Vec3<T>; 3];
 
-/// Position and derivatives of a surface; entries above the asked order are zero.
+/// Position and derivatives of a surface; entries above the requested order are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfJet<T> {
     /// Position.
@@ -47,8 +48,9 @@ impl<T: Real> SurfJet<T> {
 
 /// A curve C(t) for t in [0, 1]; outside that range the natural continuation of its formula.
 ///
-/// What concerns speed and correctness has no default: each curve states it, a curve made of another one forwards or changes
-/// it. [`curve_facts!`](crate::curve_facts) and [`curve_one_by_one!`](crate::curve_one_by_one) are the usual statements.
+/// Methods that affect speed and correctness have no default: each curve states them, a curve
+/// derived from another one forwards or changes them. [`curve_facts!`](crate::curve_facts) and
+/// [`curve_one_by_one!`](crate::curve_one_by_one) are the usual statements.
 pub trait Curve<T: Real>: Send + Sync {
     /// Position and derivatives by t at `t`, to `order`.
     fn jet(&self, t: T, order: Order) -> CurveJet<T>;
@@ -67,7 +69,7 @@ pub trait Curve<T: Real>: Send + Sync {
     /// is known.
     fn kinks(&self) -> Vec<f64>;
 
-    /// What makes the curve rational, where something does that is known.
+    /// Rational form of the curve, if known.
     fn rational(&self) -> Rational<1>;
 
     /// The curve to which this one is parallel, sideways in the plane of that normal, and the distance: a parallel
@@ -76,22 +78,22 @@ pub trait Curve<T: Real>: Send + Sync {
         None
     }
 
-    /// True when the curve ends where it begins: it is periodic then, and `jet` beyond 0 .. 1 gives what it
-    /// gives whole turns before. Objects of a model find that out by themselves; see [`crate::period`].
+    /// True if the curve is closed: it is then periodic, and `jet` beyond 0 .. 1 gives the value
+    /// reduced by whole turns. Objects of a model determine that themselves; see [`crate::period`].
     fn closed(&self) -> bool;
 
-    /// What the curve runs along, for joins: itself, or a part of other curves.
+    /// The root of the curve, for joins: itself, or a part of other curves.
     fn trace(&self) -> Trace<T> {
         Trace::own()
     }
 
-    /// The curve object of which this is the image, point by point at equal parameters, under a map of
-    /// space. For joins: images of one curve that lie in one place are one.
+    /// The curve object of which this is the image, point by point at equal parameters, under a map
+    /// of space. For joins: coincident images of one curve are one.
     fn image_of(&self) -> Option<Key> {
         None
     }
 
-    /// The curve in the parameter plane of the surface it lies on: (u(t), v(t), 0), for snakes.
+    /// The curve in the parameter plane of its surface: (u(t), v(t), 0), for snakes.
     fn on_surface(&self, _t: T, _order: Order) -> Option<CurveJet<T>> {
         None
     }
@@ -105,18 +107,18 @@ pub trait Curve<T: Real>: Send + Sync {
 
 /// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
 ///
-/// As for [`Curve`], each surface states what concerns speed and correctness:
+/// As for [`Curve`], each surface states the methods that affect speed and correctness:
 /// [`surface_facts!`](crate::surface_facts), [`surface_one_by_one!`](crate::surface_one_by_one).
 pub trait Surface<T: Real>: Send + Sync {
     /// Position and derivatives at (`u`, `v`), to `order`.
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T>;
 
-    /// Positions, and unit normals if asked, on the tensor grid `us` x `vs`, in the order
-    /// `[i * vs.len() + j]`. Normals are zero where the surface is singular.
+    /// Positions, and unit normals if requested, on the tensor grid `us` x `vs`, in the order `[i *
+    /// vs.len() + j]`. Normals are zero at singular points.
     fn grid(&self, us: &[f64], vs: &[f64], points: &mut [Vec3<T>], normals: Option<&mut [Vec3<T>]>);
 
-    /// What [`Surface::jet`] gives along the line at one `u`, at each of `vs`: for surfaces that do much at a `u` before they
-    /// look at v.
+    /// The results of [`Surface::jet`] along the line at one `u`, at each of `vs`: for surfaces
+    /// with much work at a `u` that does not depend on v.
     fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>>;
 
     /// Positions at many parameter pairs in any order. `out` has the length of `uv`.
@@ -139,10 +141,11 @@ pub trait Surface<T: Real>: Send + Sync {
     /// A surface that is made from another one's parameter plane hands the path on.
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64>;
 
-    /// What makes the surface rational, where something does that is known.
+    /// Rational form of the surface, if known.
     fn rational(&self) -> Rational<2>;
 
-    /// Which of u and v run round, since the two sides of the surface are one line; see [`Curve::closed`].
+    /// For u and v, true if closed, since the two sides of the surface are one line; see
+    /// [`Curve::closed`].
     fn closed(&self) -> [bool; 2];
 
     /// The surface to which this one is parallel, along the natural normal, and the distance: a parallel of a parallel
@@ -156,16 +159,16 @@ pub trait Surface<T: Real>: Send + Sync {
         Vec::new()
     }
 
-    /// What the four edges run along, for joins: v = 0, u = 1, v = 1, u = 0, each in the
-    /// direction of increasing parameter.
+    /// The roots of the four edges, for joins: v = 0, u = 1, v = 1, u = 0, each in the direction of
+    /// increasing parameter.
     fn edges(&self) -> Edges<T> {
         Edges::own()
     }
 
-    /// The objects, or parts of objects, that alone determine the shape of an edge of the surface's own
-    /// (0..4): the points that a loft's line across its masters passes, the point that is turned to a
-    /// circle, the curve that is moved. Empty when there are none such. For joins: edges made of the same
-    /// things that lie in one place are one.
+    /// The objects, or parts of objects, that alone determine the shape of an edge of the surface's
+    /// own (0..4): the points on a loft's line across its masters, the point that is rotated to a
+    /// circle, the curve that is moved. Empty if there are none. For joins: coincident edges with
+    /// the same origin are one.
     fn edge_made_of(&self, _k: usize) -> Vec<Key> {
         Vec::new()
     }
@@ -191,7 +194,7 @@ pub struct InnerPlane<'a> {
     pub joints: [Vec<f64>; 2],
     /// The lines of the plane at which a first derivative may jump; see [`Surface::kinks`].
     pub kinks: [Vec<f64>; 2],
-    /// Which of its parameters run round, so that the lines come back with each turn.
+    /// For each parameter, true if closed, so that the lines recur with each turn.
     pub closed: [bool; 2],
 }
 
@@ -203,7 +206,7 @@ impl<'a> InnerPlane<'a> {
     }
 }
 
-/// How many steps a smooth stretch of a path is searched in for crossings.
+/// Number of steps in which a smooth part of a path is searched for crossings.
 const STEPS: usize = 8;
 
 /// The parameters in (0, 1) at which a path meets the lines u = const and v = const; see
@@ -252,7 +255,7 @@ pub trait Field<T: Real>: Send + Sync {
     fn bounds(&self, over: &crate::Box3) -> Option<[f64; 2]>;
 }
 
-/// The step of differences of a gradient, as a share of the distance from the origin, or of 1 nearby.
+/// Step of differences of a gradient, relative to the distance from the origin, or to 1 nearby.
 const GRADIENT_STEP: f64 = 1e-5;
 
 /// [`Field::second_order`] by differences of the gradient, to some ten digits.
@@ -298,7 +301,7 @@ impl<T: Real> dyn Field<T> + '_ {
     }
 }
 
-/// What makes a value with this gradient a length.
+/// Factor that converts a value with this gradient to a length.
 pub fn slope_scale(gradient: Vec3) -> f64 {
     let size = gradient.norm();
     if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 }

@@ -44,7 +44,7 @@ pub trait Solid<T: Real>: Send + Sync {
         }
     }
 
-    /// What its faces, edges and corners run along, for joins.
+    /// The roots of its faces, edges and corners, for joins.
     fn faces(&self) -> Faces<T> {
         Faces::own()
     }

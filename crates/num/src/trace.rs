@@ -1,8 +1,8 @@
-//! What a curve or an edge runs along: the identities that let meshes join exactly.
+//! Roots of curves and edges: the identities by which meshes join exactly.
 //!
 //! An edge of a surface is a chain of pieces of *root* curves. Two patches share the vertices of a
-//! piece when root, ends and division are the same objects; never because numbers look equal.
-//! Sub-curves, edge snakes and the like are aliases: they pass on the trace of what they lie on.
+//! piece if root, ends and division are the same objects; never because numbers are equal.
+//! Sub-curves, edge snakes and the like are aliases: they forward the trace of their original.
 
 use crate::Real;
 use smallvec::{SmallVec, smallvec};
@@ -12,7 +12,7 @@ use smallvec::{SmallVec, smallvec};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u32);
 
-/// What a [`Key`] names.
+/// Element named by a [`Key`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Named {
     /// An object.
@@ -33,7 +33,7 @@ impl Key {
         (self.0 < PART).then(|| Key(self.0 + PART * kind))
     }
 
-    /// The identity of corner `k` of this surface; none for what is not an object.
+    /// The identity of corner `k` of this surface; `None` for a key that is not an object.
     pub fn corner(self, k: usize) -> Option<Key> {
         self.part(1 + k as u32)
     }
@@ -48,7 +48,7 @@ impl Key {
         self.part(9 + k as u32)
     }
 
-    /// What it names.
+    /// The named element.
     pub fn named(self) -> Named {
         let of = Key(self.0 % PART);
         match (self.0 / PART) as usize {
@@ -72,7 +72,7 @@ pub enum Root {
     /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) of a surface object.
     Edge(Key, u8),
     /// The straight line between two point objects, from the smaller key (t = 0) to the greater:
-    /// whatever is drawn straight and evenly between the same two points lies on it.
+    /// any straight line with constant speed between the same two points.
     Segment(Key, Key),
     /// The same from the first to the second, run by a law (the third): t is the law's argument.
     Governed(Key, Key, Key),
@@ -94,7 +94,7 @@ impl Root {
     }
 }
 
-/// Where a piece begins or ends on its root.
+/// End of a piece on its root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark<T> {
     /// Parameter on the root.
@@ -106,7 +106,7 @@ pub struct Mark<T> {
 /// A part of a root, run from `from` to `to` (which may be backwards), linearly in its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<T> {
-    /// What it is part of.
+    /// Its root.
     pub root: Root,
     /// Start.
     pub from: Mark<T>,
@@ -139,8 +139,8 @@ impl<T: Real> Piece<T> {
         Mark { t: self.from.t + (self.to.t - self.from.t) * share, point: mark.point }
     }
 
-    /// The whole of the straight line from one point object to another, to the share `until` of
-    /// the alias; `None` when they are the same.
+    /// The whole of the straight line from one point object to another, up to the fraction `until`
+    /// of the alias; `None` if they are the same.
     pub fn straight(from: Key, to: Key, until: T) -> Option<Self> {
         let mark = |point: Key, other: Key| Mark {
             t: if point < other { T::zero() } else { T::one() },
@@ -155,7 +155,7 @@ impl<T: Real> Piece<T> {
     }
 }
 
-/// What a curve runs along.
+/// Roots of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trace<T> {
     /// The curve is a root of its own; the point objects at its ends, where it has them.
@@ -299,8 +299,8 @@ impl<T: Real> Edges<T> {
     }
 }
 
-/// How the parameters (a, b) of a solid's face run on a surface: swapped or not, then each
-/// reversed or not. Its number has these as bits 0, 1 and 2.
+/// Relation of the parameters (a, b) of a solid's face to those of a surface: swapped or not, then
+/// each reversed or not. Its number has these as bits 0, 1 and 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Turn(pub u8);
 
@@ -346,13 +346,13 @@ impl Turn {
 pub enum Face<T> {
     /// The solid's own face.
     Own,
-    /// The whole of a surface, with what its edges run along.
+    /// The whole of a surface, with the roots of its edges.
     On {
         /// The surface object; without a name it joins nothing.
         surface: Option<Key>,
         /// The solid of which that surface is a face, if so.
         face_of: Option<(Key, u8)>,
-        /// How the face's parameters run on it.
+        /// Relation of the face's parameters to it.
         turn: Turn,
         /// Its edges.
         edges: Box<Edges<T>>,
@@ -361,8 +361,8 @@ pub enum Face<T> {
     SameAs(u8),
 }
 
-/// How the points between the layers of a solid are made of theirs: solids whose layers meet and
-/// that follow the same law meet in between, too.
+/// Law of the points between the layers of a solid: solids whose layers meet and that have the same
+/// law meet between them too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LayerLaw {
     /// B-splines of this degree across the layers.
@@ -379,13 +379,13 @@ pub enum LayerLaw {
 pub struct Layers<T> {
     /// The surface objects with their edges, in order of w.
     pub surfaces: Vec<(Option<Key>, Edges<T>)>,
-    /// What is made of them.
+    /// Law between them.
     pub law: LayerLaw,
 }
 
-/// What the six faces of a solid run along: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters
-/// of a face are the other two, in order. And the point objects at its corners, where they are known
-/// by the solid alone: u, v, w are bits 0, 1 and 2 of a corner's number.
+/// Roots of the six faces of a solid: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters of a
+/// face are the other two, in order. And the point objects at its corners, if known from the solid
+/// alone: u, v, w are bits 0, 1 and 2 of a corner's number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faces<T> {
     /// The faces.
@@ -457,7 +457,7 @@ mod tests {
                 assert_eq!(end.point, at.map_or(mark.point, joint), "{from} {to}");
             }
         }
-        // What leaves it, and what has no length, is a curve of its own.
+        // Parts that leave it, and those without length, are curves of their own.
         let mark = |t: f64| Mark { t, point: None };
         for (a, b) in [(-0.1, 0.5), (0.5, 1.1), (0.4, 0.4), (f64::NAN, 0.5)] {
             assert_eq!(whole.part(Root::Curve(Key(99)), mark(a), mark(b)), Trace::own());

@@ -1,6 +1,6 @@
 //! Sets joined pair by pair (Tarjan 1975, with path halving).
 //!
-//! The smallest member stands for its set, so results do not depend on the order of the joins.
+//! The smallest member represents its set, so results do not depend on the order of the joins.
 
 /// Sets of the numbers 0 .. n.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +43,7 @@ impl UnionFind {
     }
 }
 
-/// What members are numbered by.
+/// Type of the members' numbers.
 pub trait MemberIndex: Copy {
     /// The number.
     fn index(self) -> usize;

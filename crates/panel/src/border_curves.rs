@@ -15,13 +15,13 @@ use std::sync::Arc;
 /// A hem among the drafts.
 #[derive(Clone, Debug)]
 pub(crate) struct BorderCounts {
-    /// Which of its sheet's.
+    /// Number in its sheet.
     pub index: u32,
     /// Divisions that are stated.
     pub stated: Option<u32>,
     /// Divisions when nothing else determines them.
     pub usual: u32,
-    /// How they are spaced where nothing else says.
+    /// Default spacing.
     pub density: Option<Arc<DivisionDensity>>,
 }
 

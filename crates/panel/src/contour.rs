@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Contour {
     /// Points in order along the line.
     pub points: Vec<Vec3>,
-    /// Their parameters (u, v) on the surface; none on the triangles of a body.
+    /// Their parameters (u, v) on the surface; empty on the triangles of a body.
     pub uv: Vec<[f64; 2]>,
     /// True when the line closes; the first point is not repeated.
     pub closed: bool,

@@ -38,13 +38,13 @@ const ALIKE: f64 = 1e-11;
 /// A chord is halved this often at most.
 const MOST_HALVINGS: u32 = 10;
 
-/// A slope along a grid line is none when it is this share of that along the other.
+/// Slope along a grid line, relative to that along the other, below which it is zero.
 const FLAT: f64 = 1e-6;
 
 /// Newton steps to the section from the chord of two neighbouring points.
 const MOST_STEPS: usize = 12;
 
-/// How far from a knuckle its two sides are looked at.
+/// Distance from a knuckle at which its two sides are evaluated.
 const ASIDE: f64 = 1e-4;
 
 /// A place of the line: its parameters, and the grid line that holds it when the model changes.
@@ -117,7 +117,7 @@ impl<T: Real> Follower<'_, T> {
             [false, true] => 1,
             _ => usize::from(slopes[0].re().abs() > slopes[1].re().abs()),
         };
-        // Along a border on which the section is, it keeps to what crosses that.
+        // If the section is along a border, the step follows the lines that cross it.
         let flat = |k: usize| slopes[k].re().abs() <= FLAT * slopes[1 - k].re().abs();
         let held = if flat(1 - held) { 1 - held } else { held };
         let free = 1 - held;

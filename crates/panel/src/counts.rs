@@ -1,24 +1,24 @@
 //! Counts of divisions that are equal along chains and add up along edges of several pieces.
 //!
-//! Nodes are counts to be found: those of patches along u or v, and those of stretches of curves.
-//! Links make counts equal, sums make a count the sum of others; some counts are stated. What is
-//! stated spreads along links and through sums as intervals; what stays free gets its wish, its
-//! share of a known sum, or the usual count. Contradictions never stop the rest: the chain is cut
-//! between the statements, or the sum is left out, and both are reported.
+//! Nodes are unknown counts: those of patches along u or v, and those of stretches of curves. Links
+//! make counts equal, sums make a count the sum of others; some counts are given. Given counts
+//! propagate along links and through sums as intervals; free ones get their wish, their part of a
+//! known sum, or the default. Contradictions do not stop the rest: the chain is cut between the
+//! given counts, or the sum is left out, and both are reported.
 
 use std::collections::{BTreeSet, VecDeque};
 
 /// A count of divisions is below this.
 const MOST: u32 = 1_000_000;
 
-/// How often a sum is looked at before it counts as one that has no end (a chain in a ring whose
+/// Maximum number of evaluations of a sum; more indicate a divergent one (a chain in a ring whose
 /// count would be larger than itself).
 const MAX_ROUNDS: u32 = 2000;
 
-/// How many sums are looked at for one step of a repair.
+/// Maximum number of sums examined for one step of a repair.
 const REACH: usize = 20_000;
 
-/// How many steps of repairs are tried in all.
+/// Maximum number of steps of repairs in total.
 const MOST_STEPS: usize = 2000;
 
 /// The number of a count to be found.
@@ -32,13 +32,13 @@ pub(crate) struct Sum {
     pub parts: Vec<Node>,
 }
 
-/// The counts, what they must fulfil and what is wished of them.
+/// The counts, their constraints and wishes.
 #[derive(Debug, Default)]
 pub(crate) struct CountProblem {
     /// By node.
     pub stated: Vec<Option<u32>>,
     pub wished: Vec<Option<u32>>,
-    /// The count of a node of which nothing is said; only for counts of patches.
+    /// The default count of a node; only for counts of patches.
     pub usual: Vec<Option<u32>>,
     pub links: Vec<(Node, Node)>,
     pub sums: Vec<Sum>,
@@ -106,7 +106,7 @@ struct CountClass {
 
 struct CountSolver<'d> {
     sums: &'d [Sum],
-    /// The weights by which the parts of a sum share a whole that is known: asked for where there is something to share.
+    /// The weights by which the parts of a sum divide a known whole; evaluated only if needed.
     weights: &'d dyn Fn(usize) -> Vec<f64>,
     weighed: Vec<Option<Vec<f64>>>,
     class_of: Vec<usize>,
@@ -131,8 +131,9 @@ impl CountProblem {
         self.stated.len() - 1
     }
 
-    /// The counts. Takes time linear in nodes, links and sums but for chains in rings. `weights` has, for a sum, those
-    /// by which its parts share a whole that is known; it is asked only where that is to be decided.
+    /// The counts. Takes time linear in nodes, links and sums except for chains in rings. `weights`
+    /// gives, for a sum, those by which its parts divide a known whole; it is called only where
+    /// that is to be decided.
     pub fn solve(&self, weights: &dyn Fn(usize) -> Vec<f64>) -> CountSolution {
         let mut conflicts = Vec::new();
         let (class_of, count) = self.classes(&mut conflicts);
@@ -176,8 +177,8 @@ impl CountProblem {
         CountSolution { counts, conflicts: solver.conflicts }
     }
 
-    /// The class of each node and how many there are. Where statements in one chain differ, each
-    /// node goes with the nearest of them.
+    /// The class of each node, and the number of classes. If the given counts in a chain differ,
+    /// each node belongs to the nearest of them.
     fn classes(&self, conflicts: &mut Vec<Conflict>) -> (Vec<usize>, usize) {
         let nodes = self.stated.len();
         let links = Links::new(nodes, &self.links);
@@ -313,7 +314,7 @@ impl CountSolver<'_> {
         }
     }
 
-    /// Narrows what takes part in one sum; false when it cannot come out.
+    /// Narrows the terms of one sum; false if it cannot hold.
     fn weigh(&mut self, sum: usize) -> bool {
         let Sum { whole, parts } = &self.sums[sum];
         let whole = self.class_of[*whole];
@@ -366,7 +367,7 @@ impl CountSolver<'_> {
                 is_part[self.class_of[*node]] |= !self.broken[k];
             }
         }
-        // Wholes first: their parts share what they get.
+        // Wholes first: their parts divide the result.
         for parts_too in [false, true] {
             for class in 0..self.classes.len() {
                 let CountClass { low, high, usual, .. } = self.classes[class];
@@ -402,14 +403,14 @@ impl CountSolver<'_> {
         }
     }
 
-    /// How much more a whole has than its parts.
+    /// Excess of a whole over its parts.
     fn excess(&self, sum: usize) -> i64 {
         let value = |node: Node| i64::from(self.class(node).low);
         let Sum { whole, parts } = &self.sums[sum];
         value(*whole) - parts.iter().map(|&p| value(p)).sum::<i64>()
     }
 
-    /// How often a class counts in the excess of a sum: 1 as its whole, less than 0 as its part.
+    /// Coefficient of a class in the excess of a sum: 1 as its whole, negative as its part.
     fn weight(&self, sum: usize, class: usize) -> i64 {
         let Sum { whole, parts } = &self.sums[sum];
         let parts = parts.iter().filter(|&&p| self.class_of[p] == class).count() as i64;
@@ -478,7 +479,7 @@ impl CountSolver<'_> {
         false
     }
 
-    /// Applies the changes unless a sum that came out no longer would, or a count would be none.
+    /// Applies the changes unless a satisfied sum would be violated, or a count would be zero.
     fn change(&mut self, start: usize, changes: &[(usize, i64)]) -> bool {
         let before = self.excess(start).abs();
         let mut touched: Vec<usize> =
@@ -587,7 +588,7 @@ mod tests {
         let d =
             divider(&[Some(8), None, Some(5), None], &[], &[(0, &[1, 1]), (2, &[1, 3])]).solved();
         assert_eq!(d.counts, [8, 4, 5, 1]);
-        // Nothing is said: the whole has its usual count.
+        // Without constraints the whole has its default count.
         let d = divider(&[None, None, None], &[], &[(0, &[1, 2])]).solved();
         assert_eq!(d.counts, [8, 4, 4]);
     }

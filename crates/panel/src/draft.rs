@@ -1,4 +1,4 @@
-//! What takes part in a panelling: shown surfaces, hidden originals of images, borders of sheets.
+//! Participants of a panelling: visible surfaces, hidden originals of images, borders of sheets.
 
 use crate::border_curves::{self, BorderCounts};
 use crate::knuckles::knuckles;
@@ -31,8 +31,8 @@ pub(crate) fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>
     }
 }
 
-/// The divisions of a surface by itself: its own or, for an image without any, those of its
-/// original; where it leaves them to its neighbours, the usual ones.
+/// The divisions of a surface itself: its own or, for an image without any, those of its original;
+/// the default for those left to the neighbours.
 pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
     let mut at = object;
     while !at.head.divided
@@ -50,7 +50,7 @@ pub(crate) type Knuckles = Arc<[Vec<f64>; 2]>;
 /// The knuckles of surfaces; an image breaks where its original does.
 struct KnuckleFinder<'g> {
     graph: &'g Graph<f64>,
-    /// Those of an earlier state, and what the graph called its last change then.
+    /// Those of an earlier state, with the graph's last change at that time.
     before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
     found: HashMap<Key, Knuckles>,
 }
@@ -123,10 +123,9 @@ impl Draft<'_> {
     }
 }
 
-/// The surfaces that take part, in the order of declaration, hidden ones after them, and the hems of
-/// sheets last.
-/// `before`: the knuckles of an earlier state of the graph, and what it called its last change then. `fineness`: how near
-/// panels are to be to their surfaces, where that is asked for.
+/// The participating surfaces, in the order of declaration, followed by hidden ones and the hems of
+/// sheets. `before`: the knuckles of an earlier state of the graph, with its last change at that
+/// time. `fineness`: the required accuracy of panels, if given.
 pub(crate) fn drafts<'g>(
     graph: &'g Graph<f64>,
     before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
@@ -239,10 +238,11 @@ fn map_identity(object: &Object<f64>, original: Key) -> String {
     format!("{}{rest:?}", object.row.name)
 }
 
-/// Places along u and along v at which the divisions of a surface are asked for, about.
+/// Approximate number of stations along u and along v at which the divisions of a surface are
+/// determined.
 const FINE_PLACES: usize = 24;
 
-/// The most divisions of a surface along u or v that a fineness asks for.
+/// Maximum number of divisions of a surface along u or v by a fineness.
 const MAX_FINE: f64 = 20_000.0;
 
 /// The even divisions along u and v that bring panels as near to a surface as this.

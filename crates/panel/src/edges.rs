@@ -1,6 +1,5 @@
-//! Where the divisions of a patch lie in its parameters: along each edge by itself, so that points
-//! that neighbours mark are among them, and between the edges along straight lines of the
-//! parameter square.
+//! Parameters of a patch's divisions: along each edge separately, so that points marked by
+//! neighbours are among them, and between the edges along straight lines of the parameter square.
 
 use crate::roots::{EdgeParameter, MarkSource, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
@@ -9,11 +8,11 @@ use moldloft_parallel::prelude::*;
 use moldloft_registry::{Point, Scalar, SurfaceRef};
 use std::sync::Arc;
 
-/// So many points of a patch are evaluated together.
+/// Number of points of a patch evaluated together.
 const PART: usize = 1024;
 
-/// How the divisions between two stops are spaced: shares of the way in ascending order, without 0
-/// and 1; `None` for even ones.
+/// Spacing of the divisions between two stops: ascending fractions, without 0 and 1; `None` for
+/// uniform ones.
 pub(crate) type Shares = Option<Arc<[f64]>>;
 
 /// A run of divisions along an edge.
@@ -25,7 +24,7 @@ pub(crate) struct DivisionRun {
     pub shares: Shares,
 }
 
-/// How an edge is divided.
+/// Division of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum EdgePlan {
     /// From 0 to 1 in one run.
@@ -38,9 +37,9 @@ pub(crate) enum EdgePlan {
     Like(u32),
 }
 
-/// What a scalar needs to know of a model to place divisions.
+/// Data of a model, for any scalar, that determine the divisions.
 pub(crate) trait PatchLookup<T: Real> {
-    /// How the edges of a draft are divided.
+    /// Divisions of the edges of a draft.
     fn plans(&self, draft: u32) -> &[EdgePlan; 4];
     /// The edges of a draft.
     fn edges(&self, draft: u32) -> Option<&Edges<T>>;
@@ -124,7 +123,7 @@ fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Optio
             let piece = pieces.get(p)?;
             let begin = if p == 0 { T::zero() } else { pieces[p - 1].until };
             let reach = piece.until - begin;
-            // The knuckle goes where its corner goes, and the ends of the piece go their own ways.
+            // The knuckle moves with its corner, and the ends of the piece move independently.
             let place = if T::PARTS == 1 {
                 T::from(share)
             } else {
@@ -153,7 +152,7 @@ pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
     let uv = parameters(edges);
     if uv.iter().flatten().all(|x| x.is_constant()) {
         let real: Vec<[f64; 2]> = uv.iter().map(|p| p.map(T::re)).collect();
-        // In parts on all threads: a patch by itself may be most of a model.
+        // In chunks on all threads: one patch may be most of a model.
         let parts = points.par_chunks_mut(PART).zip(real.par_chunks(PART));
         parts.for_each(|(points, uv)| surface.scattered(uv, points));
     } else {
@@ -175,7 +174,8 @@ pub(crate) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> V
     uv
 }
 
-/// Where the line from (a, 0) to (b, 1) meets that from (0, c) to (1, d), in the unit square.
+/// Intersection of the line from (a, 0) to (b, 1) with that from (0, c) to (1, d), in the unit
+/// square.
 ///
 /// u = a + (b - a) v and v = c + (d - c) u. Lines of one family never cross inside the square when
 /// their ends ascend on both sides, so a grid of such points does not fold.
@@ -195,7 +195,7 @@ fn crossing<T: Real>(a: T, b: T, c: T, d: T) -> [T; 2] {
     [(a + lean * c) / below, (c + rise * a) / below]
 }
 
-/// How the panels along a side of a patch are spaced.
+/// Spacing of the panels along a side of a patch.
 pub(crate) fn shares_of(law: &moldloft_registry::Spacing, from: u32, to: u32, of: u32) -> Shares {
     if law.is_even() || to - from < 2 {
         return None;

@@ -1,13 +1,13 @@
-//! Which roots, and which points, are one though they have several names.
+//! Roots, and points, with several names that are identical.
 //!
-//! An edge of a loft has no name of its own, nor has a corner of a patch. They are known by what they are
-//! made of: the edge by the ends of the masters, the corner of an image by the corner of the original, a bead by its
-//! curve and its numbers.
-//! Two of them are one when they are made of the same things *and* lie in one place: neither alone is
-//! enough, for the same point may be turned to several places, and equal numbers join nothing. What is
-//! one here has one root, so marks, divisions and vertices flow along it as along any curve.
+//! An edge of a loft has no name of its own, nor has a corner of a patch. They are identified by
+//! their origin: the edge by the ends of the masters, the corner of an image by the corner of the
+//! original, a bead by its curve and its numbers. Two of them are identical if they have the same
+//! origin *and* coincide: neither alone suffices, for the same point may be rotated to several
+//! positions, and equal numbers join nothing. Identical ones have one root, so marks, divisions and
+//! vertices are shared along it as along any curve.
 //!
-//! `roots in use -> what each is made of -> those made alike -> those in one place -> one root`
+//! `roots in use -> origin of each -> those of equal origin -> coincident ones -> one root`
 
 use crate::draft::{Draft, surface_of};
 use crate::roots::pieces;
@@ -21,14 +21,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// The parameters at which two roots are compared; the same ones from the other end.
 const TRIALS: [f64; 9] = [0.0, 0.0625, 0.1875, 0.34375, 0.5, 0.65625, 0.8125, 0.9375, 1.0];
 
-/// What is made alike lies in one place within this share of its size: rounding, from whichever way it
-/// was reached.
+/// Relative tolerance of coincidence for equal origin: rounding, independent of the construction.
 const SAME_PLACE: f64 = 1e-10;
 
-/// Unions may make more things alike: the lines between corners that turn out to be one. So many rounds.
+/// Maximum number of rounds: unions may make further origins equal, such as those of lines between
+/// corners found to be identical.
 const ROUNDS: usize = 6;
 
-/// What a line or a point is made of, as a number; alike for those made of the same things.
+/// Origin of a line or a point, as a number; equal for equal origins.
 type Make = u64;
 
 /// The roots and points that go by other names.
@@ -36,7 +36,7 @@ type Make = u64;
 pub(crate) struct Identities {
     roots: HashMap<Root, (Root, bool)>,
     points: HashMap<Key, Key>,
-    /// The roots of declared joins, and how far apart their edges may be.
+    /// The roots of declared joins, with the maximum distance of their edges.
     declared: Vec<(Root, f64)>,
 }
 
@@ -80,7 +80,7 @@ impl Identities {
         !self.declared.is_empty()
     }
 
-    /// How far apart the edges along a root may be by a declared join.
+    /// Maximum distance of the edges along a root by a declared join.
     pub fn tolerance(&self, root: Root) -> Option<f64> {
         let (root, _) = self.root(root);
         let of = self.declared.iter().filter(|(r, _)| self.root(*r).0 == root);
@@ -113,7 +113,7 @@ impl Identities {
         at
     }
 
-    /// Names of names give way to the one name.
+    /// Resolves chains of names.
     fn flatten(&mut self) {
         let points: Vec<Key> = self.points.keys().copied().collect();
         for key in points {
@@ -168,7 +168,7 @@ impl Identities {
 struct IdentityFinder<'g> {
     graph: &'g Graph<f64>,
     found: Identities,
-    /// What the patches run along, and the points in use, in the order of first use.
+    /// The roots of the patches, and the points in use, in the order of first use.
     roots: Vec<Root>,
     points: Vec<Key>,
     makes: HashMap<Key, Make>,
@@ -182,7 +182,7 @@ fn hashed(parts: impl Hash) -> Make {
     hasher.finish()
 }
 
-/// The make of what is made of several things, whatever their order.
+/// The origin of several parts, independent of their order.
 fn set(mut parts: Vec<Make>) -> Make {
     parts.sort_unstable();
     parts.dedup();
@@ -237,7 +237,7 @@ impl<'g> IdentityFinder<'g> {
         surface_of(self.graph.get(key)?)
     }
 
-    /// What a point is made of: itself, or the point that it is an image of.
+    /// Origin of a point: itself, or the point of which it is an image.
     fn point_make(&mut self, key: Key) -> Make {
         let mut at = self.found.point(key);
         if let Some(&make) = self.makes.get(&at) {
@@ -276,8 +276,8 @@ impl<'g> IdentityFinder<'g> {
         make
     }
 
-    /// What a point on a curve or surface is made of: its kind, what it is on, and its numbers. Two such of one make are
-    /// one for all values of the model's parameters.
+    /// Origin of a point on a curve or surface: its kind, its carrier, and its numbers. Two of
+    /// equal origin are identical for all values of the model's parameters.
     fn placed_make(&mut self, key: Key) -> Option<Make> {
         let object = self.graph.get(key)?;
         match object.value()? {
@@ -297,7 +297,7 @@ impl<'g> IdentityFinder<'g> {
         Some(hashed(parts))
     }
 
-    /// What anything with a key is made of.
+    /// Origin of anything with a key.
     fn make(&mut self, key: Key) -> Make {
         match key.named() {
             Named::Edge(surface, k) => self.line_make(Root::Edge(surface, k as u8)),
@@ -333,14 +333,14 @@ impl<'g> IdentityFinder<'g> {
         set(parts)
     }
 
-    /// What a line is made of: the curve of which it is an image, the points that it is drawn through.
+    /// Origin of a line: the curve of which it is an image, or the points that it is drawn through.
     fn line_make(&mut self, root: Root) -> Make {
         let (root, _) = self.found.root(root);
         if let Some(&make) = self.lines.get(&root) {
             return make;
         }
         let own = hashed((1u8, root));
-        // What is made of itself would never end.
+        // Stops a circular origin.
         self.lines.insert(root, own);
         let make = match root {
             Root::Segment(a, b) => set(vec![self.point_make(a), self.point_make(b)]),
@@ -407,7 +407,7 @@ impl<'g> IdentityFinder<'g> {
         }
     }
 
-    /// Where a point is.
+    /// Position of a point.
     fn place(&self, key: Key) -> Option<Vec3> {
         match key.named() {
             Named::Object(_) => match self.graph.get(key)?.value()? {
@@ -574,8 +574,8 @@ fn rank(root: Root) -> (u8, u32, u32) {
     }
 }
 
-/// The pairs of things that lie in one place, and whether one runs against the other: each with the
-/// first of its place.
+/// The pairs of coincident items, and whether one has the opposite direction: each with the first
+/// at its position.
 fn coincident<K: Copy>(placed: &[(K, Vec<Vec3>)]) -> Vec<(K, K, bool)> {
     let all = placed.iter().flat_map(|(_, points)| points.iter());
     let (mut bounds, mut far) = (Box3::EMPTY, 0.0f64);

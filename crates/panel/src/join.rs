@@ -1,5 +1,5 @@
-//! Which vertices are one: those at the same place of a root, at the same point object, at the same
-//! division of a stretch, and images of such. Never because they look close.
+//! Identity of vertices: at the same position on a root, at the same point object, at the same
+//! division of a stretch, and images of such; never by proximity.
 
 use crate::roots::{IntervalId, RootPlaceId};
 use crate::topology::{EdgeRun, PanelTopology, PatchTopology};
@@ -62,7 +62,7 @@ pub(crate) struct Joiner<'s> {
     /// A vertex at each place.
     places: Vec<Option<u32>>,
     points: HashMap<Key, u32>,
-    /// The vertices of a stretch with so many divisions, in the direction of its root.
+    /// The vertices of a stretch with a given number of divisions, in the direction of its root.
     intervals: HashMap<(IntervalId, u32), Vec<u32>>,
     images: HashMap<(u32, u32), u32>,
 }

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
-/// What follows from a skeleton alone, but for the vertices that are their own images and the side
-/// that panels face.
+/// Data that depend on a skeleton alone, except for the vertices that are their own images and the
+/// orientation of panels.
 #[derive(Debug)]
 pub(crate) struct JoinedPatches {
     pub topology: Arc<Topology>,
@@ -137,7 +137,7 @@ impl JoinedPatches {
 }
 
 impl JoinedPatches {
-    /// How far apart the positions of vertices on declared joins may be.
+    /// Maximum distance of the positions of vertices on declared joins.
     fn allowed(&self, structure: &PanelTopology) -> HashMap<u32, f64> {
         let mut allowed: HashMap<u32, f64> = HashMap::new();
         if structure.declared.is_empty() {

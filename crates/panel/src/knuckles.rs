@@ -1,4 +1,4 @@
-//! Where the lines of a surface break: its knuckles, as parameters.
+//! Knuckles of a surface, as parameters.
 //!
 //! A knuckle is a parameter line at which the surface is continuous and its tangents across are not: the
 //! joint of a poly-curve, a knot of degree 1, a crease. It is a row of the patch, on all sides alike, so
@@ -10,14 +10,14 @@ use moldloft_num::{InnerPlane, Order, Surface, Vec3, find_root};
 /// Tangents that differ in direction by more than this, in radians, make a knuckle.
 const TURN: f64 = 1e-5;
 
-/// A break is one to rounding, since it may have been shared out among pieces; tangents are taken so far
-/// before and after it.
+/// Distance before and after a break at which tangents are evaluated; a break is known to rounding
+/// only, since it may have been divided among pieces.
 pub(crate) const ASIDE: f64 = 1e-9;
 
 /// Breaks nearer than this are one: those of opposite sides, each found by a search of its own.
 const SAME_KNUCKLE: f64 = 4.0 * ASIDE;
 
-/// Each break is tried at so many places along it.
+/// Number of points along a break at which it is tested.
 const TRIALS: usize = 5;
 
 /// The knuckles along u and along v, ascending, between 0 and 1.
@@ -48,11 +48,11 @@ fn turns(at: f64, tangents: impl Fn(f64) -> Vec<Vec3>) -> bool {
     inside && tangents(at - ASIDE).into_iter().zip(tangents(at + ASIDE)).any(differ)
 }
 
-/// A part is looked at on so many steps in each direction.
+/// Number of steps in each direction in which a part is examined.
 const STEPS: usize = 16;
 
-/// A place (u, v) of a part at which a knuckle of the surface that it is a part of runs across its panels: along none of
-/// its own knuckles.
+/// A point (u, v) of a part at which a knuckle of the original surface crosses its panels: along
+/// none of its own knuckles.
 pub(crate) fn knuckle_across(surface: &dyn Surface<f64>, own: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
     let planes = surface.inner_planes();
     planes.iter().find_map(|plane| across_in(surface, own, plane))

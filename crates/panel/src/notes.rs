@@ -1,15 +1,15 @@
-//! What is noticed at the joins of patches and may interest the user.
+//! Notes about the joins of patches.
 
 use moldloft_num::Vec3;
 
-/// A patch on the way from one stated count to another, and what it shares with the next.
+/// A patch between two given counts, and its link to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainStep {
     /// The patch.
     pub patch: String,
     /// `'u'` or `'v'`: the parameter along which it has the count.
     pub along: char,
-    /// What it shares with the next patch; empty for the last.
+    /// Link to the next patch; empty for the last.
     pub shares: String,
 }
 
@@ -40,13 +40,13 @@ pub enum PanelNote {
     Apart {
         /// The patches.
         patches: [String; 2],
-        /// How far apart the two positions are.
+        /// Distance of the two positions.
         distance: f64,
-        /// Where.
+        /// Position.
         at: Vec3,
     },
-    /// The corner of a patch lies in the middle of an edge of another and is not a vertex of it, or at
-    /// a vertex of it that is another one.
+    /// The corner of a patch is in the middle of an edge of another without being its vertex, or
+    /// coincides with a different vertex of it.
     Junction {
         /// The patch, and the edge's patch.
         patches: [String; 2],
@@ -56,26 +56,26 @@ pub enum PanelNote {
         edge: (u8, f64),
         /// True when the edge has a vertex there.
         twin: bool,
-        /// Where.
+        /// Position.
         at: Vec3,
     },
-    /// Two edges of patches lie in one place but are not joined.
+    /// Two edges of patches coincide but are not joined.
     Unjoined {
         /// The patches; twice the same for one that closes.
         patches: [String; 2],
         /// Their edges 0..4 (v = 0, u = 1, v = 1, u = 0).
         edges: [u8; 2],
-        /// So many panels of the first edge lie on the second.
+        /// Number of panels of the first edge that are on the second.
         panels: usize,
         /// Their length.
         length: f64,
-        /// True when both edges lie on each other from end to end.
+        /// True if both edges coincide from end to end.
         whole: bool,
-        /// Where it begins.
+        /// Start.
         at: Vec3,
     },
-    /// The border of a sheet of triangles crosses itself, or has no area, with the divisions that its
-    /// neighbours have; so it joins none of them.
+    /// The border of a sheet of triangles intersects itself, or has no area, with the divisions of
+    /// its neighbours; so it is joined to none of them.
     Border {
         /// The sheet.
         patch: String,
@@ -88,7 +88,7 @@ pub enum PanelNote {
         patch: String,
         /// (u, v) of a place on the knuckle.
         uv: [f64; 2],
-        /// Where.
+        /// Position.
         at: Vec3,
     },
     /// Number of further contradictions.
@@ -110,7 +110,7 @@ impl PanelNote {
         }
     }
 
-    /// True for what opens the mesh where the shape is closed.
+    /// True if it opens the mesh of a closed shape.
     pub fn is_error(&self) -> bool {
         !matches!(
             self,

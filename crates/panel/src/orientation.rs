@@ -1,4 +1,4 @@
-//! Which way the panels of each patch face: neighbours alike, and bodies outward.
+//! Orientation of the panels of each patch: consistent with neighbours, and outward for bodies.
 
 use crate::draft::indices;
 use crate::topology::{PanelTopology, PatchTopology};
@@ -6,10 +6,12 @@ use moldloft_num::Vec3;
 use moldloft_num::union_find::SignedUnionFind;
 use std::sync::Arc;
 
-/// An edge within this share of its length from a coordinate plane lies in it.
+/// Distance of an edge from a coordinate plane, relative to its length, within which it is in the
+/// plane.
 const IN_PLANE: f64 = 1e-9;
 
-/// Cones of open bodies that come to less than this share of their absolute volumes do not say where outside is.
+/// Volume of the cones of an open body, relative to their absolute volumes, below which it does not
+/// determine the outside.
 const NEARLY_FLAT: f64 = 0.05;
 
 /// The same of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
@@ -18,7 +20,7 @@ const NO_VOLUME: f64 = 1e-9;
 /// A panel edge with one panel: the patch and the places of both ends in its grid.
 pub(crate) type FreeEdge = (u32, u32, u32);
 
-/// How the patches of a mesh hang together.
+/// Connectivity of the patches of a mesh.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Orientation {
     /// For each patch the first one of its body, and whether it is turned against that one.
@@ -122,7 +124,7 @@ fn join_along_intervals(structure: &PanelTopology, bodies: &mut SignedUnionFind)
     }
 }
 
-/// The middle of the rims; where all of them lie in coordinate planes, in which mirrors or the water
+/// The centroid of the rims; if all of them are in coordinate planes, in which mirrors or the water
 /// close the bodies, a point of these planes: from there the closing parts have no cone.
 fn apex(points: &[Arc<Vec<Vec3>>], free_edges: &[FreeEdge]) -> Vec3 {
     let (mut centre, mut length) = (Vec3::<f64>::zero(), 0.0);

@@ -10,7 +10,7 @@ use moldloft_model::Graph;
 use moldloft_registry::{CurveRef, SurfaceRef};
 use std::sync::Arc;
 
-/// A face: a surface and the loops that bound what is shown of it.
+/// A face: a surface and the loops that bound its visible part.
 #[derive(Clone, Debug)]
 pub struct FaceOutline {
     /// The name of its object.
@@ -30,7 +30,7 @@ pub struct FaceOutline {
 /// A side of a loop.
 #[derive(Clone, Debug)]
 pub struct OutlineSide {
-    /// What it runs along.
+    /// Curve of the side.
     pub along: OutlineCurve,
     /// True when the loop runs against it.
     pub backwards: bool,
@@ -40,7 +40,7 @@ pub struct OutlineSide {
     pub at: Vec<f64>,
 }
 
-/// What a side runs along.
+/// Curve of a side.
 #[derive(Clone, Debug)]
 pub enum OutlineCurve {
     /// Edge 0..4 of the surface: v = 0, u = 1, v = 1, u = 0.

@@ -2,11 +2,11 @@
 //!
 //! `surfaces -> drafts -> roots cut into intervals -> counts -> structure -> joined vertices -> panels`
 //!
-//! A patch of nu x nv divisions has a grid of vertices. Its edges run along stretches of roots (see
-//! `moldloft_num::trace` and [`crate::roots`]); counts flow from patch to patch along these
-//! ([`crate::counts`]), and where an edge has several stretches their ends fall on divisions
-//! ([`crate::edges`]). Vertices of different patches become one when they are the same division of the
-//! same stretch, or lie at the same point object ([`crate::join`]); never because they look close. The
+//! A patch of nu x nv divisions has a grid of vertices. Its edges consist of stretches of roots
+//! (see `moldloft_num::trace` and [`crate::roots`]); counts propagate from patch to patch along
+//! these ([`crate::counts`]), and the ends of several stretches of an edge are at divisions
+//! ([`crate::edges`]). Vertices of different patches are identical if they are the same division of
+//! the same stretch, or at the same point object ([`crate::join`]); never by proximity. The
 //! position of a shared vertex is computed once, by the first patch in the order of declaration.
 
 use crate::draft::{Draft, Knuckles, drafts, indices};
@@ -32,7 +32,7 @@ use std::sync::Arc;
 /// Bytes that a panel takes while it is made and joined.
 const BYTES: u64 = 200;
 
-/// How often divisions are made more until panels are near enough.
+/// Maximum number of refinements until panels are accurate enough.
 const MAX_ROUNDS: usize = 4;
 
 /// The most panels of a model.
@@ -62,11 +62,12 @@ fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
         .help(format!("or hide it: {name}(..., visible = 0)")))
 }
 
-/// An edge, or a whole patch, within this share of the model's size from a coordinate plane lies in
-/// it: rounding of a sine must not open a seam or leave slivers at a plane of symmetry.
+/// Distance of an edge, or a whole patch, from a coordinate plane, relative to the model's size,
+/// within which it is in the plane: rounding of a sine must not open a seam or leave slivers at a
+/// plane of symmetry.
 const IN_PLANE: f64 = 1e-12;
 
-/// Which vertices there are and who computes them; independent of the scalar.
+/// The vertices and the patches that compute them; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Panelling {
     pub(crate) structure: Arc<PanelTopology>,
@@ -75,8 +76,8 @@ pub struct Panelling {
     pub(crate) bodies: Arc<Vec<MeshedBody>>,
     /// The joint's topology and that of the bodies.
     topology: Arc<Topology>,
-    /// The points of each patch by itself, in the order of the skeleton, at the state that this was
-    /// made of: as they were evaluated, and with exact zeros.
+    /// The points of each patch, in the order of the skeleton, in the original state of the graph:
+    /// as evaluated, and with exact zeros.
     raw: Vec<Arc<Vec<Vec3>>>,
     pub(crate) points: Vec<Arc<Vec<Vec3>>>,
     /// Parts of patches whose coordinate is exactly zero: patch, edge (4 for all of it), axis.
@@ -87,7 +88,7 @@ pub struct Panelling {
     measured: bool,
     /// The knuckles of the surfaces.
     knuckles: HashMap<Key, Knuckles>,
-    /// What the graph called its last change then.
+    /// The graph's last change at that time.
     clock: u64,
 }
 
@@ -118,7 +119,7 @@ impl Panelling {
         Self::made(graph, None, None, Some(&asked))
     }
 
-    /// How far the middles of panels of patches are from their surfaces, with half of what they are warped.
+    /// Maximum distance of the centres of panels from their surfaces, including half of their warp.
     fn off(&self, graph: &Graph<f64>) -> f64 {
         let Some(parameters) = self.parameters(graph) else { return 0.0 };
         let meshed =
@@ -145,9 +146,9 @@ impl Panelling {
         most
     }
 
-    /// The same with the counts of `nominal` where lengths would decide them. Of `before`, a
-    /// panelling of the same graph at an earlier state, what has not changed is taken over; the
-    /// result is the same without it.
+    /// The same with the counts of `nominal` where lengths would decide them. Unchanged parts of
+    /// `before`, a panelling of the same graph at an earlier state, are reused; the result is the
+    /// same without it.
     ///
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
@@ -266,7 +267,7 @@ impl Panelling {
         &self.topology
     }
 
-    /// What was noticed at the joins.
+    /// Notes about the joins.
     pub fn remarks(&self) -> &[PanelNote] {
         &self.remarks
     }
@@ -371,14 +372,14 @@ impl Panelling {
     }
 }
 
-/// What is said of a patch across whose panels a knuckle runs.
+/// The note about a patch whose panels are crossed by a knuckle.
 fn knuckle_note(draft: &Draft<'_>) -> Option<PanelNote> {
     let [u, v] = knuckle_across(&*draft.surface, &draft.knuckles)?;
     let at = draft.surface.jet(u, v, Order::Zero).p;
     Some(PanelNote::Knuckle { patch: draft.object.name.to_string(), uv: [u, v], at })
 }
 
-/// The parts of patches that lie in a coordinate plane but for rounding.
+/// The parts of patches that are in a coordinate plane except for rounding.
 fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
     let near = IN_PLANE * size;
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! What a graph, of any scalar, says of the patches of a topology: surfaces, edges, the points that divide
-//! them; and the vertices of each patch by itself.
+//! Values of a graph, of any scalar, for the patches of a topology: surfaces, edges, the points
+//! that divide them; and the vertices of each patch.
 
 use crate::border_curves;
 use crate::draft::surface_of;
@@ -19,8 +19,7 @@ use std::sync::Arc;
 /// Patches of fewer points than this are evaluated on the calling thread.
 const WORTH_A_THREAD: usize = 4096;
 
-/// The points of each patch by itself, evaluated with the scalar of `graph`; those that `kept` has
-/// are not evaluated again.
+/// The points of each patch, evaluated with the scalar of `graph`; those in `kept` are reused.
 pub(crate) fn evaluated_all<T: Scalar>(
     structure: &PanelTopology,
     names: &HashMap<Key, Arc<str>>,
@@ -66,7 +65,7 @@ pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Ke
     names
 }
 
-/// What a graph, of any scalar, says of the patches of a skeleton.
+/// Values of a graph, of any scalar, for the patches of a skeleton.
 pub(crate) struct PatchValues<'a, T: Scalar> {
     pub graph: &'a Graph<T>,
     pub structure: &'a PanelTopology,
@@ -98,7 +97,7 @@ impl<'a, T: Scalar> PatchValues<'a, T> {
         Self { graph, structure, names, keys, surfaces, edges }
     }
 
-    /// What says nothing of any patch, for where nothing is asked.
+    /// No values, for uses that need none.
     pub fn empty(
         graph: &'a Graph<T>,
         structure: &'a PanelTopology,

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 /// ways in which an alias may reach its root.
 const SAME_MARK: f64 = 1e-9;
 
-/// Where the parameter of a mark is to be had, with any scalar.
+/// Source of a mark's parameter, for any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkSource {
     /// The begin or end of a piece of an edge of a patch.
@@ -26,7 +26,7 @@ pub(crate) enum MarkSource {
     Bead { point: Key, turned: bool },
     /// A magnet on an edge, 0..4, of its surface.
     Magnet { point: Key, edge: u8, turned: bool },
-    /// A knuckle of a patch that crosses a piece of an edge at a share of its way.
+    /// A knuckle of a patch that crosses a piece of an edge at a fraction of its length.
     Knuckle { draft: u32, edge: u8, piece: u16, share: f64, turned: bool },
 }
 
@@ -93,7 +93,7 @@ pub(crate) struct EdgeInterval {
 /// A parameter of an edge, as something that can be had with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EdgeParameter {
-    /// Where a piece ends.
+    /// End of a piece.
     Piece(u16),
     /// Inside a piece, at a mark of its root; true for a piece that runs on a root against its own.
     Inside(u16, MarkSource, bool),
@@ -150,7 +150,7 @@ impl RootTable {
         self.identities.has_declared()
     }
 
-    /// How far apart the edges along a stretch may be by a declared join.
+    /// Maximum distance of the edges along a stretch by a declared join.
     pub fn tolerance(&self, interval: IntervalId) -> Option<f64> {
         self.identities.tolerance(self.root_of(interval))
     }
@@ -168,8 +168,8 @@ impl RootTable {
         })
     }
 
-    /// Corners and poles that are beads, rings or magnets mark the edges that they lie on, whether
-    /// or not an edge ends there.
+    /// Corners and poles that are beads, rings or magnets mark their edges, even if no edge ends
+    /// there.
     fn mark_points(&mut self, graph: &Graph<f64>, drafts: &[Draft], raw: &mut Vec<RawMark>) {
         let poles = |draft: &Draft| -> SmallVec<[Key; 4]> {
             let edges = draft.edges.edges.iter();
@@ -210,7 +210,7 @@ impl RootTable {
             }
             if let Some(last) = self.places.last_mut().filter(|_| same_root) {
                 let known = point.is_some_and(|p| last.points.contains(&p));
-                // What rounding puts beside a place on the way over shares is that place.
+                // A position that differs only by rounding of the fraction is the same.
                 let knuckle = is_knuckle(source) || is_knuckle(last.source);
                 if t == last.high || ((known || knuckle) && t - last.high <= SAME_MARK) {
                     if is_knuckle(last.source) {
@@ -290,8 +290,8 @@ fn is_knuckle(source: MarkSource) -> bool {
     matches!(source, MarkSource::Knuckle { .. })
 }
 
-/// The piece of an edge inside which a parameter of the edge lies, and its share of the way along it;
-/// `None` at the joint of two.
+/// The piece of an edge that contains a parameter of the edge, and the fraction of it; `None` at
+/// the junction of two.
 fn share_of(pieces: &[Piece<f64>], at: f64) -> Option<(usize, f64)> {
     let p = pieces.iter().position(|piece| at < piece.until + SAME_MARK)?;
     let begin = if p == 0 { 0.0 } else { pieces[p - 1].until };
@@ -312,7 +312,7 @@ fn against_root(source: MarkSource) -> MarkSource {
     }
 }
 
-/// The places on roots where a point lies by its own data.
+/// Positions of a point on roots, by its own data.
 fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource); 2]> {
     let mut places = SmallVec::new();
     if let Some(place) = &point.on_curve {

@@ -1,4 +1,4 @@
-//! What the edges of patches have in common, for those who build on it: writers of solids, of topology.
+//! Common edges of patches, for writers of solids and of topology.
 
 use crate::edges::along_edge;
 use crate::panelling::Panelling;
@@ -27,7 +27,7 @@ pub struct PatchEdge {
     pub patch: Arc<str>,
     /// Its edge, 0..4: v = 0, u = 1, v = 1, u = 0.
     pub edge: u8,
-    /// What it runs along, in increasing parameter; nothing for a pole.
+    /// Its stretches, in increasing parameter; empty for a pole.
     pub stretches: Vec<EdgeStretch>,
     /// The vertices of the mesh at its begin and end.
     pub vertices: [u32; 2],
@@ -36,8 +36,8 @@ pub struct PatchEdge {
 impl Panelling {
     /// The edges of all patches that have panels, in the order of the topology's patches, four each.
     ///
-    /// Numbers of stretches are those of this panelling. An edge whose divisions contradict those of its
-    /// neighbours, which is among the remarks, has no stretches though it has a length.
+    /// Numbers of stretches are those of this panelling. An edge whose divisions contradict those
+    /// of its neighbours, which is reported, has no stretches although it has a length.
     pub fn patch_edges(&self, graph: &Graph<f64>) -> Vec<PatchEdge> {
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let mut all = Vec::new();

@@ -9,7 +9,7 @@ use moldloft_registry::{Scalar, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// Which surfaces and panels bound the body; independent of the scalar.
+/// Surfaces and panels that bound the body; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Skin {
     sides: Vec<SkinSide>,
@@ -35,8 +35,9 @@ struct SkinSide {
 const MOST_PIECES: usize = 2500;
 
 impl Skin {
-    /// The skin of a mesh that `panelling` made of `graph`: the patches that bound the body. `mirrors` are the axes
-    /// whose plane through zero mirrors the model; what is open there is not open.
+    /// The skin of a mesh that `panelling` made of `graph`: the patches that bound the body.
+    /// `mirrors` are the axes normal to the model's planes of symmetry; edges open at these are not
+    /// open.
     pub fn new<T: Scalar>(
         panelling: &Panelling,
         mesh: &Mesh<f64>,
@@ -130,7 +131,8 @@ impl Skin {
         self.sides.is_empty() && self.faces.is_empty()
     }
 
-    /// The body with the scalar of `graph`; `None` when a surface has no value there, or none that is finite.
+    /// The body with the scalar of `graph`; `None` if a surface has no value there, or one that is
+    /// not finite.
     pub fn body<T: Scalar>(
         &self,
         panelling: &Panelling,

@@ -1,4 +1,4 @@
-//! What lies in one place without being joined: edges of patches, and corners on edges of others.
+//! Coincident but unjoined elements: edges of patches, and corners on edges of others.
 
 use crate::draft::indices;
 use crate::edges::along_edge;
@@ -11,8 +11,8 @@ use moldloft_model::Graph;
 use moldloft_num::{Order, Vec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Two places count as one within this share of the model's size: what a designer would call the
-/// same place, found by a projection or typed with few digits.
+/// Relative distance, in model sizes, within which positions coincide: the accuracy of projections
+/// and of coordinates typed with few digits.
 const SAME_PLACE: f64 = 1e-7;
 
 /// The most that are reported one by one.
@@ -30,13 +30,13 @@ struct OpenPanelEdge {
 
 type Cell = [i64; 3];
 
-/// Panels of one edge that lie on another.
+/// Panels of one edge that are on another.
 #[derive(Clone, Copy, Debug, Default)]
 struct Coincidence {
     panels: usize,
     length: f64,
     at: Vec3,
-    /// True when both edges lie on each other from end to end.
+    /// True if both edges coincide from end to end.
     whole: bool,
 }
 
@@ -51,7 +51,7 @@ struct OpenEdges {
 }
 
 impl OpenEdges {
-    /// `None` when there are none.
+    /// `None` without open edges.
     fn new(sides: Vec<OpenPanelEdge>) -> Option<Self> {
         let size = sides
             .iter()
@@ -95,9 +95,9 @@ impl OpenEdges {
 type EdgePair = [(usize, u8); 2];
 
 impl Panelling {
-    /// What lies in one place without being joined, for checks: edges of patches, and corners on open
-    /// edges of other patches, in the middle of a panel's edge (a T-junction) or at another vertex. It
-    /// takes longer than panelling itself.
+    /// Coincident but unjoined elements, for checks: edges of patches, and corners on open edges of
+    /// other patches, in the middle of a panel's edge (a T-junction) or at another vertex. It takes
+    /// longer than panelling itself.
     pub fn junctions(&self, graph: &Graph<f64>) -> Vec<PanelNote> {
         let Some(open) = OpenEdges::new(self.sides(graph)) else { return Vec::new() };
         let known = PatchValues::new(graph, &self.structure, &self.names);
@@ -138,7 +138,7 @@ impl Panelling {
         remarks
     }
 
-    /// The pairs of edges that lie in one place and have no vertices in common there.
+    /// The pairs of edges that coincide without common vertices.
     fn coincident(
         &self,
         open: &OpenEdges,
@@ -208,7 +208,8 @@ impl Panelling {
         Tag::among(tags.iter().map(|t| &**t)) == Tag::Symmetry
     }
 
-    /// True for edges along a common stretch: their counts contradict, which is said elsewhere.
+    /// True for edges along a common stretch: their counts contradict, which is reported
+    /// separately.
     fn along_one_curve(&self, a: (usize, u8), b: (usize, u8)) -> bool {
         let intervals = |(patch, k): (usize, u8)| {
             self.structure.patches[patch].runs[usize::from(k)].intervals()
@@ -217,8 +218,8 @@ impl Panelling {
         intervals(b).iter().any(|i| of_a.contains(i))
     }
 
-    /// True for a corner at a place of an edge whose counts contradict those along it, so that no vertex
-    /// of the edge is there: that is said elsewhere.
+    /// True for a corner on an edge whose counts contradict those along it, so that no vertex of
+    /// the edge is there: that is reported separately.
     fn at_loose_place(&self, patch: usize, [u, v]: [u8; 2], edge: (usize, u8)) -> bool {
         let EdgeRun::Loose(spans) = &self.structure.patches[edge.0].runs[usize::from(edge.1)]
         else {
@@ -236,8 +237,8 @@ impl Panelling {
             })
     }
 
-    /// The corners of patches that lie on open edges of others and are not joined to them, but for the
-    /// pairs of patches that `skipped` says.
+    /// The corners of patches that are on open edges of others and are not joined to them, except
+    /// for the pairs of patches in `skipped`.
     fn loose_corners(
         &self,
         open: &OpenEdges,

@@ -1,5 +1,5 @@
-//! What of a model its panels' connectivity follows from: patches, the stretches that their edges
-//! run along, and the counts of divisions on these.
+//! The skeleton of a model's panels: patches, the stretches of their edges, and the counts of
+//! divisions on these.
 
 use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
@@ -26,7 +26,7 @@ const LENGTH_STEPS: usize = 32;
 /// Any count of panels beyond this is refused elsewhere.
 const MOST_DIVISIONS: f64 = 1e6;
 
-/// What an edge of a patch runs along.
+/// Stretches of a patch's edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum EdgeRun {
     /// These stretches, with the count on each.
@@ -70,7 +70,7 @@ pub(crate) struct PatchTopology {
     pub corners: [Option<Key>; 4],
     /// The patch of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
-    /// True when its panels run against its natural normal, by what its surface says.
+    /// True if its panels are opposite to its natural normal, by the declaration of its surface.
     pub reversed: bool,
     /// False for a hidden surface of which a shown one is the image, and for a hem.
     pub meshed: bool,
@@ -84,11 +84,11 @@ pub(crate) struct PanelTopology {
     pub patches: Vec<PatchTopology>,
     /// The point objects at each place.
     pub points: Vec<Vec<Key>>,
-    /// The stretches of declared joins, and how far apart their edges may be.
+    /// The stretches of declared joins, with the maximum distance of their edges.
     pub declared: Vec<(IntervalId, f64)>,
 }
 
-/// The skeleton and what was found while it was made.
+/// The skeleton and the notes from its construction.
 pub(crate) struct SolvedTopology {
     pub structure: PanelTopology,
     pub remarks: Vec<PanelNote>,
@@ -96,8 +96,8 @@ pub(crate) struct SolvedTopology {
     pub measured: bool,
 }
 
-/// What the parts of a sum are weighed by: the lengths of a patch's lines between parameters, or, without lines, the
-/// parameters themselves.
+/// Weights of the parts of a sum: the lengths of a patch's lines between parameters, or, without
+/// lines, the parameters themselves.
 struct PartLengths {
     patch: usize,
     /// Edges 0..4; the longest counts.
@@ -110,8 +110,8 @@ fn side(patch: usize, direction: usize) -> Node {
     2 * patch + direction
 }
 
-/// How stretches of so many divisions are divided: as the first patch says, which runs along them
-/// backwards or not.
+/// Spacing of stretches with a given number of divisions: that of the first patch along them, and
+/// whether its direction is reversed.
 type IntervalShares = HashMap<(IntervalId, u32), (bool, Shares)>;
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
@@ -201,7 +201,7 @@ impl TopologySolver<'_, '_> {
                 let stated = self.drafts[patch].object.head.divided;
                 for direction in 0..2 {
                     if !stated || self.divider.stated[side(patch, direction)].is_none() {
-                        // What an image says nothing of is as with its original.
+                        // An image without divisions has those of its original.
                         self.divider.stated[side(patch, direction)] = None;
                         self.link(side(patch, direction), side(original, direction), false);
                     }
@@ -504,7 +504,7 @@ impl TopologySolver<'_, '_> {
         (first..first + self.roots.len()).contains(&node)
     }
 
-    /// The words for what a stretch is part of.
+    /// The description of a stretch.
     fn curve(&self, interval: IntervalId) -> String {
         let name = |key: Key| words_for(self.graph, key);
         match self.roots.root_of(interval) {
@@ -591,7 +591,7 @@ impl TopologySolver<'_, '_> {
                 && counts[side(original, 1)] == divisions[1]
             {
                 for k in 0..4 {
-                    // Its vertices are the images of those of its original, wherever these lie.
+                    // Its vertices are the images of those of its original, at any position.
                     if matches!(&runs[k], EdgeRun::Along(spans) if spans.len() == 1) {
                         plans[k] = EdgePlan::Like(original as u32);
                     }
@@ -698,8 +698,8 @@ pub(crate) fn words_for(graph: &Graph<f64>, key: Key) -> String {
     }
 }
 
-/// How many panels of about `size` a length takes: of equal ones none is longer; of growing ones
-/// the smallest has that size.
+/// Number of panels of about `size` in a length: equal ones are not longer; the smallest of growing
+/// ones has that size.
 fn count_of(length: f64, size: f64, spacing: Option<Spacing>) -> u32 {
     let ratio = length / size;
     let n = match spacing {

@@ -22,21 +22,21 @@ pub(crate) struct MeshedBody {
     pub tags: Vec<Arc<str>>,
     pub reversed: bool,
     pub facets: Arc<TriangleBody<f64>>,
-    /// The parameters at which its border is divided, curve by curve; none when it has no border.
+    /// The parameters of the divisions of its border, curve by curve; empty without a border.
     pub divided: Vec<Vec<f64>>,
-    /// The patch without panels that stands for each curve of its border, where there is one.
+    /// The patch without panels that represents each curve of its border, if there is one.
     border_curves: Vec<Option<usize>>,
-    /// Its border where its triangles are to be as near to the surface as is asked for.
+    /// Its border, if a required accuracy of the triangles is given.
     finer: Option<Border<f64>>,
-    /// Which of its vertices are those of each curve.
+    /// Vertices of each curve.
     pub border_vertices: Vec<Vec<u32>>,
     /// The number of each of its vertices in the mesh, and which are its own.
     pub vertices: Vec<u32>,
     own: Vec<u32>,
 }
 
-/// The shown bodies in the order of declaration, as they are by themselves.
-/// `fineness`: how near sheets are to be to their surfaces, where that is asked for.
+/// The visible bodies in the order of declaration, without joins. `fineness`: the required accuracy
+/// of sheets, if given.
 pub(crate) fn bodies(graph: &Graph<f64>, fineness: Option<&Fineness>) -> Vec<MeshedBody> {
     let shown = graph.objects().filter(|o| o.head.shown());
     shown
@@ -72,9 +72,9 @@ pub(crate) fn with_bodies(
     Ok(builder.build().into())
 }
 
-/// Divides the borders of the bodies as the patches that stand for them are, and gives all of their
-/// vertices a number; `before` are those of an earlier state and what it calls unchanged. Returns what
-/// does not join.
+/// Divides the borders of the bodies like the patches that represent them, and numbers all of their
+/// vertices; `before` are those of an earlier state and its test for unchanged objects. Returns
+/// notes about missing joins.
 pub(crate) fn sewn(
     bodies: &mut [MeshedBody],
     known: &PatchValues<f64>,
@@ -158,7 +158,7 @@ impl MeshedBody {
             && self.facets.groups == o.facets.groups
     }
 
-    /// How many panels it has.
+    /// Number of panels.
     pub fn panels(&self) -> u64 {
         (self.facets.triangles.len() - self.facets.quads) as u64
     }
@@ -225,7 +225,7 @@ impl MeshedBody {
         quads.flatten().chain(triangles.iter().filter_map(|t| self.face(t)))
     }
 
-    /// A panel of four corners; none where joins have made it less.
+    /// A panel of four corners; `None` if joins have merged some.
     fn quad(&self, [a, b, c]: [u32; 3], d: u32) -> Option<[u32; 4]> {
         let at = [a, b, c, d].map(|v| self.vertices[v as usize]);
         let apart = (0..4).all(|i| (0..i).all(|k| at[i] != at[k]));
@@ -302,7 +302,7 @@ impl MeshedBody {
     }
 }
 
-/// The parameters at which the curves of a border are divided; as each is by itself where no patch says.
+/// The parameters of the divisions of a border's curves; the default of each without a patch.
 fn parameters<T: Scalar>(
     patches: &[Option<usize>],
     known: &PatchValues<T>,

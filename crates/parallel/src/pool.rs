@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Processes that worked in parallel, each a descendant of the one before by `fork` without `exec`.
 static GENERATIONS: [Generation; MAX_GENERATIONS] = [const { Generation::new() }; MAX_GENERATIONS];
 
-/// Beyond so many, work waits for a pool of its own to start.
+/// Number of pools beyond which work waits for a pool of its own to start.
 const MAX_GENERATIONS: usize = 64;
 
 /// A process and its pool. No process ever waits for a generation of another: a `fork` in the middle of the making of a
 /// pool leaves the child a lock that nobody opens.
 struct Generation {
-    /// The process; 0 while there is none.
+    /// The process; 0 before the first.
     process: AtomicU32,
     /// Its pool. The first process has Rayon's own, so that tests may install another.
     pool: OnceLock<ThreadPool>,

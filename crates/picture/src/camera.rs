@@ -1,8 +1,8 @@
-//! The camera: directions, projections and the fit of what is to be seen into the picture.
+//! The camera: directions, projections and the fit of the scene into the picture.
 
 use moldloft_num::{Box3, Vec3};
 
-/// From where the model is looked at; distance and aim follow from what is to be seen.
+/// Direction of view; distance and aim follow from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Direction from the model to the viewer about z, from x towards y, in degrees.
@@ -122,7 +122,7 @@ impl Aimed {
         }))
     }
 
-    /// Where a point appears.
+    /// Position of a point in the picture.
     pub fn see(&self, p: Vec3) -> ScreenPoint {
         let [x, y, z] = self.local(p);
         let (factor, near) = match self.distance {

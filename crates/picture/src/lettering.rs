@@ -1,7 +1,7 @@
 //! Names on pictures, in letters of single strokes.
 //!
-//! A letter stands in a grid of 5 columns (0 to 4) and 9 rows: descenders reach down to row 0, the base line is row 2, small letters
-//! are as high as row 6, capitals and digits as row 8.
+//! A letter is in a grid of 5 columns (0 to 4) and 9 rows: descenders extend to row 0, the base
+//! line is row 2, small letters are as high as row 6, capitals and digits as row 8.
 
 use crate::camera::ScreenPoint;
 use crate::raster::Raster;
@@ -105,8 +105,9 @@ fn apart(a: Area, b: Area) -> bool {
     a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1]
 }
 
-/// Writes names beside their points (`seen`, in samples), the first ones first: to the right above, left above, right below or left
-/// below, wherever no other name or point is. Where there is no room a name is left out.
+/// Writes names beside their points (`seen`, in samples), the first ones first: above right, above
+/// left, below right or below left, where no other name or point is. Without a free position a name
+/// is left out.
 pub(crate) fn write(
     raster: &mut Raster,
     labels: &[(&PointName, [f32; 2])],

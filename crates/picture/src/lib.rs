@@ -20,7 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Invariant: this crate performs no input or output and asks for no window; the same input gives the
+//! Invariant: this crate performs no input or output and opens no window; the same input gives the
 //! same bytes.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

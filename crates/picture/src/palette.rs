@@ -24,7 +24,7 @@ pub const PALETTE: [[u8; 3]; 16] = [
     [0xde, 0xe2, 0xe7],
 ];
 
-/// What patches without colour take in turn.
+/// Colours of patches without their own, in turn.
 const TURN: [usize; 8] = [9, 14, 10, 12, 11, 13, 6, 7];
 
 /// The colour of a patch: its own by index, else by role, else the next in turn.

@@ -27,7 +27,7 @@ pub(crate) fn length(x: f32, y: f32) -> f32 {
 /// Lines drawn along the sides of a panel.
 #[derive(Clone, Copy)]
 pub(crate) struct PanelSides {
-    /// Which sides (from corner k to k + 1) carry a line.
+    /// Sides (from corner k to k + 1) with a line.
     pub shown: [bool; 3],
     /// Half the line's width in samples.
     pub half_width: f32,
@@ -106,8 +106,8 @@ impl Raster {
         }
     }
 
-    /// Draws a line of `half_width` samples, where it is hidden by no more than the first of `depths` and is before
-    /// what is seen there by no more than the second, in nearness.
+    /// Draws a line of `half_width` samples, where it is at most the first of `depths` behind the
+    /// visible surface and at most the second in front of it.
     pub fn line(
         &mut self,
         a: ScreenPoint,

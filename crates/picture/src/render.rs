@@ -17,20 +17,21 @@ pub struct StyledPolyline {
     pub colour: [u8; 3],
     /// Width in picture points.
     pub width: f32,
-    /// It lies on the panelled surface, as a contour does: not drawn where it stands out of the panels' outline.
+    /// True for a line on the panelled surface, such as a contour: parts outside the outline of the
+    /// panels are not drawn.
     pub on_surface: bool,
 }
 
-/// How a patch looks.
+/// Appearance of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PatchStyle {
     /// sRGB colour.
     pub colour: [u8; 3],
-    /// Draw it a little nearer than it is, so that it covers a surface that it lies in.
+    /// True to draw it slightly nearer, so that it covers a coincident surface.
     pub raised: bool,
 }
 
-/// How the picture is made.
+/// Options of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Picture points across.
@@ -51,7 +52,7 @@ pub struct Options {
     pub axes: bool,
     /// Colours of the background, top and bottom.
     pub background: [[u8; 3]; 2],
-    /// How the patches look, in their order, instead of their own colours.
+    /// Appearance of the patches, in order, instead of their own colours.
     pub looks: Option<Vec<PatchStyle>>,
     /// Names beside points, the most important first; not on mirror images.
     pub labels: Vec<PointName>,
@@ -81,9 +82,9 @@ impl Default for Options {
 pub enum PictureError {
     /// A side of the picture is 0 or above [`PictureError::LARGEST`].
     Size {
-        /// Picture points asked for.
+        /// Requested width in pixels.
         width: usize,
-        /// Picture points asked for.
+        /// Requested height in pixels.
         height: usize,
     },
     /// A vertex is not at a finite position.
@@ -93,7 +94,7 @@ pub enum PictureError {
         /// The vertex.
         vertex: u32,
     },
-    /// The work was ended by who asked for it.
+    /// Cancelled by the caller.
     Ended,
     /// The encoder failed.
     Encoding(String),
@@ -123,7 +124,8 @@ impl fmt::Display for PictureError {
 
 impl std::error::Error for PictureError {}
 
-/// So many panels or sides are drawn between two looks at whether the work goes on; each covers the picture at most.
+/// Number of panels or sides drawn between two checks for cancellation; each covers at most the
+/// picture.
 const AT_ONCE: usize = 16;
 
 /// Colour of the rims of patches.
@@ -141,7 +143,7 @@ pub fn render(
     render_while(mesh, lines, options, &|| true)
 }
 
-/// As [`render`], as long as `go_on` says so, which is asked every few panels and lines.
+/// As [`render`]; stops when `go_on`, which is called every few panels and lines, returns false.
 ///
 /// # Errors
 /// As [`render`], and [`PictureError::Ended`].
@@ -184,7 +186,7 @@ pub fn render_while(
     let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
     goes_on()?;
     for &side in &sides {
-        // The depths, in diagonals: by how much panels may hide a line, and how far before them it may be.
+        // The depths, in diagonals: maximum distance behind panels, and in front of them.
         let mut stroke = |p: Vec3, q: Vec3, half_width: f32, depths: [f64; 2], colour: [u8; 3]| {
             let (p, q) = (image(p, side), image(q, side));
             let middle = (p + q) * 0.5;
@@ -202,14 +204,15 @@ pub fn render_while(
                 goes_on()?;
             }
             let [p, q] = ends.map(|v| mesh.positions()[v as usize]);
-            // Where a half meets its image the surface goes on.
+            // At the plane of symmetry the surface continues.
             let within = |k: usize| options.mirrors[k] && p[k] == 0.0 && q[k] == 0.0;
             if !(0..3).any(within) {
                 stroke(p, q, 0.75, [4e-4, f64::INFINITY], RIM);
             }
         }
         for line in lines {
-            // A line on the surface lies within its panels' sagitta of them; near the outline the panels turn away from it.
+            // A line on the surface is within the sagitta of its panels; near the outline the
+            // panels turn away from it.
             let before = if line.on_surface { 2e-2 } else { f64::INFINITY };
             goes_on()?;
             for ends in line.points.windows(2).filter(|w| w.iter().all(|p| p.is_finite())) {
@@ -234,8 +237,8 @@ pub fn render_while(
     encoded(&raster.halved(), width, height)
 }
 
-/// About how far a surface is from its panels at most: an edge of length l between normals at an angle a is a l / 8 from its arc.
-/// Creases do not count.
+/// Approximate maximum distance of a surface from its panels: an edge of length l between normals
+/// at an angle a is a l / 8 from its arc. Creases do not count.
 fn sagitta(mesh: &Mesh) -> f64 {
     let positions = mesh.positions();
     let mut most = 0.0_f64;
@@ -285,7 +288,7 @@ struct Painter<'a> {
     aimed: &'a Aimed,
     gamma: &'a Gamma,
     options: &'a Options,
-    /// How much nearer raised patches are.
+    /// Offset of raised patches.
     lift: f64,
 }
 
@@ -341,14 +344,14 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Where a raised point is seen: in its place, but nearer.
+    /// Image of a raised point: at its position, but nearer.
     fn raised(&self, p: Vec3) -> ScreenPoint {
         let nearer = self.aimed.see(p + self.aimed.towards(p) * self.lift);
         ScreenPoint { near: nearer.near, ..self.aimed.see(p) }
     }
 
-    /// How strongly the outlines of a patch's panels are drawn, 0 to 1: of a patch that is finer than can be seen
-    /// none, lest those of its few larger panels show as stains.
+    /// Strength of the outlines of a patch's panels, 0 to 1; 0 for a patch too fine to show them,
+    /// since those of a few larger panels would appear as stains.
     fn outlines(&self, faces: &[[u32; 4]], seen: &[ScreenPoint]) -> f32 {
         if !self.options.edges {
             return 0.0;
@@ -380,7 +383,7 @@ impl Painter<'_> {
     /// The light that a surface of normal `n` (of its panel: `flat`) sends to the viewer.
     fn light(&self, base: [f32; 3], n: Vec3, flat: Vec3, p: Vec3) -> [f32; 3] {
         let eye = self.aimed.towards(p);
-        // What is seen from behind is the inside: lit as from its own side, a little darker.
+        // The back of a surface is the inside: lit from its own side, a little darker.
         let inside = flat.dot(eye) < 0.0;
         let n = if inside { -n } else { n };
         let key = self.aimed.world([-0.45, 0.7, 0.55]);
@@ -394,7 +397,7 @@ impl Painter<'_> {
     }
 }
 
-/// How broad a panel is in the picture, across its longest side.
+/// Width of a panel in the picture, across its longest side.
 fn breadth([a, b, c, d]: [ScreenPoint; 4]) -> f32 {
     let cross = (c.x - a.x) * (d.y - b.y) - (c.y - a.y) * (d.x - b.x);
     let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| length(q.x - p.x, q.y - p.y));
@@ -435,7 +438,7 @@ fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
 /// The PNG file of picture points, three bytes each, row by row from the top.
 ///
 /// # Errors
-/// What the encoder says.
+/// The error of the encoder.
 ///
 /// # Panics
 /// When there are not `3 * width * height` bytes.

@@ -21,8 +21,8 @@ fn vectors(numbers: &mut [f64]) -> &mut [Vec3] {
 /// The most points of one array.
 const MOST_POINTS: usize = 1 << 27;
 
-/// Refuses more points, each of so many bytes, than may be held, before anything is made: neither Rust nor NumPy
-/// could refuse them by name later.
+/// Refuses more points, of `bytes` each, than the limits allow, before any allocation: neither Rust
+/// nor NumPy could give a proper error later.
 pub fn room(shape: [usize; 2], bytes: usize) -> PyResult<usize> {
     let [m, n] = shape;
     let count = m.checked_mul(n).filter(|count| *count <= MOST_POINTS);
@@ -38,8 +38,8 @@ pub fn room(shape: [usize; 2], bytes: usize) -> PyResult<usize> {
     Ok(count)
 }
 
-/// A new array of vectors, its last extent 3, which only its owner can reach: work in another thread fills it, and what
-/// is interrupted takes it along.
+/// A new array of vectors, its last extent 3, without other references: another thread fills it,
+/// and interrupted work keeps it alive.
 pub struct Unshared<D> {
     array: Py<PyArray<f64, D>>,
     first: NonNull<f64>,

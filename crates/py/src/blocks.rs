@@ -80,7 +80,7 @@ impl PyBlocks {
         .collect()
     }
 
-    /// Where blocks meet: (block, face, begin, end) of both sides, and the CGNS transform.
+    /// Interfaces of blocks: (block, face, begin, end) of both sides, and the CGNS transform.
     fn interfaces(&self) -> Vec<(Side, Side, [i32; 3])> {
         let (all, _) = self.blocked.blocks.interfaces();
         all.iter()

@@ -36,7 +36,7 @@ impl PyLabel {
     }
 }
 
-/// One fault, warning or remark. `str()` gives it as the command prints it.
+/// One error, warning or note. `str()` gives it as the command prints it.
 #[pyclass(frozen, get_all, name = "Diagnostic", module = "moldloft")]
 #[derive(Clone)]
 pub struct PyDiagnostic {

@@ -32,7 +32,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How many scattered points a thread evaluates at a time.
+/// Number of scattered points that a thread evaluates at a time.
 const CHUNK: usize = 1 << 14;
 
 /// A model that is at least this large is changed on another thread, so that Ctrl-C is heard.
@@ -108,7 +108,7 @@ impl PyDocument {
         &self.searches
     }
 
-    /// What long work may use; it cancels it.
+    /// Limits of long work; also cancels it.
     pub(crate) fn budget(&self) -> &Arc<Budget> {
         &self.budget
     }
@@ -207,14 +207,14 @@ impl PyDocument {
         document.diagnostics().iter().map(|d| d.to_data(sources).into()).collect()
     }
 
-    /// What is remarkable about the value that `eval` gave last.
+    /// Warnings about the last value of `eval`.
     fn expression_remarks(&self, py: Python<'_>) -> Vec<PyDiagnostic> {
         let document = self.lock(py);
         let sources = document.sources();
         document.expression_remarks().iter().map(|d| d.to_data(sources).into()).collect()
     }
 
-    /// What the text or file that was written last does not keep of the model.
+    /// Parts of the model that the last written text or file does not keep.
     fn export_remarks(&self, py: Python<'_>) -> Vec<PyDiagnostic> {
         let document = self.lock(py);
         let sources = document.sources();
@@ -334,7 +334,7 @@ impl PyDocument {
         Ok(dict)
     }
 
-    /// What the program printed, a line each.
+    /// Lines printed by the program.
     fn printed(&self, py: Python<'_>) -> Vec<String> {
         self.lock(py).printed().to_vec()
     }
@@ -354,7 +354,7 @@ impl PyDocument {
         self.lock(py).written().map(|(name, _)| name.to_owned()).collect()
     }
 
-    /// What the program wrote: names and contents; nothing is on the disk yet.
+    /// Files written by the program: names and contents; nothing is on the disk yet.
     fn written<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyBytes>)> {
         let document = self.lock(py);
         document.written().map(|(name, bytes)| (name.to_owned(), PyBytes::new(py, bytes))).collect()
@@ -377,7 +377,7 @@ impl PyDocument {
         variables.into_iter().map(data).collect()
     }
 
-    /// The words that may stand at the end of the text followed by `line`.
+    /// Possible words at the end of the text followed by `line`.
     fn complete(&self, py: Python<'_>, line: &str) -> Vec<String> {
         self.lock(py).completions_of(line).into_iter().map(|c| c.word).collect()
     }
@@ -474,7 +474,7 @@ impl PyDocument {
         let [points] = self.many(py, [us.len(), 3], move |[out], budget| {
             let chunks = out.par_chunks_mut(CHUNK);
             let parameters = us.par_chunks(CHUNK).zip(vs.par_chunks(CHUNK));
-            // What is left after a Ctrl-C is not looked at.
+            // The rest after a Ctrl-C is not used.
             let _ = chunks.zip(parameters).try_for_each(|(out, (us, vs))| {
                 some(&surface, out, us, vs);
                 budget.poll()
@@ -605,7 +605,7 @@ impl PyDocument {
         ])
     }
 
-    /// Corners that lie on edges of other patches without being joined to them.
+    /// Corners on edges of other patches without a join.
     fn junctions(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
         let found = self.long_checked(py, |d| d.junctions().map_err(|e| vec![e]))?;
         let document = self.lock(py);
@@ -651,8 +651,8 @@ impl PyDocument {
         Ok(derivatives(py, &columns))
     }
 
-    /// Hydrostatics: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
-    /// heel, whether trim and heel are free; a dictionary for each.
+    /// Hydrostatics: rows of the given quantity (`level`, `draft`, `displacement`), its value,
+    /// trim, heel, and whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (rows, density, gravity, centre, sides, by, accuracy, of_weights, flooded))]
     fn floating<'py>(
@@ -818,7 +818,7 @@ impl PyDocument {
         Ok(PyBytes::new(py, &picture))
     }
 
-    /// A picture in which the objects of one kind stand out.
+    /// A picture with the objects of one kind highlighted.
     fn portrait<'py>(
         &self,
         py: Python<'py>,
@@ -900,11 +900,11 @@ pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr 
     plain_error(format!("{takes}, but `{name}` is {}", found.class().with_article()))
 }
 
-/// The shortest time between two looks at the budget that is worth beginning anew.
+/// Minimum time between two checks of the budget.
 const RUN: Duration = Duration::from_millis(20);
 
-/// Work on items in runs, the budget looked at in between. The first run is of so many; they grow while they are short,
-/// for what a run prepares for itself is prepared anew in the next.
+/// Work on items in runs, with checks of the budget between them. The first run has `first` items;
+/// they grow while they are short, since each run repeats its preparation.
 fn in_runs(count: usize, first: usize, budget: &Budget, mut work: impl FnMut(Range<usize>)) {
     let (mut at, mut step) = (0, first);
     while at < count && !budget.is_spent() {

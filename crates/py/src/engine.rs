@@ -12,14 +12,14 @@ use pyo3::prelude::*;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
-/// What stops the work under way.
+/// Message that stops the current work.
 const CANCEL: &[u8] = br#"{"kind":"cancel"}"#;
 
 /// Stack of the working thread, for texts that nest deeply.
 const STACK: usize = 64 << 20;
 
-/// Confines the process to so many bytes for models, and answers requests until standard input ends. The first message
-/// is the text.
+/// Limits the process's memory for models, and answers requests until standard input ends. The
+/// first message is the text.
 #[pyfunction]
 pub fn engine(
     py: Python<'_>,
@@ -38,7 +38,7 @@ pub fn engine(
     });
 }
 
-/// What is counted so that a request to stop reaches the one that it was sent for, and no later one.
+/// Numbers of requests, so that a cancellation reaches only the request that it was sent for.
 struct Turns {
     budget: Arc<Budget>,
     counts: Mutex<TurnCounts>,
@@ -50,7 +50,7 @@ struct TurnCounts {
     received: u64,
     /// The last request that was begun.
     begun: u64,
-    /// Whether it is under way.
+    /// True while it is running.
     running: bool,
     /// The request that is to be stopped when it begins.
     stopped: Option<u64>,
@@ -153,7 +153,7 @@ impl PySession {
         Self { inner: Mutex::new(session), read }
     }
 
-    /// The files that were read: as they were asked for, by which text, their names and bytes.
+    /// The files that were read: path as requested, requesting text, name and bytes.
     fn files<'py>(
         &self,
         py: Python<'py>,

@@ -47,7 +47,7 @@ fn array<'py>(py: Python<'py>, block: &StructuredGrid) -> Bound<'py, PyArray4<f6
     Array4::from_shape_fn((ni, nj, nk, 3), at).to_pyarray(py)
 }
 
-/// The blocks of a Plot3D file of any variant, as arrays (ni, nj, nk, 3), and what the variant is.
+/// The blocks of a Plot3D file of any variant, as arrays (ni, nj, nk, 3), and the variant.
 #[pyfunction]
 pub fn read_plot3d<'py>(
     py: Python<'py>,
@@ -171,7 +171,7 @@ pub fn grids_as_stl<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Rows of coordinates in text: points (n, 3), and what the text is besides.
+/// Rows of coordinates in text: points (n, 3), and the properties of the text.
 #[pyfunction]
 pub fn read_points<'py>(
     py: Python<'py>,

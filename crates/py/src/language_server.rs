@@ -6,8 +6,8 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Serves an editor until it goes; texts are run by a process that the command starts, which calls
-/// [`language_engine`]. False when the editor went without the protocol's goodbye.
+/// Serves an editor until it disconnects; texts are run by a process that the command starts, which
+/// calls [`language_engine`]. False if the editor left without the protocol's shutdown.
 #[pyfunction]
 pub fn language_server(py: Python<'_>, program: PathBuf, arguments: Vec<OsString>) -> bool {
     let command = EngineCommand { program, arguments };

@@ -1,7 +1,7 @@
 //! The Python extension `moldloft._core`: classes over documents and meshes, no logic.
 //!
-//! `Document -> Python object`, `&[Vec3] -> NumPy array`, `Diagnostic -> exception`. What users see
-//! is `python/moldloft`, which wraps these classes.
+//! `Document -> Python object`, `&[Vec3] -> NumPy array`, `Diagnostic -> exception`. The public
+//! interface is `python/moldloft`, which wraps these classes.
 //!
 //! Invariant: this crate is the only one that knows Python. It opens no files: models are read
 //! through `moldloft-host`, and Python reads and writes all others.

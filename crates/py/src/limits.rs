@@ -16,7 +16,7 @@ pub fn limits() -> (u64, u64, u64, f64) {
     (memory, steps, objects, seconds)
 }
 
-/// Sets what a run may use.
+/// Sets the limits of runs.
 #[pyfunction]
 pub fn set_limits(memory: u64, steps: u64, objects: u64, seconds: f64) {
     moldloft::budget::set_limits(Limits { memory, steps, objects, seconds });

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 
-/// So many panels are worth another thread.
+/// Number of panels from which work is done in another thread.
 const LARGE: usize = 50_000;
 
 /// Patch, name, tag, turned, vertices.
@@ -22,7 +22,7 @@ type BlockFacts<'py> = (usize, String, String, bool, Bound<'py, PyArray2<u32>>);
 #[pyclass(frozen, name = "Mesh", module = "moldloft._core")]
 pub struct PyMesh {
     panelled: Arc<Panelled>,
-    /// Some of its patches, when not all were asked for.
+    /// Some of its patches, unless all were requested.
     part: Option<Mesh>,
 }
 
@@ -31,7 +31,7 @@ impl PyMesh {
         Self { panelled, part }
     }
 
-    /// What takes long for many panels, in another thread then, so that Ctrl-C is heard.
+    /// Work that is long for many panels, in another thread then, so that Ctrl-C is handled.
     fn of_mesh<R: Send + 'static>(
         slf: &Bound<'_, Self>,
         work: impl FnOnce(&Mesh) -> R + Send + 'static,
@@ -106,7 +106,7 @@ impl PyMesh {
         all.iter().enumerate().map(|(k, q)| slf.get().patch(slf.py(), k, q.as_ref())).collect()
     }
 
-    /// What is open, by patch and edge; what closes each; and whether that is all.
+    /// Open edges, by patch and edge; the remedy of each; and whether these are all.
     fn closure<'py>(
         slf: &Bound<'py, Self>,
         mirrors: &str,

@@ -7,7 +7,8 @@ use moldloft::io::{obj, off, ply, stl};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// A mesh: points (n, 3), faces (m, 4), groups of faces by name with their first and one past their last, remarks.
+/// A mesh: points (n, 3), faces (m, 4), groups of faces by name with their first and one past their
+/// last, warnings.
 type Foreign<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<u32>>,

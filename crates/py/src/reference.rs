@@ -39,7 +39,7 @@ pub fn statements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     moldloft::lang::INSERTED_FILES.iter().map(describe).collect()
 }
 
-/// A function that is part of the language itself; its signature says what it takes.
+/// A function of the language itself, with the signature of its arguments.
 fn describe_builtin<'py>(
     py: Python<'py>,
     builtin: &moldloft::lang::Builtin,

@@ -30,8 +30,8 @@ const EDGE_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
 /// In picture points.
 const EDGE_WIDTH: f32 = 1.5;
 
-/// Reads what a person names: beside the running script first, then from the present folder. What the lines of a
-/// file name is read as a model reads: inside of the folder only.
+/// Reads files named by the user: beside the running script first, then from the current folder.
+/// Files named in the lines of a file are read as in a model: inside the folder only.
 struct Disk {
     folder: Option<PathBuf>,
     confined: Arc<AtomicBool>,
@@ -65,7 +65,7 @@ impl Files for Disk {
 /// A dimension that the picture suggests: axis, from, to, value, and whether the depth is a guess.
 type Suggested = (String, u32, u32, f64, bool);
 
-/// What a reply is about: kind, points, lines, faces, names, axis, value, place, suggestion.
+/// Subject of a reply: kind, points, lines, faces, names, axis, value, place, suggestion.
 type About = (
     &'static str,
     Vec<u32>,
@@ -78,7 +78,7 @@ type About = (
     Option<Suggested>,
 );
 
-/// A reply: severity, code, text, next step, a file to write, and what it is about.
+/// A reply: severity, code, text, next step, a file to write, and its subject.
 type Answer<'py> = (
     &'static str,
     Option<u16>,
@@ -198,8 +198,8 @@ fn mesh_arrays<'py>(
     Ok((vertices, faces))
 }
 
-/// What happened to an object: its name; added, removed, another body; points drawn, moved, removed; lines;
-/// faces; numbers.
+/// Change of an object: its name; added, removed, changed body; points drawn, moved, removed;
+/// lines; faces; numbers.
 type Changed = (String, [bool; 3], [Vec<u32>; 5], Vec<String>);
 
 fn changed(c: ObjectChange) -> Changed {
@@ -234,7 +234,7 @@ impl PySketch {
         Ok(replies.into_iter().map(|r| answer(py, r)).collect())
     }
 
-    /// The answers to a line, and what it changed as JSON.
+    /// The answers to a line, and its changes as JSON.
     fn report<'py>(
         &self,
         py: Python<'py>,
@@ -250,7 +250,7 @@ impl PySketch {
         self.lock(py).begin().map_err(|fault| plain_error(fault.text))
     }
 
-    /// Ends it, and says what it changed.
+    /// Ends it, and returns its changes.
     fn commit(&self, py: Python<'_>) -> PyResult<Vec<Changed>> {
         Ok(self.long(py, |s| s.commit())?.into_iter().map(changed).collect())
     }
@@ -291,7 +291,7 @@ impl PySketch {
         Ok(found.ok_or_else(|| no_object(name))?.into_iter().map(|s| s.map(suggested)).collect())
     }
 
-    /// Where the dimensions stand on the page, or in a view of the body.
+    /// Positions of the dimensions on the page, or in a view of the body.
     #[pyo3(signature = (name, view=None))]
     fn marks(&self, py: Python<'_>, name: &str, view: Option<String>) -> PyResult<Vec<Mark>> {
         self.lock(py).object(name).ok_or_else(|| no_object(name))?;
@@ -439,7 +439,7 @@ impl PySketch {
         Bound<'py, PyArray3<f64>>,
         Vec<Option<String>>,
     )> {
-        // Whether it is the object that is missing or one of the numbers.
+        // Whether the object or one of the numbers is missing.
         self.lock(py).object(name).ok_or_else(|| no_object(name))?;
         let wanted = name.to_owned();
         let gradient = self.long(py, move |s| s.gradient(&wanted, &by))?;

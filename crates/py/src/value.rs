@@ -102,7 +102,7 @@ fn block<'py>(py: Python<'py>, layers: &[Value<f64>]) -> PyResult<Bound<'py, PyA
     }
 }
 
-/// A piece of a body: what it is called, and its triangles.
+/// A piece of a body: its name, and its triangles.
 fn group<'py>(
     py: Python<'py>,
     group: &moldloft::rows::Group,

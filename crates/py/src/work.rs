@@ -8,10 +8,11 @@ use std::sync::{Arc, Mutex, OnceLock, mpsc};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
-/// How often signals are looked at while work is under way.
+/// Interval of checks for signals during work.
 const SIGNALS_EVERY: Duration = Duration::from_millis(30);
 
-/// How long a cancelled run may take to notice before it is left to itself: together a tenth of a second with the above.
+/// Maximum time for a cancelled run to end before it is abandoned: together with the above less
+/// than a tenth of a second.
 const STOP_TIMEOUT: Duration = Duration::from_millis(50);
 
 /// Stack of the working thread: that of the main thread on Linux.
@@ -19,8 +20,9 @@ const STACK: usize = 8 << 20;
 
 /// Runs `work` on a thread of its own, without Python's lock, and looks out for Ctrl-C.
 ///
-/// After Ctrl-C `budget` is cancelled, and stays so, and the exception raised. Work that does not look at
-/// it goes on unseen until it ends, and calls that need what it holds wait for it.
+/// After Ctrl-C `budget` is cancelled, and stays so, and the exception is raised. Work that does
+/// not check the budget continues in the background until it ends, and calls that need its data
+/// wait for it.
 pub fn interruptible<R: Send + 'static>(
     py: Python<'_>,
     budget: &Budget,
@@ -61,7 +63,7 @@ fn unseen(
     };
     loop {
         match receive(SIGNALS_EVERY) {
-            // A signal of the last moment is answered here, and not in the middle of what turns the result into arrays.
+            // A late signal is handled here, and not during the conversion of the result to arrays.
             Ok(Ok(())) => return py.check_signals(),
             Ok(Err(panic)) => resume_unwind(panic),
             Err(_) => {
@@ -75,7 +77,8 @@ fn unseen(
     }
 }
 
-/// [`interruptible`] for work that has no budget: after Ctrl-C it goes on unseen until it ends.
+/// [`interruptible`] for work without a budget: after Ctrl-C it continues in the background until
+/// it ends.
 pub fn unlocked<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> R + Send + 'static,
@@ -109,7 +112,7 @@ static VISITORS: AtomicUsize = AtomicUsize::new(0);
 /// The interpreter is about to end: nobody enters any more.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// How long the end of the interpreter waits for calls that are under way.
+/// Maximum wait of the interpreter's end for running calls.
 const LEAVING: Duration = Duration::from_secs(10);
 
 /// One visit to Python; the count falls even if the visit panics.
@@ -123,8 +126,9 @@ impl Drop for Visit {
 
 /// Calls Python from work that may go on unseen; `None` once the interpreter is ending.
 ///
-/// A thread that asks for Python's lock while the interpreter ends is killed by it, and with it, as
-/// Rust cannot unwind through that, the process. So the end waits for those inside and lets nobody in.
+/// A thread that requests Python's lock while the interpreter ends is killed by it, and with it, as
+/// Rust cannot unwind through that, the process. So the end waits for threads inside and admits no
+/// others.
 pub fn visit_python<R>(call: impl FnOnce(Python<'_>) -> R) -> Option<R> {
     VISITORS.fetch_add(1, Ordering::SeqCst);
     let _visit = Visit;
@@ -141,7 +145,7 @@ fn stay_out() {
     }
 }
 
-/// The thread that ends the interpreter; what it still calls goes on as ever.
+/// The thread that ends the interpreter; its calls continue as usual.
 static CLOSER: OnceLock<ThreadId> = OnceLock::new();
 
 /// Runs at the interpreter's end (`atexit`): closes the door and waits for those inside.

@@ -12,17 +12,17 @@
 //! }
 //! ```
 //!
-//! Struct: `class` (a `Class`), `columns` (model-file columns), `example` (language text that runs
-//! by itself), `function` (a function instead of a kind), `cheap` (a function that is called anew rather than
-//! remembered), `name` (when it differs from the
-//! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written), `relabel`
-//! (a surface whose v-law can be redistributed). Kinds of curves and snakes, and surfaces with
-//! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
-//! they build; see `moldloft_registry::relabelled`. `sweep = [bead, point]`: the fields of a bead and of a
-//! point that the model is to move; see `moldloft_registry::Row::sweep`. `role`: what the kind is to the
-//! interpreter besides its value, a `moldloft_registry::Role`.
-//! Each field has a constant that names it in faults, `Self::C1` for `c1`: `fault.in_field(Self::C1)`.
-//! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`, `variadic`.
+//! Struct: `class` (a `Class`), `columns` (model-file columns), `example` (a self-contained text of
+//! the language), `function` (a function instead of a kind), `cheap` (a function that is not
+//! cached), `name` (if it differs from the struct's), `shape` (the struct is itself the curve or
+//! surface: no `Build` is written), `relabel` (a surface whose v-law can be redistributed). Kinds
+//! of curves and snakes, and surfaces with `relabel` or with columns that begin with it, have a
+//! last argument `relabel`, which acts on their result; see `moldloft_registry::relabelled`. `sweep
+//! = [bead, point]`: the fields of a bead and of a point that the model moves; see
+//! `moldloft_registry::Row::sweep`. `role`: the role of the kind for the interpreter besides its
+//! value, a `moldloft_registry::Role`. Each field has a constant that names it in faults,
+//! `Self::C1` for `c1`: `fault.in_field(Self::C1)`. Field: `default` (absent) or `default = 3`,
+//! `min`, `max`, `min_items`, `angle`, `variadic`.
 
 use proc_macro::TokenStream;
 use proc_macro2::TokenStream as Tokens;

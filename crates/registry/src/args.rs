@@ -196,7 +196,7 @@ fn enough(field: &FieldSpec, length: usize) -> Result<(), CallError> {
     .found(format!("{length}")))
 }
 
-/// True when an object of class `found` stands for a list of items of class `item`.
+/// True if an object of class `found` is accepted as a list of items of class `item`.
 fn gives_items(item: Class, found: Class) -> bool {
     match found {
         Class::List => true,
@@ -206,8 +206,7 @@ fn gives_items(item: Class, found: Class) -> bool {
     }
 }
 
-/// Checks what could not be checked when the argument was the name of an object: how many items
-/// it has, and the range of its numbers.
+/// Checks that must wait for the evaluation of an object: number of items, and range of numbers.
 ///
 /// # Errors
 /// A [`CallError`] with its item.

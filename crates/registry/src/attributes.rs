@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Below this logarithm of the total growth the panels are alike.
 const NO_GROWTH: f64 = 1e-12;
 
-/// How the panels along a parameter are spaced, from one end to the other.
+/// Spacing of panels along a parameter, from one end to the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Spacing {
     /// Even in the parameter.
@@ -38,7 +38,7 @@ impl Spacing {
         matches!(self, Spacing::Uniform) || *self == Spacing::Growth(1.0)
     }
 
-    /// Where the share `s` of `n` panels ends, 0 at 0 and 1 at 1.
+    /// Position of the fraction `s` of `n` panels, 0 at 0 and 1 at 1.
     pub fn at(&self, s: f64, n: u32) -> f64 {
         let right = std::f64::consts::FRAC_PI_2;
         match *self {
@@ -84,23 +84,23 @@ impl Spacing {
     }
 }
 
-/// What a surface says of its panels besides their number.
+/// Attributes of a surface's panels besides their number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PanelAttributes {
     /// The aimed length of panels along u and v, in the model's unit.
     pub size: [Option<f64>; 2],
     /// Their spacing along u and v, where it is stated.
     pub spacing: [Option<Spacing>; 2],
-    /// What its patch is to a flow solver or builder: "wetted", "lid", "waterline", "symmetry", and
-    /// names of the user's own.
+    /// Role of its patch for a flow solver or builder: "wetted", "lid", "waterline", "symmetry",
+    /// and names of the user's own.
     pub tags: Vec<Arc<str>>,
 }
 
 // No part is ever NaN.
 impl Eq for PanelAttributes {}
 
-/// What every object carries besides its geometry: how it is drawn and divided. A change here
-/// never evaluates geometry again.
+/// Attributes of an object besides its geometry: display and divisions. A change here never
+/// evaluates geometry again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attributes {
     /// Colour index 0..=255; 0..=15 are the sixteen classic ones.
@@ -123,7 +123,7 @@ pub struct Attributes {
     pub blocks: [u32; 3],
     /// True when divisions were given: an image without any is divided like its original.
     pub divided: bool,
-    /// What is said of the panels besides their number.
+    /// Attributes of the panels besides their number.
     pub panels: Option<Arc<PanelAttributes>>,
 }
 
@@ -304,7 +304,7 @@ impl Attributes {
 }
 
 impl Attributes {
-    /// Its divisions, where it leaves them to the neighbours those that its class has by itself.
+    /// Its divisions; those left to the neighbours have the default of its class.
     pub fn own_divisions(&self) -> [u32; 2] {
         self.divisions.map(|n| if n == 0 { 8 } else { n })
     }
@@ -333,7 +333,7 @@ fn both<T: Real, R: Copy>(
     }
 }
 
-/// A length of panels; 0 or "auto" for none.
+/// A length of panels; 0 or "auto": `None`.
 fn length<T: Real>(name: &str, value: &Value<T>) -> Result<Option<f64>, CallError> {
     match value {
         Value::Number(x) if x.re() == 0.0 => Ok(None),

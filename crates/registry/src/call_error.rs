@@ -1,4 +1,4 @@
-//! Faults of calls: what is wrong, and with which argument.
+//! Faults of calls: description and argument.
 
 use crate::Class;
 use moldloft_budget::Spent;
@@ -33,7 +33,7 @@ pub enum Argument {
     Extra,
 }
 
-/// Which argument a fault is about.
+/// The argument of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArgumentPlace {
     /// The argument.
@@ -62,9 +62,9 @@ pub struct CallErrorData {
     pub id: &'static str,
     /// One self-contained line.
     pub message: String,
-    /// What was expected.
+    /// Expected input.
     pub expected: Option<String>,
-    /// What was found.
+    /// Found input.
     pub found: Option<String>,
     /// The remedy.
     pub help: Vec<String>,
@@ -72,7 +72,7 @@ pub struct CallErrorData {
     pub place: Option<ArgumentPlace>,
     /// The item of an argument that is not known yet.
     item: Option<usize>,
-    /// Other objects it is about, each with what is to be said of it.
+    /// Other objects involved, each with a description.
     pub related: Vec<(Key, String)>,
 }
 
@@ -113,13 +113,13 @@ impl CallError {
         }
     }
 
-    /// Says what was expected.
+    /// Sets the expected input.
     pub fn expected(mut self, text: impl Into<String>) -> Self {
         self.0.expected = Some(text.into());
         self
     }
 
-    /// Says what was found.
+    /// Sets the found input.
     pub fn found(mut self, text: impl Into<String>) -> Self {
         self.0.found = Some(text.into());
         self
@@ -131,7 +131,7 @@ impl CallError {
         self
     }
 
-    /// Points to another object, if it has a name: "`label`" stands beside its declaration.
+    /// Adds a note to another object, if it has a name: "`label`" is shown at its declaration.
     pub fn related(mut self, object: Option<Key>, label: impl Into<String>) -> Self {
         self.0.related.extend(object.map(|key| (key, label.into())));
         self

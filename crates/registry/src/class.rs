@@ -1,9 +1,9 @@
-//! Classes: what kind of thing a value is, and which class serves where another is expected.
+//! Classes of values, and their conversions.
 
 use std::fmt;
 
-/// What kind of thing a value is, or an argument must be. Classes are data: a bead is a point that
-/// also knows its curve, so it is accepted wherever a point is asked for.
+/// Class of a value or argument. Classes are data: a bead is a point that also has its curve, so it
+/// is accepted wherever a point is expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// Anything.
@@ -38,18 +38,18 @@ pub enum Class {
     Solid,
     /// A plane.
     Plane,
-    /// What things are mirrored in or projected to: a plane, line, point or "x=0", "y=0", "z=0".
+    /// Element of mirroring or projection: a plane, line, point or "x=0", "y=0", "z=0".
     MirrorArgument,
-    /// What bounds a patch of a surface: a snake, or a magnet for a side without length.
+    /// Side of a patch on a surface: a snake, or a magnet for a side without length.
     Side,
-    /// A curve, or a bead on it that says where to begin a search.
+    /// A curve, or a bead on it as the start of a search.
     Along,
-    /// A snake, or a ring on it that says where to begin a search.
+    /// A snake, or a ring on it as the start of a search.
     AlongSnake,
-    /// A surface, or a magnet on it that says where to begin a search.
+    /// A surface, or a magnet on it as the start of a search.
     Onto,
-    /// What things are intersected with or projected to: a plane, a surface (or a magnet on it), a
-    /// curve (or a bead on it), a point, the zero set of a field.
+    /// Target of intersection or projection: a plane, a surface (or a magnet on it), a curve (or a
+    /// bead on it), a point, the zero set of a field.
     Target,
     /// A frame of three axes.
     Frame,
@@ -181,7 +181,7 @@ impl Class {
         }
     }
 
-    /// True when a value of class `found` may stand where this class is asked for.
+    /// True if a value of class `found` is accepted where this class is expected.
     pub fn accepts(self, found: Class) -> bool {
         use Class::*;
         match self {
@@ -215,10 +215,10 @@ impl Class {
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),
             Plane => found == Text,
-            // A plane stands for the half-space behind it, a number for a constant.
+            // A plane is converted to the half-space behind it, a number to a constant.
             Field => matches!(found, Plane | Number | Integer),
             Set => matches!(found, Field | Plane),
-            // A point stands for the axes of the world there.
+            // A point is converted to a frame there, with the axes of the world.
             Frame => matches!(found, Point | Bead | Magnet | Ring | Vector),
             MirrorArgument => {
                 matches!(found, Plane | Point | Bead | Magnet | Ring | Vector | Curve | Text)

@@ -1,4 +1,4 @@
-//! How densely a curve is divided by panels, so that any number of divisions is spaced alike.
+//! Density of a curve's divisions by panels, so that any number of divisions has the same spacing.
 
 /// Divisions per parameter along a curve, as a table of its integral over [0, 1].
 ///
@@ -41,7 +41,7 @@ impl DivisionDensity {
         self.ends.push(self.at.len() - 1);
     }
 
-    /// The divisions that it asks for: those of each stretch, rounded up.
+    /// Total of divisions: those of each stretch, rounded up.
     pub fn count(&self) -> u32 {
         let parts = self.ends.windows(2).map(|w| self.sum[w[1]] - self.sum[w[0]]);
         parts.map(|x| (x - SLACK).ceil().clamp(1.0, 1e6) as u32).sum::<u32>().max(1)

@@ -1,14 +1,14 @@
-//! What calls keep from one to the next: a store that the model owns and hands to every call.
+//! Data kept between calls: a store that belongs to the model and is passed to every call.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// One value of each type, made when it is first asked for. Copies share what they hold, so a model and its run
-/// with derivatives keep the same things.
+/// One value of each type, made on first use. Copies share their content, so a model and its run
+/// with derivatives share it.
 ///
-/// What is kept must change no result: it only spares work.
+/// The store must not change any result: it only saves work.
 #[derive(Clone, Default)]
 pub struct Kept(Arc<Mutex<HashMap<TypeId, Arc<dyn Any + Send + Sync>>>>);
 

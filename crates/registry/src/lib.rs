@@ -51,7 +51,7 @@ pub use triangle_body::{
 };
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Record, Value, Vectors};
 
-/// What the derive macro's output refers to.
+/// References of the derive macro's output.
 #[doc(hidden)]
 pub mod export {
     pub use crate::relabelled::RELABEL_FIELD;

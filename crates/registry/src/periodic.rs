@@ -1,4 +1,4 @@
-//! Curves and surfaces of a model as shapes: what is closed goes on beyond 0 and 1, turn after turn.
+//! Curves and surfaces of a model as shapes: closed ones are continued periodically beyond 0 and 1.
 
 use crate::{CurveRef, SurfaceRef};
 use moldloft_num::period::{closed_sides, closes, smooth_seams, turned_back};
@@ -120,7 +120,7 @@ impl<T: Real> SurfaceRef<T> {
         if *smooth != closed {
             return self.crossings(path, spans);
         }
-        // Where the path goes over a smooth seam it may seem to cross a line: one too many does no harm.
+        // At a smooth seam the path may appear to cross a line; an additional break is harmless.
         let within = |t: f64| {
             let w = path(t);
             [0, 1].map(|k| if closed[k] { turned_back(w[k]) } else { w[k] })
@@ -192,7 +192,7 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
         finer.dedup();
         let mut all = over;
         for span in finer.windows(2) {
-            // All of a stretch lies in one turn.
+            // The whole stretch is in one turn.
             let turn = path(0.5 * (span[0] + span[1])).map(f64::floor);
             let inside = |t: f64| {
                 let w = path(t);

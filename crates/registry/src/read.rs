@@ -1,4 +1,4 @@
-//! Arguments read as the types of the fields of a kind: each type says its class and what it refuses.
+//! Arguments read as the types of the fields of a kind: each type has its class and its refusals.
 
 use crate::{
     CallError, Class, CurveRef, FieldRef, Point, ReparametrizationRef, SetRef, SolidRef,
@@ -214,7 +214,7 @@ impl<T: Real> FromValue<T> for Frame<T> {
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Frame(f) => Ok(**f),
-            // A point stands for the axes of the world there.
+            // A point is converted to a frame there, with the axes of the world.
             other => vector(other, Class::Frame).map(|origin| Frame { origin, ..Frame::world() }),
         }
     }
@@ -236,7 +236,7 @@ fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, CallError> {
     Ok(Plane { point: Vec3::from(unit(at)), normal: Vec3::from(unit(1.0)) })
 }
 
-/// What things are mirrored in, or projected to.
+/// Element of mirroring or projection.
 #[derive(Clone, Debug)]
 pub enum MirrorArgument<T: Real> {
     /// A plane.
@@ -262,8 +262,8 @@ impl<T: Real> MirrorArgument<T> {
         self.foot(p) * T::from(2.0) - p
     }
 
-    /// The map of free vectors that goes with [`Self::image`] (with [`Self::foot`] when
-    /// `project`): its linear part.
+    /// The map of free vectors that belongs to [`Self::image`] (to [`Self::foot`] with `project`):
+    /// its linear part.
     pub fn direction(&self, d: Vec3<T>, project: bool) -> Vec3<T> {
         let foot = match self {
             MirrorArgument::Plane(plane) => d - plane.normal * plane.normal.dot(d),

@@ -20,14 +20,14 @@ pub struct Point<T: Real> {
     pub xyz: Vec3<T>,
     /// The object, once it has a name; or another that it is the same point as by construction.
     pub key: Option<Key>,
-    /// The curve and parameter t it lies at, for beads and rings.
+    /// Curve and parameter t, for beads and rings.
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
-    /// The surface and parameters (u, v) it lies at, for magnets and rings.
+    /// Surface and parameters (u, v), for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
-    /// The point that this is the image of under a map of space. For joins: images of one point that lie
-    /// in one place are one.
+    /// The point of which this is the image under a map of space. For joins: coincident images of
+    /// one point are one.
     pub image_of: Option<Key>,
-    /// How it was found, when that took a search.
+    /// Report of the search, if there was one.
     pub found: Option<Arc<SearchReport>>,
 }
 
@@ -83,7 +83,7 @@ impl<T: Real> Point<T> {
         self
     }
 
-    /// How deep the shapes are nested that this point holds on to.
+    /// Nesting depth of the shapes that this point refers to.
     pub fn depth(&self) -> u32 {
         let curve = self.on_curve.as_ref().map_or(0, |p| p.0.depth);
         curve.max(self.on_surface.as_ref().map_or(0, |p| p.0.depth))
@@ -115,22 +115,22 @@ pub type Figures = Arc<Vec<(&'static str, f64)>>;
 #[derive(Clone)]
 pub struct CurveRef<T: Real> {
     pub(crate) shape: Arc<dyn Curve<T>>,
-    /// Whether it is closed, once that was asked.
+    /// Whether it is closed; computed on first use.
     pub(crate) closed: OnceLock<bool>,
     /// The object, once it has a name.
     pub key: Option<Key>,
-    /// The surface it lies on, for snakes.
+    /// Surface of a snake.
     pub surface: Option<Box<SurfaceRef<T>>>,
     /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
     /// parameters there of the part's ends.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
-    /// For the common edge of a declared join: the two edges, and how far apart they may be.
+    /// For the common edge of a declared join: the two edges, and their maximum distance.
     pub joins: Option<Arc<([CurveRef<T>; 2], f64)>>,
-    /// How it was found, when that took a search.
+    /// Report of the search, if there was one.
     pub found: Option<Arc<SearchReport>>,
-    /// What it says of itself.
+    /// Figures of its construction.
     pub figures: Option<Figures>,
-    /// How deep shapes are nested in it, itself included.
+    /// Nesting depth of its shapes, itself included.
     pub depth: u32,
 }
 
@@ -138,19 +138,19 @@ pub struct CurveRef<T: Real> {
 #[derive(Clone)]
 pub struct SurfaceRef<T: Real> {
     pub(crate) shape: Arc<dyn Surface<T>>,
-    /// Whether its parameters run round, once that was asked.
+    /// Whether its parameters are closed; computed on first use.
     pub(crate) closed: OnceLock<[bool; 2]>,
-    /// Over which seams it is smooth, once that was asked.
+    /// Whether its seams are smooth; computed on first use.
     pub(crate) smooth_seams: OnceLock<[bool; 2]>,
     /// The object, once it has a name.
     pub key: Option<Key>,
-    /// How it was found, when that took a search or a fit.
+    /// Report of the search or fit, if there was one.
     pub found: Option<Arc<SearchReport>>,
-    /// What it says of itself.
+    /// Figures of its construction.
     pub figures: Option<Figures>,
     /// For a fillet: the snakes on both surfaces along which it touches them, at v = 0 and v = 1.
     pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
-    /// How deep shapes are nested in it, itself included.
+    /// Nesting depth of its shapes, itself included.
     pub depth: u32,
 }
 
@@ -197,7 +197,7 @@ pub struct ReparametrizationRef<T: Real> {
     shape: Arc<dyn Reparametrization<T>>,
     /// The object, once it has a name.
     pub key: Option<Key>,
-    /// How deep shapes are nested in it, itself included.
+    /// Nesting depth of its shapes, itself included.
     pub depth: u32,
 }
 
@@ -207,7 +207,7 @@ pub struct SolidRef<T: Real> {
     shape: Arc<dyn Solid<T>>,
     /// The object, once it has a name.
     pub key: Option<Key>,
-    /// How deep shapes are nested in it, itself included.
+    /// Nesting depth of its shapes, itself included.
     pub depth: u32,
 }
 
@@ -242,7 +242,7 @@ shape_ref!(ReparametrizationRef, Reparametrization, own => &*own.shape);
 shape_ref!(SolidRef, Solid, own => &*own.shape);
 
 impl<T: Real> CurveRef<T> {
-    /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    /// A curve that refers to shapes nested `nesting` deep (0 without any).
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
         let shape: Arc<dyn Curve<T>> = Arc::new(shape);
         let depth = nesting + 1;
@@ -288,7 +288,7 @@ impl<T: Real> CurveRef<T> {
         self.shape.jet(T::from(t), Order::Zero)[0]
     }
 
-    /// The roots it runs along; a nameless curve that is not an alias has none.
+    /// The roots along it; empty for a nameless curve that is not an alias.
     pub fn pieces(&self) -> SmallVec<[Piece<T>; 1]> {
         match (self.shape.trace(), self.key) {
             (Trace::Own(_), None) => SmallVec::new(),
@@ -322,15 +322,15 @@ impl<T: Real> CurveRef<T> {
         }
     }
 
-    /// What its shape follows from, for joins: the object itself or, for one without a name, the
-    /// original of which it is the image.
+    /// Origin of its shape, for joins: the object itself or, for one without a name, the original
+    /// of which it is the image.
     pub fn made_of(&self) -> Vec<Key> {
         self.key.or_else(|| self.shape.image_of()).into_iter().collect()
     }
 }
 
 impl<T: Real> SurfaceRef<T> {
-    /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    /// A surface that refers to shapes nested `nesting` deep (0 without any).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
         let depth = nesting + 1;
         Self {
@@ -371,7 +371,7 @@ impl<T: Real> SurfaceRef<T> {
 }
 
 impl<T: Real> SolidRef<T> {
-    /// A solid that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    /// A solid that refers to shapes nested `nesting` deep (0 without any).
     pub fn new(shape: impl Solid<T> + 'static, nesting: u32) -> Self {
         Self { shape: Arc::new(shape), key: None, depth: nesting + 1 }
     }
@@ -387,7 +387,7 @@ macro_rules! implicit_ref {
         }
 
         impl<T: Real> $name<T> {
-            /// What it was made from, when that is a `P`.
+            /// The original, if it is a `P`.
             pub fn get<P: ImplicitFunction<T>>(&self) -> Option<&P> {
                 let any: &dyn Any = &*self.shape;
                 any.downcast_ref()
@@ -441,7 +441,7 @@ impl<T: Real> SetRef<T> {
 }
 
 impl<T: Real> ReparametrizationRef<T> {
-    /// A law that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    /// A law that refers to shapes nested `nesting` deep (0 without any).
     pub fn new(law: impl Reparametrization<T> + 'static, nesting: u32) -> Self {
         Self { shape: Arc::new(law), key: None, depth: nesting + 1 }
     }

@@ -39,7 +39,7 @@ const ONE_BREAK: f64 = 1e-12;
 /// objects under the same law are one.
 ///
 /// # Errors
-/// `wrong-class` when the law is none.
+/// `wrong-class` if the law is not a reparametrisation.
 pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, CallError> {
     let Some(law) = Option::<ReparametrizationRef<T>>::from_value(law)? else { return Ok(value) };
     if law.is_straight() && law.breaks().is_empty() && reaches(&law) == [true; 2] {
@@ -71,7 +71,7 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
     })
 }
 
-/// Whether the law runs from 0, and to 1: a partial one does not.
+/// Whether the law starts at 0, and ends at 1: a partial one does not.
 fn reaches<T: Real>(law: &ReparametrizationRef<T>) -> [bool; 2] {
     [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re() == end)
 }
@@ -115,7 +115,7 @@ fn pieces_by<T: Real>(
     if !law.is_straight() {
         return governed(law, pieces);
     }
-    // Where the law turns, as values.
+    // Values at the breaks of the law.
     let turns: Vec<T> =
         law.breaks().into_iter().map(|b| law.jet(T::from(b), Order::Zero)[0]).collect();
     let mut out = SmallVec::new();
@@ -184,7 +184,7 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
         let whole = reaches(&self.law);
         match self.curve.trace() {
             Trace::Point(point) => Trace::Point(point),
-            // A part is a curve of its own; it ends where the whole does only if it goes that far.
+            // A part is a curve of its own; it shares the end of the whole only if it reaches it.
             _ if whole != [true; 2] => {
                 let ends = self.curve.end_points();
                 Trace::Own([0, 1].map(|k| ends[k].filter(|_| whole[k])))
@@ -318,7 +318,7 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
                     edges.corners[k + 1] = None;
                 }
             }
-            // A seam between the two is open then, and the sides are parts of what they were.
+            // A seam between the two is then open, and the sides are parts of the original ones.
             for k in 0..4 {
                 let keeps = match &edges.edges[k] {
                     Edge::Pole(_) | Edge::Own => true,

@@ -7,7 +7,7 @@ use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The tolerance of a model that states none, in its unit.
+/// Default tolerance of a model, in its unit.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 /// The closed list of scalars that models are evaluated with.
@@ -15,7 +15,7 @@ pub trait Scalar: Real + FromValue<Self> {
     /// The body of `row` for this scalar, called.
     ///
     /// # Errors
-    /// What the body reports.
+    /// Errors of the implementation.
     fn call(row: &Row, args: &[Value<Self>], context: &Context) -> Result<Value<Self>, CallError>;
 }
 
@@ -41,40 +41,40 @@ impl Scalar for Dual4 {
     }
 }
 
-/// What a call may know besides its arguments.
+/// Context of a call besides its arguments.
 #[derive(Clone, Debug)]
 pub struct Context {
     /// The model's tolerance: the distance below which two points count as one.
     pub tolerance: f64,
-    /// How deep shapes are nested in the arguments.
+    /// Nesting depth of the shapes in the arguments.
     pub nesting: u32,
-    /// What calls may use; from elsewhere it ends long ones.
+    /// Limits of calls; long ones can be cancelled through it.
     pub budget: Arc<Budget>,
-    /// What calls keep from one to the next.
+    /// Data kept between calls.
     pub kept: Kept,
-    /// What calls have to say besides their values.
+    /// Notes of calls.
     pub remarks: Arc<Mutex<Vec<CallRemark>>>,
 }
 
-/// What a call says besides its value: that an iteration has not settled, that a march ended early.
+/// A note of a call besides its value: an iteration has not converged, a march ended early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CallRemark {
     /// A stable id.
     pub id: &'static str,
-    /// One line that stands alone.
+    /// One self-contained line.
     pub message: String,
-    /// What can be done about it.
+    /// Remedy.
     pub help: &'static str,
 }
 
 impl Context {
-    /// Adds a remark.
+    /// Adds a note.
     pub fn remark(&self, id: &'static str, message: String, help: &'static str) {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
         remarks.push(CallRemark { id, message, help });
     }
 
-    /// The remarks so far; they are not kept.
+    /// Removes and returns the notes so far.
     pub fn take_remarks(&self) -> Vec<CallRemark> {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *remarks)
@@ -111,7 +111,7 @@ pub enum Unit {
     Angle,
 }
 
-/// What an argument is when it is not given.
+/// Default of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DefaultValue {
     /// Absent: the kind does without it.
@@ -144,7 +144,7 @@ pub struct FieldSpec {
     pub class: Class,
     /// True for a list.
     pub many: bool,
-    /// What it is when it is not given; `None` when it must be.
+    /// Default; `None` for a required argument.
     pub default: Option<DefaultValue>,
     /// Its unit.
     pub unit: Unit,
@@ -154,7 +154,7 @@ pub struct FieldSpec {
     pub max: Option<f64>,
     /// Least length of a list.
     pub min_items: usize,
-    /// For the last field of a function, a list: its items may be given as so many arguments instead.
+    /// For the last field of a function, a list: its items may be given as separate arguments.
     pub variadic: bool,
 }
 
@@ -163,12 +163,12 @@ pub trait Foreign: Send + Sync {
     /// The value for plain numbers.
     ///
     /// # Errors
-    /// What the function reports.
+    /// Errors of the function.
     fn call_plain(&self, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, CallError>;
     /// The value for numbers with derivatives.
     ///
     /// # Errors
-    /// What the function reports.
+    /// Errors of the function.
     fn call_dual(
         &self,
         args: &[Value<Dual4>],
@@ -178,7 +178,7 @@ pub trait Foreign: Send + Sync {
 
 type Call<T> = fn(&[Value<T>], &Context) -> Result<Value<T>, CallError>;
 
-/// How a row is computed.
+/// Implementation of a row.
 #[derive(Clone)]
 pub enum Implementation {
     /// Rust code, for each scalar.
@@ -192,19 +192,19 @@ pub enum Implementation {
     Foreign(Arc<dyn Foreign>),
 }
 
-/// What a kind is to the interpreter besides its value.
+/// Role of a kind for the interpreter besides its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
     /// Nothing else.
     #[default]
     Plain,
-    /// What a model says of itself: units, symmetry, title.
+    /// Header of a model: units, symmetry, title.
     Header,
     /// Made of the points of a file that its argument `file` names: the program reads them into `points`.
     Table,
     /// A list of objects under a name, read as its items.
     List,
-    /// Unknowns and conditions that are solved before what is built on them.
+    /// Unknowns and conditions that are solved before their dependants.
     SolveSet,
     /// A mass and its centre.
     Weight,
@@ -226,18 +226,18 @@ pub struct Row {
     /// True for a kind of entity: it is declared under a name.
     pub kind: bool,
     /// The fields in the order of a model file's columns, by name, blank-separated; `relabel` may
-    /// stand for a column that is only ever `*`. `None` when model files have no such entity.
+    /// be a column whose only value is `*`. `None` if model files have no such entity.
     pub columns: Option<&'static str>,
-    /// An example in the language that runs by itself.
+    /// A self-contained example in the language.
     pub example: Cow<'static, str>,
     /// For a kind that sweeps: the fields of the bead that is moved and of the point or curve that
     /// follows, which the model gives as a [`crate::LocusRef`].
     pub sweep: Option<[FieldId; 2]>,
-    /// True for a function that takes no longer than finding its remembered value: it is called anew.
+    /// True for a function that is as fast as finding its cached value: it is always called.
     pub cheap: bool,
-    /// What a kind is besides its value.
+    /// Role besides its value.
     pub role: Role,
-    /// How it is computed.
+    /// Implementation.
     pub body: Implementation,
 }
 
@@ -274,7 +274,7 @@ impl Row {
         Self { example: example.into(), ..self }
     }
 
-    /// The same, called anew each time.
+    /// The same, called without a cache.
     pub fn cheap(self) -> Self {
         Self { cheap: true, ..self }
     }
@@ -287,7 +287,7 @@ impl Row {
     /// The field at a position.
     ///
     /// # Panics
-    /// When there are not so many fields.
+    /// If the position is not less than the number of fields.
     pub fn id(&self, position: usize) -> FieldId {
         assert!(position < self.fields.len(), "{} has no field {position}", self.name);
         FieldId::at(position)
@@ -305,7 +305,7 @@ impl std::fmt::Debug for Row {
     }
 }
 
-/// What the derive macro knows of a kind.
+/// Row of a kind, as generated by the derive macro.
 #[doc(hidden)]
 pub trait StaticRow {
     fn row() -> Row;

@@ -1,4 +1,5 @@
-//! Reports of searches that a value carries, and the remarks that follow from them. They depend on the model only.
+//! Reports of searches that a value carries, and the resulting warnings. They depend on the model
+//! only.
 
 use moldloft_num::Vec3;
 use std::fmt;
@@ -8,19 +9,19 @@ use std::fmt;
 pub struct Remark {
     /// Id of the diagnostic.
     pub id: &'static str,
-    /// What there is to know.
+    /// Message.
     pub message: String,
-    /// How to get rid of it; may be empty.
+    /// Remedy; may be empty.
     pub advice: &'static str,
 }
 
-/// How a construction that may go more or less well (a projection, an intersection, a fit) came to
-/// its result. Carried by the point or curve; every word of it depends on the model only.
+/// Report of a construction by search or fit (a projection, an intersection, a fit). Carried by the
+/// point or curve; it depends on the model only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchReport {
-    /// How the search ended.
+    /// Result of the search.
     pub status: SearchStatus,
-    /// What is left of the equations, in the unit of length.
+    /// Residual of the equations, in the unit of length.
     pub residual: f64,
     /// Steps of the iteration.
     pub iterations: u32,
@@ -30,31 +31,31 @@ pub struct SearchReport {
     pub last: Vec<f64>,
     /// Solutions that were not taken: their parameters and places.
     pub alternatives: Vec<(Vec<f64>, Vec3)>,
-    /// How to choose another solution, or to get rid of the remark.
+    /// Advice for another solution, or against the warning.
     pub advice: &'static str,
 }
 
-/// How a search ended.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SearchStatus {
     /// From the start that was given, or the only solution.
     Ok,
     /// The iteration from the start failed; the nearest of all solutions was taken.
     Fallback,
-    /// At an end or an edge, because the unbounded solution lies beyond it.
+    /// At an end or an edge, because the unbounded solution is beyond it.
     EdgeClamped,
     /// The shapes touch: the solution is not well determined.
     Tangent,
     /// A weighted sum whose weights do not add up to 1.
     Unbalanced {
-        /// What they add up to.
+        /// Sum of the weights.
         sum: f64,
     },
-    /// One of several, without a start that would say which.
+    /// One of several solutions, without a start to select one.
     Multiple {
-        /// How many there are.
+        /// Number of solutions.
         count: usize,
-        /// Which was taken, from 0.
+        /// Number of the result among them, from 0.
         chosen: usize,
         /// Distance in space to the next of the others.
         next: f64,

@@ -4,8 +4,8 @@ use crate::{CallError, Class, CurveRef, FromValue, Value};
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
-/// What an object of the model is when a bead that it depends on is moved: the objects between the
-/// two, evaluated anew.
+/// Value of an object when a bead that it depends on is moved: the objects between the two are
+/// evaluated again.
 pub trait Sweep<T: Real>: Send + Sync {
     /// The value of the object with the bead at `t` of its curve.
     ///

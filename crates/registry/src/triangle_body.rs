@@ -1,4 +1,5 @@
-//! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
+//! Bodies bounded by triangles and open sheets of them, with borders that can be divided again, and
+//! their measures.
 
 use crate::{CurveRef, DivisionDensity, SurfaceRef};
 use moldloft_num::{Fineness, Real, Vec3};
@@ -6,17 +7,18 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A volume below this share of the area to the power 3/2 is none: the centroid is that of the area.
+/// Volume, relative to the area to the power 3/2, below which it is zero: the centroid is that of
+/// the area.
 const NO_VOLUME: f64 = 1e-12;
 
-/// Places where a body is not quite what was asked for.
+/// Positions at which a body does not meet its specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// What is wrong, such as "blunt": the member of the body by which the places are asked for.
+    /// Kind, such as "blunt": the member of the body that gives the positions.
     pub name: &'static str,
     /// The warning about it.
     pub remark: crate::Remark,
-    /// Where it is; not empty.
+    /// Positions; not empty.
     pub places: Vec<Vec3>,
 }
 
@@ -25,11 +27,11 @@ pub struct Flaw {
 pub struct Group {
     /// Its name; in meshes it follows the body's.
     pub name: String,
-    /// What it is a piece of, such as "cylinder".
+    /// Kind of its surface, such as "cylinder".
     pub kind: String,
     /// Index of a palette colour, 0 to 15, when it has one of its own.
     pub colour: Option<u8>,
-    /// What it is called besides, such as its material.
+    /// Further names, such as its material.
     pub tags: Vec<String>,
     /// Distance below which two of its points count as one, when it has one of its own.
     pub tolerance: Option<f64>,
@@ -46,7 +48,7 @@ pub struct BorderCurve<T: Real> {
     pub stated: Option<u32>,
     /// Its divisions when nothing else determines them.
     pub usual: u32,
-    /// How divisions are spaced along it; none for equal steps of its parameter.
+    /// Spacing of divisions along it; `None` for equal steps of its parameter.
     pub density: Option<Arc<DivisionDensity>>,
 }
 
@@ -61,8 +63,8 @@ impl<T: Real> BorderCurve<T> {
     }
 }
 
-/// A sheet of triangles whose border runs along curves, so that it can be made anew with the
-/// divisions that its neighbours have there.
+/// A sheet of triangles bounded by curves, which can be triangulated again with the divisions of
+/// its neighbours.
 pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The surface that it is a part of.
     fn surface(&self) -> &SurfaceRef<T>;
@@ -89,13 +91,13 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
 pub struct SheetMeasures<T: Real> {
     /// Its area.
     pub area: T,
-    /// The centre of the volume, or of the area of what encloses none.
+    /// Centroid of the volume, or of the area if no volume is enclosed.
     pub centroid: Vec3<T>,
     /// The enclosed volume; of a part of a surface, the volume of the cone from the origin to it.
     pub volume: T,
 }
 
-/// The way to make a sheet anew.
+/// Access to a sheet's triangulation.
 #[derive(Clone)]
 pub struct Border<T: Real>(pub Arc<dyn TriangulatedBorder<T>>);
 
@@ -120,19 +122,21 @@ pub struct TriangleBody<T: Real> {
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// How many panels of four corners there are: their halves a b c and a c d are the first triangles.
+    /// Number of panels with four corners: their halves a b c and a c d are the first triangles.
     pub quads: usize,
-    /// The triangles by what they are pieces of, in order and without gaps; none when the body is one.
+    /// The triangles by the surfaces of which they are pieces, in order and without gaps; empty if
+    /// the body is one.
     pub groups: Vec<Group>,
     /// Polylines that belong to the body without being surface.
     pub wires: Vec<Vec<Vec3<T>>>,
     /// Points that belong to the body without being surface or line.
     pub dots: Vec<Vec3<T>>,
-    /// Measures of the triangles, or nearer ones that the maker of the body knows; what is asked for is [`Self::measures`].
+    /// Measures of the triangles, or more accurate ones from the maker of the body; use
+    /// [`Self::measures`].
     pub of_triangles: SheetMeasures<T>,
     /// For a sheet that joins its neighbours.
     pub border: Option<Border<T>>,
-    /// Where it is not quite what was asked for.
+    /// Deviations from the specification.
     pub flaws: Vec<Flaw>,
 }
 
@@ -173,8 +177,8 @@ impl<T: Real> TriangleBody<T> {
         Self { points, triangles, quads, groups, wires, dots, of_triangles, border, flaws }
     }
 
-    /// Area, centroid and volume: of the part of a surface that a sheet with a border stands for, else of
-    /// the body. `None` when the surface has places that are not finite.
+    /// Area, centroid and volume: of the part of a surface that a sheet with a border represents,
+    /// otherwise of the body. `None` if the surface is not finite everywhere.
     pub fn measures(&self) -> Option<SheetMeasures<T>> {
         match &self.border {
             Some(border) => border.0.measures(),

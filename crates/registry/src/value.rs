@@ -27,8 +27,8 @@ pub enum ArrayShape {
     Grid(usize, usize),
 }
 
-/// A row `[n]` or a grid `[m, n]` of vectors, kept as three planes of components: what works on
-/// all x, all y and all z one after the other runs at the speed of the memory.
+/// A row `[n]` or a grid `[m, n]` of vectors, stored as three planes of components: operations on
+/// all x, all y and all z in turn have the speed of the memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vectors<T> {
     /// The extents; one or two of them.
@@ -78,7 +78,7 @@ impl<T: Copy> Vectors<T> {
         self.planes[0].len()
     }
 
-    /// True when there are none.
+    /// True if empty.
     pub fn is_empty(&self) -> bool {
         self.planes[0].is_empty()
     }
@@ -138,7 +138,7 @@ impl std::fmt::Display for ArrayShape {
     }
 }
 
-/// What a family of contours is made of: each member is where this number has one value.
+/// Family of contours: each member is where this number has a constant value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Family<T> {
     /// The distance from a plane, along its normal.
@@ -166,7 +166,7 @@ pub const OBLIQUE: usize = 3;
 pub struct Contours<T> {
     /// Axis of the sections' common normal: 0, 1, 2 for X, Y, Z, or [`OBLIQUE`].
     pub axis: usize,
-    /// What has one value on each section.
+    /// The number that is constant on each section.
     pub family: Family<T>,
     /// The values: coordinates, distances, radii, or angles in radians.
     pub values: Vec<T>,
@@ -295,11 +295,11 @@ pub enum Value<T: Real> {
     Relabel(ReparametrizationRef<T>),
     /// An implicit function.
     Field(FieldRef<T>),
-    /// A set of points: what implicit functions leave solid, combined.
+    /// A set of points: a combination of implicit solids.
     Set(SetRef<T>),
     /// A body of triangles.
     Body(Arc<TriangleBody<T>>),
-    /// Where a point is when a bead moves, for kinds that sweep one.
+    /// Position of a point as a function of a bead's parameter, for kinds that sweep one.
     Locus(LocusRef<T>),
 }
 
@@ -436,7 +436,7 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// How deep shapes are nested in it.
+    /// Nesting depth of its shapes.
     pub fn depth(&self) -> u32 {
         match self {
             Value::Point(p) => p.depth(),
@@ -464,7 +464,7 @@ impl<T: Real> Value<T> {
         self
     }
 
-    /// How it was found, when that took a search.
+    /// Report of the search, if there was one.
     pub fn found(&self) -> Option<&Arc<SearchReport>> {
         match self {
             Value::Point(p) => p.found.as_ref(),
@@ -474,7 +474,7 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// What it says of itself: figures of its construction, by name.
+    /// Figures of its construction, by name.
     pub fn figures(&self) -> &[(&'static str, f64)] {
         let all = match self {
             Value::Curve(c) => c.figures.as_ref(),
@@ -492,7 +492,7 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// What there is to warn of.
+    /// Warnings.
     pub fn remarks(&self) -> Vec<Remark> {
         match self {
             Value::Body(m) => m.flaws.iter().map(|f| f.remark.clone()).collect(),

@@ -16,7 +16,7 @@ struct Segment<T: Real> {
     p1: Point<T>,
     /// End.
     p2: Point<T>,
-    /// How often the line is longer.
+    /// Factor of the length.
     #[field(default = 1, min = 0.5, max = 10)]
     stretch: T,
 }

@@ -133,12 +133,12 @@ impl<T: Real> FromValue<T> for Side<T> {
     }
 }
 
-/// Which condition holds at both ends of an interpolating spline, by its name in the language.
+/// Condition at both ends of an interpolating spline, by its name in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndRule {
     /// "notaknot": the first two pieces are one polynomial.
     NotAKnot,
-    /// "natural": no curvature.
+    /// "natural": zero second derivative.
     Natural,
     /// "bessel": the slope of the parabola through three points.
     Bessel,
@@ -146,7 +146,7 @@ pub enum EndRule {
     Quadratic,
     /// "clamped": given slopes.
     Clamped,
-    /// "periodic": closed without a corner.
+    /// "periodic": closed, with continuous first and second derivative.
     Periodic,
 }
 

@@ -5,7 +5,7 @@ use moldloft_num::Real;
 use moldloft_num::trace::Edge;
 use moldloft_registry::SurfaceRef;
 
-/// Which parameters of a surface, u and v, run round by identity.
+/// For u and v of a surface, true if the opposite sides are the same by identity.
 pub fn joined_sides<T: Real>(surface: &SurfaceRef<T>) -> [bool; 2] {
     let edges = surface.edges().edges;
     let same =

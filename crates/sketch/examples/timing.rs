@@ -69,7 +69,7 @@ fn drawn_plate(holes: usize) -> String {
     text + "GENERATE FACES\n"
 }
 
-/// What a canvas asks of a plate of 1 000 points.
+/// Queries of a canvas to a plate of 1 000 points.
 fn canvas() {
     let mut session = SketchSession::new();
     for reply in session.run_text(&drawn_plate(124)) {

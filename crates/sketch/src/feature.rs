@@ -1,4 +1,4 @@
-//! What a feature is made of: other objects, and how. Its body is computed by [`crate::body`].
+//! Definition of a feature: operands and operation. Its body is computed by [`crate::body`].
 
 use crate::object::SketchObject;
 use crate::solid::operation::Operation;
@@ -30,16 +30,16 @@ pub enum Placement {
     Scale(DimensionExpr),
 }
 
-/// Faces by what outlasts a change of dimensions.
+/// Selection of faces that is stable under a change of dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FaceChoice {
     /// Those of a name.
     Named(String),
-    /// The plane ones square to an axis that lie farthest along it, or least.
+    /// The plane faces perpendicular to an axis with the largest or smallest coordinate.
     Extreme {
         /// The axis.
         axis: CoordinateAxis,
-        /// Whether farthest.
+        /// True for the largest.
         top: bool,
     },
 }
@@ -54,7 +54,7 @@ impl std::fmt::Display for FaceChoice {
     }
 }
 
-/// Edges by what outlasts a change of dimensions.
+/// Selection of edges that is stable under a change of dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EdgeChoice {
     /// All that are not smooth.
@@ -81,7 +81,7 @@ impl std::fmt::Display for EdgeChoice {
     }
 }
 
-/// What edges become.
+/// Treatment of edges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EdgeBlend {
     /// A plane or cone through lines at these distances from the edge, in its first face and its second.
@@ -90,7 +90,7 @@ pub enum EdgeBlend {
     Fillet(DimensionExpr),
 }
 
-/// How a feature is made of its operands.
+/// Operation of a feature.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureKind {
     /// Two bodies combined.
@@ -108,21 +108,21 @@ pub enum FeatureKind {
     Pattern {
         /// From one copy to the next.
         step: Placement,
-        /// How many there are.
+        /// Number of instances.
         count: DimensionExpr,
     },
     /// Edges bevelled or rounded.
     Blend {
-        /// What they become.
+        /// Treatment.
         blend: EdgeBlend,
-        /// Which.
+        /// Treated edges.
         edges: Vec<EdgeChoice>,
     },
     /// A body hollowed to a wall.
     Shell {
         /// Its thickness; negative for a wall outside of the body's faces.
         thickness: DimensionExpr,
-        /// The faces that have none.
+        /// The faces without a wall.
         open: Vec<FaceChoice>,
     },
     /// Plane faces inclined about where they meet a plane square to an axis.
@@ -133,7 +133,7 @@ pub enum FeatureKind {
         axis: CoordinateAxis,
         /// The coordinate of the plane that does not change.
         at: DimensionExpr,
-        /// The faces; those parallel to the axis when there are none.
+        /// The faces; if empty, those parallel to the axis.
         faces: Vec<FaceChoice>,
     },
 }
@@ -181,15 +181,15 @@ impl FeatureKind {
 pub struct FeatureOperand {
     /// The object.
     pub object: Arc<SketchObject>,
-    /// What its names begin with in the feature.
+    /// Prefix of its names in the feature.
     pub prefix: String,
 }
 
 /// An object made of others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {
-    /// How.
+    /// Operation.
     pub kind: FeatureKind,
-    /// Of what.
+    /// Operands.
     pub operands: Vec<FeatureOperand>,
 }

@@ -20,9 +20,9 @@
 //!   or not at all. A refused command has changed nothing.
 //! - [`SketchSession::journal`] is the list of commands that made the present state. The host appends its
 //!   new items to a journal file after each line; running them again restores the session.
-//! - [`SketchSession::objects`] (data) and [`SketchSession::objects_json`] (`{"objects": [...]}`, each with name,
-//!   state, points, lines, faces, volume, area, centroid, inertia, missing and loose dimensions) say
-//!   what came of it; each solid gives a mesh by [`SketchSolid::mesh`].
+//! - [`SketchSession::objects`] (data) and [`SketchSession::objects_json`] (`{"objects": [...]}`,
+//!   each with name, state, points, lines, faces, volume, area, centroid, inertia, missing and
+//!   loose dimensions) give the results; each solid gives a mesh by [`SketchSolid::mesh`].
 //! - [`SketchSession::complete`] completes words for a prompt; [`SketchSession::over`] reports that QUIT was given.
 //!
 //! For derivatives, [`solve`] and [`solid()`] take any scalar: seed the values of dimensions by name.
@@ -55,7 +55,7 @@
 //! The data manager of the manual's appendix C (routines NADD, NFIND, NDELET, …) and the scroll,
 //! menu and screen routines have no successor, nor have the errors that only they raised: 103, 104,
 //! 106, 111, 121, 122, 131, 132, 201-204, 395, 397, 399 for point records, 403, 407-410, 500-502,
-//! 999. What the user could cause among them is caught where it arises (404, 396, 701).
+//! 999. Those of them that a user could cause are caught at their origin (404, 396, 701).
 //!
 //! Invariant: this crate reads no file and no clock, and no line given to it makes it panic.
 

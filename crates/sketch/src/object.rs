@@ -41,7 +41,7 @@ impl SketchFace {
 pub struct Reference {
     /// The point.
     pub point: PointId,
-    /// Where it is.
+    /// Coordinates.
     pub at: [f64; 3],
 }
 
@@ -50,13 +50,13 @@ pub struct Reference {
 pub struct SketchObject {
     /// Its name, as written.
     pub name: String,
-    /// Whether it is shown.
+    /// True if it is shown.
     pub display: bool,
-    /// Whether it is a result though others are made of it.
+    /// True if it is a result although other objects use it.
     pub keep: bool,
     /// The unit of its lengths, as a tag (`FT`, `M`, …).
     pub units: Option<String>,
-    /// The picture; shared, so that what follows from it is computed once.
+    /// The picture; shared, so that derived data are computed once.
     pub drawing: Arc<Drawing>,
     /// The reference point; the first point at the origin when `None`.
     pub reference: Option<Reference>,
@@ -68,11 +68,11 @@ pub struct SketchObject {
     pub faces: BTreeMap<FaceId, SketchFace>,
     /// Curves by folded name, in order of entry.
     pub curves: IndexMap<String, SketchCurve>,
-    /// What it is made of, when it is not a drawing.
+    /// Its definition, unless it is a drawing.
     pub feature: Option<Arc<Feature>>,
 }
 
-/// Which of several objects are results: those that no other one is made of, and those that are kept.
+/// For each of several objects, true if it is a result: not used by another one, or kept.
 pub fn results(objects: &[&SketchObject]) -> Vec<bool> {
     let operands = |object: &SketchObject| -> Vec<String> {
         let all = object.feature.iter().flat_map(|f| &f.operands);
@@ -124,7 +124,7 @@ impl SketchObject {
             .unwrap_or_else(|| format!("{prefix}{start}_"))
     }
 
-    /// Whether a dimension, variable or curve has this name.
+    /// True if a dimension, variable or curve has this name.
     pub fn has_name(&self, name: &str) -> bool {
         let key = name.to_ascii_lowercase();
         self.dimensions.contains_key(&key)
@@ -142,8 +142,8 @@ impl SketchObject {
         FaceId(self.faces.keys().last().map_or(1, |f| f.0.saturating_add(1)))
     }
 
-    /// Removes what mentions points or lines that are gone: faces, curves and dimensions.
-    /// Returns the names of dimensions and curves removed.
+    /// Removes faces, curves and dimensions of deleted points or lines. Returns the names of the
+    /// removed dimensions and curves.
     pub fn drop_dangling(&mut self) -> Vec<String> {
         let drawing = Arc::clone(&self.drawing);
         let point = |p: &PointId| drawing.points.contains_key(p);

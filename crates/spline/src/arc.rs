@@ -8,13 +8,13 @@ use std::fmt;
 /// Why three points give no arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcError {
-    /// The three points lie on a line, so there is no plane for a semicircle or circle.
+    /// The three points are on a line and do not determine the plane of a semicircle or circle.
     Collinear,
     /// The centre coincides with the start or with the point that gives the end's direction.
     AtCentre,
     /// A coordinate is NaN or infinite.
     NotFinite {
-        /// Which of the three points, from 0.
+        /// Number of the point, from 0.
         index: usize,
     },
 }

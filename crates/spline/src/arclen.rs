@@ -4,10 +4,10 @@ use moldloft_num::period::{breaks_between, corner_rate};
 use moldloft_num::{Curve, Order, Real, integrate};
 use std::fmt;
 
-/// A length that does not lie on the curve.
+/// A length beyond the ends of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondEnd {
-    /// The length asked for.
+    /// The given length.
     pub asked: f64,
     /// The length from the starting point to the end of the curve on that side.
     pub available: f64,
@@ -80,7 +80,7 @@ fn speed<T: Real>(curve: &dyn Curve<T>, t: T) -> T {
     curve.jet(t, Order::First)[1].norm()
 }
 
-/// How often a length may lead round a closed curve.
+/// Maximum number of turns of a length around a closed curve.
 const MOST_TURNS: f64 = 1e3;
 
 /// The parameter at the signed length `s` along the curve from `a`, to `accuracy` of length: in [0, 1] unless
@@ -137,11 +137,11 @@ pub fn inv_arclen<T: Real>(
     };
     let rate = speed(curve, T::from(t)).re();
     let residual = s - arclen(curve, a, T::from(t), accuracy);
-    // Only the derivatives of the step count; the root itself is already as good as asked.
+    // Only the derivatives of the step are needed; the root has converged.
     Ok(residual / rate - residual.re() / rate + t)
 }
 
-/// The root of the monotone `f` between `from` and `to`, starting at the share `guess` of the way.
+/// The root of the monotone `f` between `from` and `to`, starting at the fraction `guess`.
 fn bracketed_newton(
     f: impl Fn(f64) -> f64,
     slope: impl Fn(f64) -> f64,

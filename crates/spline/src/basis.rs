@@ -13,7 +13,7 @@ type Row<S> = SmallVec<[S; 8]>;
 pub struct Basis<S> {
     /// Index of the first of them, which is that of the first control point in play.
     pub first: usize,
-    /// Values, first and second derivatives; rows above the asked order are empty.
+    /// Values, first and second derivatives; rows above the requested order are empty.
     pub rows: [Row<S>; 3],
 }
 

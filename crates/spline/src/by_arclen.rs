@@ -4,8 +4,8 @@ use crate::PiecewiseCubic;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, integrate};
 use std::iter::once;
 
-/// A curve of piecewise cubics run at constant speed: the point at `t` is the one at the share `t`
-/// of the whole length.
+/// A curve of piecewise cubics with constant speed: the point at `t` is that at the fraction `t` of
+/// the total length.
 ///
 /// The parts are joined end to end; where two of them meet, derivatives may jump. Lengths are
 /// integrals of |C'| to about 1e-13 of the whole, so stations are true positions on the curve, not
@@ -26,7 +26,7 @@ use std::iter::once;
 pub struct ByArclen<T: Real> {
     /// The polynomials: coefficients of 1, s, s^2, s^3 from the start of each.
     spans: Vec<[Vec3<T>; 4]>,
-    /// How far s runs in each.
+    /// Interval of s of each.
     widths: Vec<T>,
     /// The length before each span, and the whole at the end.
     before: Vec<T>,

@@ -2,13 +2,13 @@
 
 use moldloft_num::Vec3;
 
-/// How many times what the curvature does beside it a jump must be.
+/// Minimum ratio of a jump to the variation of curvature beside it.
 const OUTSTANDING: f64 = 8.0;
 
-/// How many times its neighbours' curvature that of a corner must be.
+/// Minimum ratio of the curvature of a corner to that of its neighbours.
 const SHARP: f64 = 6.0;
 
-/// The least jump, as a share of the curvatures on its two sides.
+/// Minimum jump, relative to the curvatures on its two sides.
 const LEAST: f64 = 0.25;
 
 /// The indices, from 0, of the points at which the curvature of a smooth curve through `points`
@@ -16,10 +16,9 @@ const LEAST: f64 = 0.25;
 ///
 /// The curvature at a point is that of the circle through it and its neighbours, as a vector. A
 /// corner is a point with more than six times the curvature of both its neighbours. A jump is where
-/// the curvatures, continued in a line from either side, miss each other by more than a quarter of
-/// the larger and eight times their second differences beside. These are findings from samples: points
-/// too sparse to tell a jump from a bend give none, and neither do stretches of fewer than three
-/// steps.
+/// the curvatures, extrapolated linearly from both sides, differ by more than a quarter of the
+/// larger and eight times their second differences nearby. These are findings from samples: points
+/// too sparse to distinguish a jump from a bend, and parts of fewer than three steps, give none.
 ///
 /// # Example
 /// ```
@@ -79,8 +78,9 @@ fn strongest_jump(
         let line = |i: usize, j: usize, to: usize| {
             bends[i] + (bends[i] - bends[j]) * (step(i, to) / step(i, j))
         };
-        // The curvature at k continued from the points one and two steps away on one side, and how
-        // far it is from a line there; where no third point tells, two fifths of its change per step.
+        // The curvature at k extrapolated from the points one and two steps away on one side, and
+        // its deviation from a line there; without a third point, two fifths of its change per
+        // step.
         let side = |one: usize, two: usize, three: Option<usize>| {
             let calm = match three.filter(|&k| known(k)) {
                 Some(three) => (line(two, three, one) - bends[one]).norm(),

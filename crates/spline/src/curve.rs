@@ -18,7 +18,7 @@ pub enum SplineError {
     },
     /// The number of control points or weights does not fit the knots.
     Count {
-        /// The number that the knots ask for.
+        /// The number required by the knots.
         expected: usize,
         /// The number given.
         actual: usize,
@@ -35,7 +35,7 @@ pub enum SplineError {
         /// The weight.
         weight: f64,
     },
-    /// A parameter to split at or insert does not lie inside (0, 1).
+    /// The parameter of a split or insertion is not inside (0, 1).
     Outside {
         /// The parameter.
         t: f64,
@@ -70,7 +70,7 @@ impl fmt::Display for SplineError {
 
 impl std::error::Error for SplineError {}
 
-/// Checks what curves and surfaces have in common.
+/// Checks for both curves and surfaces.
 pub(crate) fn check_net<T: Real>(
     knots: &[&KnotVector],
     points: &[Vec3<T>],

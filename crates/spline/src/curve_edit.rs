@@ -30,8 +30,8 @@ impl<T: Real> BSplineCurve<T> {
     /// eq. 5.15, once per insertion).
     ///
     /// # Errors
-    /// [`SplineError::Outside`] unless 0 < t < 1, [`SplineError::Knots`] when the knot would stand
-    /// more than `degree` times.
+    /// [`SplineError::Outside`] unless 0 < t < 1, [`SplineError::Knots`] if the multiplicity would
+    /// exceed `degree`.
     pub fn insert_knot(&self, t: f64, times: usize) -> Result<Self, SplineError> {
         if !(t > 0.0 && t < 1.0) {
             return Err(SplineError::Outside { t });

@@ -12,14 +12,14 @@ use std::fmt;
 /// Why there is no such distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DistributionError {
-    /// Too few numbers asked for.
+    /// Too few numbers.
     TooFew {
         /// The fewest for this law.
         expected: usize,
-        /// The number asked for.
+        /// The given number.
         actual: usize,
     },
-    /// A limit or spacing is NaN or infinite, or the limits coincide where a spacing is asked for.
+    /// A limit or spacing is NaN or infinite, or the limits coincide with a spacing given.
     Limits {
         /// The start.
         start: f64,
@@ -38,7 +38,7 @@ pub enum DistributionError {
     },
     /// No distribution of this law has these spacings.
     Unreachable {
-        /// The spacings asked for.
+        /// The given spacings.
         spacings: [f64; 2],
         /// The distance to be divided.
         length: f64,
@@ -144,7 +144,7 @@ pub fn geometric2<T: Real>(start: T, end: T, first: T, last: T, n: usize) -> Res
     let cells = n - 1;
     let (a, b, l) = (first.re(), last.re(), length.re());
     let unreachable = DistributionError::Unreachable { spacings: [a, b], length: l, cells };
-    // The growth for m cells from the start, and by what factor the cells differ where they meet.
+    // Growth for m cells from the start, and ratio of the two cells at the junction.
     let total = |m: usize, r: f64| (a * growth_sum(r, m) + b * growth_sum(r, cells - m)) / l;
     let solve = |m: usize| -> Option<(f64, f64)> {
         let bound = 2.0 + libm::log((l / a).max(l / b)).abs();
@@ -260,8 +260,8 @@ pub fn d_tanh<T: Real>(start: T, end: T, start_spacing: T, end_spacing: T, n: us
 /// 0 leaving that end free.
 ///
 /// # Errors
-/// As [`d_tanh`]; at least four numbers, and [`DistributionError::Unreachable`] unless the two
-/// cells leave room for others and the law can have them.
+/// As [`d_tanh`]; at least four numbers, and [`DistributionError::Unreachable`] unless the law can
+/// have both cells with others between them.
 pub fn d_tanhx<T: Real>(start: T, end: T, first: T, last: T, n: usize) -> Result<T> {
     check(start, end, n, 4)?;
     spacing(first, 0.0)?;
@@ -381,7 +381,7 @@ pub fn count_for(
     Ok(Some(n))
 }
 
-/// Beyond this ratio of uniform to asked spacing, sinh overflows.
+/// Ratio of uniform to given spacing beyond which sinh overflows.
 const LARGEST: f64 = 1e300;
 
 fn check<T: Real>(
@@ -445,8 +445,8 @@ fn inverse_sinhc<T: Real>(b: T) -> T {
 fn inverse_sinhc_f64(b: f64) -> f64 {
     const ULPS: f64 = 4.0 * f64::EPSILON;
     if b < 3.0 {
-        // sinhc is convex and its tangent at 0 is 1 + w/6: the start lies right of the root, and
-        // Newton's steps approach it from there without overshooting.
+        // sinhc is convex and its tangent at 0 is 1 + w/6: the start is to the right of the root,
+        // and Newton's steps approach it from there without overshooting.
         let mut w = 6.0 * (b - 1.0);
         for _ in 0..40 {
             let s = sinhc(Dual::<1>::seeded(w, 0));

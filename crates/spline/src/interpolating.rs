@@ -41,7 +41,7 @@ pub enum InterpolationError {
     },
     /// There is no interpolating spline of this type: 1 is a polyline, 3 cubic.
     Type {
-        /// The type asked for.
+        /// The given type.
         actual: usize,
     },
 }
@@ -71,7 +71,7 @@ impl fmt::Display for InterpolationError {
 
 impl std::error::Error for InterpolationError {}
 
-/// What holds at an end of an open interpolating spline.
+/// Condition at an end of an open interpolating spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum End<T> {
     /// The first two pieces are one polynomial.

@@ -10,7 +10,7 @@ pub const MAX_DEGREE: usize = 25;
 pub enum KnotError {
     /// The degree is not in 1..=[`MAX_DEGREE`].
     Degree {
-        /// The degree asked for.
+        /// The given degree.
         degree: usize,
     },
     /// A clamped spline needs at least `2 (degree + 1)` knots.
@@ -38,9 +38,9 @@ pub enum KnotError {
     Multiplicity {
         /// The knot.
         knot: f64,
-        /// How often it stands there.
+        /// Actual multiplicity.
         actual: usize,
-        /// How often it may.
+        /// Maximum multiplicity.
         allowed: usize,
     },
     /// The parameter range from knot `degree` to the `degree`-th knot from the end is empty.
@@ -208,7 +208,7 @@ impl KnotVector {
         (self.degree..self.points()).filter(|&k| self.knots[k] < self.knots[k + 1])
     }
 
-    /// How often `knot` stands in the list.
+    /// Multiplicity of `knot` in the list.
     pub fn multiplicity(&self, knot: f64) -> usize {
         self.knots.iter().filter(|&&k| k == knot).count()
     }
@@ -241,8 +241,8 @@ impl KnotVector {
         Self::new(self.degree, knots)
     }
 
-    /// The knots of the same splines written in the next higher degree: every distinct knot stands
-    /// once more.
+    /// The knots of the same splines in the next higher degree: the multiplicity of each distinct
+    /// knot is one more.
     ///
     /// # Errors
     /// [`KnotError::Degree`] above [`MAX_DEGREE`].

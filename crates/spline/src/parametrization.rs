@@ -3,7 +3,7 @@
 use crate::InterpolationError;
 use moldloft_num::{Real, Vec3};
 
-/// How the knots of an interpolating spline follow from its points.
+/// Parametrisation of an interpolating spline by its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parametrization {
     /// In proportion to the chords.

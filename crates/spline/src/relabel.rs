@@ -28,7 +28,7 @@ pub enum RelabelError {
     },
     /// The law has a zero tangent inside (0, 1).
     ZeroSlope {
-        /// Where.
+        /// Parameter.
         at: f64,
     },
     /// Two parameters of a table are not in ascending order.
@@ -43,9 +43,9 @@ pub enum RelabelError {
         /// Values.
         values: usize,
     },
-    /// A number of the law lies outside its range.
+    /// A number of the law is outside its range.
     Range {
-        /// What the number is.
+        /// Name of the number.
         name: &'static str,
         /// The number.
         value: f64,
@@ -88,7 +88,7 @@ impl fmt::Display for RelabelError {
 
 impl std::error::Error for RelabelError {}
 
-/// Where a spacing law is dense.
+/// Ends at which a spacing law is dense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dense {
     /// At 0 and 1.
@@ -158,8 +158,8 @@ impl<T: Real> ReparametrizationForm<T> {
     /// first and the last are fixed: their derivatives are dropped.
     ///
     /// # Errors
-    /// [`RelabelError`] when the values run back, do not run from 0 to 1, are too few, or so many
-    /// are equal that R has a zero tangent inside.
+    /// [`RelabelError`] if the values decrease, do not extend from 0 to 1, are too few, or if so
+    /// many are equal that R has a zero tangent inside.
     pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
         if let [first, .., last] = values.as_mut_slice() {
             let ends = (first.re(), last.re());
@@ -171,8 +171,8 @@ impl<T: Real> ReparametrizationForm<T> {
         Self::partial(degree, values)
     }
 
-    /// The same from any first to any last value: a law that leaves parts of a curve out, or goes
-    /// beyond its ends.
+    /// The same with any first and last value: a law that leaves parts of a curve out, or extends
+    /// it beyond its ends.
     ///
     /// # Errors
     /// As for [`Self::spline`], but for the ends.
@@ -190,7 +190,7 @@ impl<T: Real> ReparametrizationForm<T> {
         let mut ends = knots.as_slice().to_vec();
         ends.dedup();
         let law = Self { law: Formula::Spline { knots, values } };
-        // The slope is a spline whose coefficients are none negative: inside a span it vanishes
+        // The slope is a spline with non-negative coefficients: inside a span it vanishes
         // everywhere or nowhere.
         let middles = ends.windows(2).map(|w| 0.5 * (w[0] + w[1]));
         for t in middles.chain(ends[1..ends.len() - 1].iter().copied()) {

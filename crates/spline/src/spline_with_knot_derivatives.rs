@@ -19,8 +19,8 @@ pub struct SplineWithKnotDerivatives<T> {
 }
 
 impl<T: Real> SplineWithKnotDerivatives<T> {
-    /// The curve of these control points; knots over any range (clamped and uniform when none are
-    /// given) and weights (all 1).
+    /// The curve of these control points; knots with any range (default: clamped and uniform) and
+    /// weights (default: 1).
     ///
     /// # Errors
     /// [`SplineError`] when they do not fit each other or are not finite.

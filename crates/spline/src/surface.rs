@@ -15,12 +15,12 @@ pub struct BSplineSurface<T> {
     v: KnotVector,
     points: Vec<Vec3<T>>,
     weights: Option<Vec<T>>,
-    /// For scattered points, made when first asked for; `None` inside where degrees are too high.
+    /// For scattered points, made on first use; `None` inside if degrees are too high.
     pub(crate) patches: OnceLock<Option<Patches<T>>>,
 }
 
 impl<T: Real> BSplineSurface<T> {
-    /// The surface of these knots (over [0, 1]); control point (i, j) and its weight stand at
+    /// The surface of these knots (over [0, 1]); control point (i, j) and its weight have the index
     /// `i * v.points() + j`.
     ///
     /// # Errors

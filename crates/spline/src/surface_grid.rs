@@ -97,7 +97,7 @@ impl<X: Linear> Lines<X> {
     }
 }
 
-/// What basis functions combine: points, or points with a weight.
+/// Values that basis functions combine: points, or points with a weight.
 trait Linear: Copy {
     fn zero() -> Self;
     fn times(self, b: f64) -> Self;

@@ -26,7 +26,7 @@ pub struct GridSpline<T: Real> {
     v: Vec<T>,
     /// Point (i, j) at `i * v.len() + j`.
     points: Vec<Vec3<T>>,
-    /// Derivatives by u, by v and by both, at the points; none for a bilinear surface.
+    /// Derivatives with respect to u, v and both, at the points; `None` for a bilinear surface.
     slopes: Option<[Vec<Vec3<T>>; 3]>,
 }
 
@@ -43,8 +43,8 @@ impl<T: Real> GridSpline<T> {
     /// knots `u` and `v`, with the same end conditions at all edges.
     ///
     /// # Errors
-    /// [`InterpolationError`] as of [`InterpolatingSpline::with_knots`]; periodic ends ask for equal
-    /// first and last lines, clamped ones are for curves.
+    /// [`InterpolationError`] as for [`InterpolatingSpline::with_knots`]; periodic ends require
+    /// equal first and last lines, clamped ones are for curves.
     pub fn bicubic(
         u: Vec<T>,
         v: Vec<T>,
@@ -68,7 +68,8 @@ impl<T: Real> GridSpline<T> {
         Ok(surface.expect("nothing ends it"))
     }
 
-    /// As [`Self::bicubic_with`], as long as `go_on` says so, which is asked for each line; `None` when it does not.
+    /// As [`Self::bicubic_with`]; stops and returns `None` when `go_on`, which is called for each
+    /// line, returns false.
     ///
     /// # Errors
     /// As [`Self::bicubic`].
@@ -200,7 +201,7 @@ fn slopes<T: Real>(
     Ok(Some(slopes))
 }
 
-/// The cell of `t`, how far it is in it as a share, and the inverse of its width.
+/// The cell of `t`, the position in it as a fraction, and the inverse of its width.
 fn cell<T: Real>(knots: &[T], t: T) -> (usize, T, T) {
     let inner = &knots[1..knots.len() - 1];
     let k = inner.partition_point(|knot| knot.re() <= t.re());

@@ -1,7 +1,7 @@
 //! The languages of Moldloft: texts into syntax trees and back.
 //!
-//! `text -> tokens -> tree (+ diagnostics)`. Parsing never fails and never panics: it gives a whole tree and a list of
-//! what was wrong with the text. Nothing here knows about geometry.
+//! `text -> tokens -> tree (+ diagnostics)`. Parsing never fails and never panics: it gives a
+//! complete tree and a list of the errors in the text. The crate does not depend on geometry.
 //!
 //! - [`sdl`]: the language of `.sdl` programs (grammar in `docs/grammar.ebnf`), with its formatter.
 //! - [`model_file`]: MultiSurf model files 0.35 and 1.x.

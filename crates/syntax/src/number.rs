@@ -34,7 +34,8 @@ pub fn plain(value: f64) -> String {
     text
 }
 
-/// Whether the value can be spelled with digits only and read back without loss: a whole number below 1e15.
+/// True if the value can be spelled with digits only and read back without loss: a whole number
+/// below 1e15.
 pub fn is_whole(value: f64) -> bool {
     value.abs() < 1e15 && value == value.trunc()
 }

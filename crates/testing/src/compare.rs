@@ -1,9 +1,9 @@
-//! Comparisons that say what was found and by how much it is off.
+//! Comparisons that report the values and their difference.
 
 use moldloft_num::Vec3;
 use std::fmt::Debug;
 
-/// What has a distance from another of its type.
+/// A type with a distance.
 pub trait AbsoluteDistance: Copy + Debug {
     /// The absolute distance.
     fn distance_to(self, other: Self) -> f64;

@@ -1,5 +1,5 @@
-//! What tests share: random numbers that recur on every machine, derivatives by differences, comparisons
-//! and the switch for long runs.
+//! Common parts of tests: random numbers that are equal on every machine, derivatives by
+//! differences, comparisons and the switch for long runs.
 //!
 //! ```
 //! use moldloft_testing::{Random, close, ridders};

@@ -56,7 +56,7 @@ impl Random {
     /// One of `items`.
     ///
     /// # Panics
-    /// When there are none.
+    /// If it is empty.
     pub fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
         &items[self.below(items.len())]
     }
@@ -103,7 +103,7 @@ impl Xorshift {
     /// One of `items`.
     ///
     /// # Panics
-    /// When there are none.
+    /// If it is empty.
     pub fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
         &items[self.below(items.len())]
     }

@@ -2,17 +2,18 @@
 //!
 //! `bytes in -> Session -> bytes out`
 //!
-//! The page asks for room with `room`, writes a message there and calls `start` (once) or `answer`; what
-//! `answer` returns is the length of the frame at `reply`. The message of `start` is
-//! `u32 length, JSON, bytes of the files`; that of `answer` is a request in JSON.
+//! The page allocates memory with `room`, writes a message there and calls `start` (once) or
+//! `answer`; the result of `answer` is the length of the frame at `reply`. The message of `start`
+//! is `u32 length, JSON, bytes of the files`; that of `answer` is a request in JSON.
 //!
-//! Files that the model asked for and the page does not carry are listed by `missing`, so that a page whose
-//! host has them can begin again.
+//! Files that the model requested and the page does not contain are listed by `missing`, so that a
+//! page whose host has them can start again.
 //!
-//! What goes wrong inside ends the instance, after `env.panicked` was given the words: the page makes
-//! another one of the same text.
+//! A panic ends the instance, after `env.panicked` was given its message: the page makes another
+//! one with the same text.
 //!
-//! Invariant: computes nothing: `session` answers. The unsafe code is what the linker's names need.
+//! Invariant: no computation here: `session` answers. The unsafe code is required for the linker's
+//! names.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg(target_arch = "wasm32")]
@@ -28,11 +29,11 @@ use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Memory is counted, as everywhere: what a page cannot hold is an error with its place.
+/// Memory is counted, as everywhere: exceeding the limit is an error with a position.
 #[global_allocator]
 static ALLOCATOR: Counting<pools::Pools> = Counting::over(pools::Pools::new());
 
-/// What a model may hold of the 4 GiB that an instance can have.
+/// Limit of a model's memory, of the 4 GiB that an instance can have.
 const MEMORY: u64 = 3 << 30;
 
 #[link(wasm_import_module = "env")]
@@ -41,14 +42,14 @@ unsafe extern "C" {
     fn panicked(words: *const u8, length: usize);
 }
 
-/// What a page begins with.
+/// Initial state of a page.
 #[derive(Deserialize)]
 struct InitialModel {
-    /// The model's name; its ending says what it is.
+    /// The model's name; its extension determines the format.
     name: String,
     /// The text.
     text: String,
-    /// The files that the model reads, as it asks for them.
+    /// The files that the model reads, by requested path.
     #[serde(default)]
     files: Vec<Carried>,
 }
@@ -58,17 +59,17 @@ struct InitialModel {
 struct Carried {
     /// As the text spells it.
     path: String,
-    /// The name of the text that asks.
+    /// Name of the requesting text.
     from: Option<String>,
     /// Its own name.
     name: String,
     /// Its first byte behind the JSON.
     offset: usize,
-    /// How many.
+    /// Number.
     count: usize,
 }
 
-/// A file by the path that a text asks for, and the name of that text.
+/// A file by the requested path, and the name of the requesting text.
 type Asked = (String, Option<String>);
 
 /// The files that the page carries, and no others.
@@ -103,7 +104,7 @@ thread_local! {
     static ENGINE: RefCell<Engine> = RefCell::default();
 }
 
-/// Room for a message of so many bytes.
+/// Memory for a message of `bytes` bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(bytes: usize) -> *mut u8 {
     ENGINE.with_borrow_mut(|engine| {
@@ -113,7 +114,7 @@ pub extern "C" fn room(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Begins with the model of the message; false when that is none.
+/// Starts with the model of the message; false if it is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn start() -> bool {
     std::panic::set_hook(Box::new(|info| {
@@ -162,7 +163,8 @@ pub extern "C" fn reply() -> *const u8 {
     ENGINE.with_borrow(|engine| engine.reply.as_ptr())
 }
 
-/// Makes a reply of the files that were asked for and are not carried, as JSON `[[path, asker], ...]`; its length.
+/// Makes a reply with the files that were requested and are not contained, as JSON `[[path, asker],
+/// ...]`; returns its length.
 #[unsafe(no_mangle)]
 pub extern "C" fn missing() -> usize {
     ENGINE.with_borrow_mut(|engine| {

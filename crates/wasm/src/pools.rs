@@ -1,7 +1,8 @@
 //! Small blocks by size: a model's move takes and gives back thousands of them, and a list of free blocks for each
 //! size answers in a few instructions. Greater blocks are the system's.
 //!
-//! Blocks go back to their list and never to the system, so small ones hold what they held at most.
+//! Blocks are returned to their list and never to the system, so small ones keep their maximum
+//! memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::UnsafeCell;
@@ -11,13 +12,13 @@ use std::ptr::null_mut;
 const STEP: usize = 16;
 /// The greatest small block.
 const SMALL: usize = 1024;
-/// What is taken from the system at a time.
+/// Bytes taken from the system at a time.
 const CHUNK: usize = 64 << 10;
 
 struct Lists {
     /// The first free block of each size; each begins with the address of the next.
     free: [*mut u8; SMALL / STEP],
-    /// What is left of the last chunk.
+    /// Rest of the last chunk.
     rest: *mut u8,
     left: usize,
 }
@@ -28,7 +29,7 @@ pub struct Pools(UnsafeCell<Lists>);
 // SAFETY: the engine has one thread; a page's worker with shared memory is another target.
 unsafe impl Sync for Pools {}
 
-/// The list of a block; none of a great one.
+/// The list of a block; `None` for a large one.
 fn list_of(layout: Layout) -> Option<usize> {
     let small = layout.size() <= SMALL && layout.align() <= STEP;
     small.then(|| layout.size().saturating_sub(1) / STEP)
@@ -64,7 +65,7 @@ impl Lists {
         let size = (list + 1) * STEP;
         if self.left < size {
             if self.left > 0 {
-                // SAFETY: what is left is a multiple of 16 bytes, fewer than a small block's.
+                // SAFETY: the rest is a multiple of 16 bytes, less than a small block's size.
                 unsafe { self.give(self.left / STEP - 1, self.rest) };
                 self.left = 0;
             }

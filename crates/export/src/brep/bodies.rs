@@ -5,8 +5,9 @@
 //! A body with any other surface, as a blend, has exact plane faces, and patches of splines that are
 //! within the accuracy elsewhere.
 //!
-//! Facets say what hangs together only; where a place of an edge or face then is not on the border of the set, the
-//! facets have missed something, and finer ones are made, or the body is refused with the place.
+//! Facets determine connectivity only; if a point of an edge or face is not on the boundary of the
+//! set, the facets have missed something, and finer ones are made, or the body is refused with the
+//! position.
 
 use crate::ExportFailure;
 use moldloft_brep::{
@@ -36,13 +37,13 @@ const PLACES: f64 = 6.0;
 /// A part that cells pass over.
 const THIN: &str = "thin-part";
 
-/// The volume of a body is proved to this part of it, with at most so many cells: fewer where the facets prove that
-/// they miss nothing.
+/// Relative accuracy of the proved volume of a body, and maximum number of cells for it: fewer if
+/// the facets are proved to be complete.
 const SHARE: f64 = 1e-9;
 const PROOF: usize = 20_000;
 const CHECK: usize = 4_000;
 
-/// What helps with a body that is refused.
+/// Remedy for a refused body.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
 
 /// Adds the faces of the body of that name, if it is one of a set; false for other bodies.
@@ -63,7 +64,7 @@ pub fn add(
         SetOfBody { set: &set, over: &over, name, mesh }.add(brep, accuracy, size)?;
         return Ok(true);
     }
-    // All or nothing: what is refused later is triangles as a whole.
+    // A body refused later is written as triangles as a whole.
     let mut made = Brep::default();
     let solid = solid_part(&set);
     if !solid.is_nothing() {
@@ -74,7 +75,7 @@ pub fn add(
     Ok(true)
 }
 
-/// What is written.
+/// The set of a body.
 struct SetOfBody<'a> {
     set: &'a Set,
     over: &'a Box3,
@@ -104,7 +105,7 @@ impl SetOfBody<'_> {
         }
     }
 
-    /// Whether all surfaces that are shown may be exact ones; more is known of facets.
+    /// True if all visible surfaces may have an exact form; facets give the final answer.
     fn is_plain(&self) -> bool {
         const KINDS: [&str; 6] = ["plane", "sphere", "cylinder", "cone", "torus", "field"];
         let kinds = self.shown_kinds();
@@ -116,7 +117,8 @@ impl SetOfBody<'_> {
             && (!kinds.contains(&"field") || self.set.leaves().iter().all(quadric))
     }
 
-    /// Whether it shows surfaces of expressions, of which patches may be made where exact faces are not found.
+    /// True if it has surfaces of expressions, for which patches may be made if there are no exact
+    /// faces.
     fn has_expressions(&self) -> bool {
         self.shown_kinds().contains(&"field")
     }
@@ -170,7 +172,8 @@ impl SetOfBody<'_> {
         fault
     }
 
-    /// Adds the body as exact faces; else why it has none, without a reason where a surface is of another form.
+    /// Adds the body as exact faces; otherwise returns the reason, or `None` for a surface of
+    /// another form.
     fn exact(
         &self,
         brep: &mut Brep,
@@ -181,7 +184,7 @@ impl SetOfBody<'_> {
         let mut before = f64::INFINITY;
         for level in LEVELS {
             let facets = self.facets(level)?;
-            // The thinnest side of a box asks for finer cells than coarse levels.
+            // A thin box makes the cells of coarse levels equal.
             if std::mem::replace(&mut before, facets.step) == facets.step {
                 continue;
             }
@@ -269,7 +272,7 @@ impl SetOfBody<'_> {
         Ok(last)
     }
 
-    /// What is wrong with faces.
+    /// The fault of faces.
     fn judged(
         &self,
         made: &Brep,
@@ -287,8 +290,9 @@ impl SetOfBody<'_> {
         }
     }
 
-    /// What is wrong with a body whose faces do not enclose the volume that is proved of the set: a part that all cells miss.
-    /// Faces of which the volume is not known by their edges are judged by that of the facets.
+    /// The fault of a body whose faces do not enclose the proved volume of the set: a part missed
+    /// by all cells. If the volume of the faces is not known from their edges, that of the facets
+    /// is compared.
     fn wrong_volume(
         &self,
         made: &Brep,
@@ -408,7 +412,7 @@ fn surface(primitive: &Primitive<f64>, over: &Box3) -> Option<SurfaceShape> {
         Form::Cone { axis, angle } => {
             SurfaceShape::Cone { axes: about(axis), radius: 0.0, half_angle: 0.5 * angle }
         }
-        // One that meets itself has points of which the normal is none.
+        // A self-intersecting torus has points without a normal.
         Form::Torus { axis, major, minor } if minor < major => {
             SurfaceShape::Torus { axes: about(axis), major: *major, minor: *minor }
         }
@@ -451,7 +455,8 @@ fn quadric(primitive: &Primitive<f64>, over: &Box3) -> Option<SurfaceShape> {
     SurfaceImage::new(of, found.centre, [x, right, z]).map(|i| SurfaceShape::Image(Box::new(i)))
 }
 
-/// A place of a face whose border is one straight edge there and back: what facets show of it is none.
+/// A point of a face whose border is one straight edge in both directions: the facets do not
+/// represent it.
 fn between_one_line(made: &Brep) -> Option<Vec3> {
     let straight = |edge: usize| made.edges[edge].curve.points.len() == 2;
     let borders = made.faces.iter().flat_map(|face| &face.loops);
@@ -531,8 +536,9 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
         .help(help)
 }
 
-/// Whether whole faces on cylinders and cones are tried: there are such, and what meets them crosses them. Beside a surface that
-/// touches one, as a blend does, edges would cross their neighbours within the accuracy.
+/// True if whole faces on cylinders and cones should be tried: there are some, and their neighbours
+/// cross them. Beside a tangent surface, such as a blend, edges would intersect their neighbours
+/// within the accuracy.
 fn wants_whole(facets: &LabelledFacets, field: &SurfaceField<'_>) -> bool {
     /// The sine of the angle between surfaces that cross.
     const CROSSING: f64 = 0.1;

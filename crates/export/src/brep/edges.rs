@@ -12,7 +12,7 @@ use moldloft_spline::nurbs::{FitOptions, Nurbs, SampledShape, fit, of_curve};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// Curves through the same vertices that part by more than so many times the accuracy are two edges.
+/// Distance, in accuracies, beyond which curves through the same vertices are two edges.
 const PARTED: f64 = 50.0;
 
 /// And by this share of their length: the tolerance of declared joins is seldom more.
@@ -21,7 +21,7 @@ const JOINED: f64 = 1e-4;
 /// Curves within this share of the size at equal parameters run alike.
 const ALIKE: f64 = 1e-9;
 
-/// A side of a loop with what is known of it.
+/// A side of a loop with derived data.
 struct Sided<'a> {
     face: usize,
     side: &'a OutlineSide,
@@ -36,7 +36,7 @@ struct SideInterval {
     to: usize,
 }
 
-/// What sews faces.
+/// State of sewing faces.
 pub struct Sewing<'a> {
     outlines: &'a [FaceOutline],
     surfaces: &'a [Arc<Nurbs<2>>],
@@ -201,7 +201,7 @@ impl<'a> Sewing<'a> {
         runs.iter().map(|run| self.edge(run)).collect()
     }
 
-    /// Makes the curves of snakes side by side; what fails is reported where it is needed.
+    /// Makes the curves of snakes in parallel; errors are reported on use.
     fn fit_snakes(&mut self) {
         let long = |s: &Sided<'_>| s.side.vertices.iter().any(|v| *v != s.side.vertices[0]);
         let snakes: Vec<usize> = (0..self.sides.len())
@@ -290,8 +290,8 @@ impl<'a> Sewing<'a> {
         })
     }
 
-    /// Whether a curve through the vertices of an edge is that edge: whether it runs the same way, at equal
-    /// parameters, and how far off.
+    /// Comparison of a curve through the vertices of an edge with that edge: same direction, equal
+    /// parameters, and distance.
     fn same(&self, edge: usize, ends: [usize; 2], curve: &Nurbs<1>) -> Option<(bool, bool, f64)> {
         const PLACES: usize = 12;
         let known = &self.brep.edges[edge];
@@ -313,7 +313,7 @@ impl<'a> Sewing<'a> {
         if off <= ALIKE * self.size + self.accuracy.min(1e-6 * self.size) {
             return Some((forward, true, off));
         }
-        // Other parameters: how far each place is from the curve.
+        // Different parameters: distance of each point from the curve.
         const FINE: usize = 64;
         let fine: Vec<f64> = (0..=FINE).map(|k| k as f64 / FINE as f64).collect();
         let fine = [fine];
@@ -321,7 +321,7 @@ impl<'a> Sewing<'a> {
         let places = known.curve.grid(&fine);
         let off = own.iter().map(|p| to_curve(*p, &known.curve, &places)).fold(0.0, f64::max);
         let length: f64 = places.windows(2).map(|w| w[0].distance(w[1])).sum();
-        // What joins make one may be this far apart; the file says how far it is.
+        // Joined edges may be this far apart; the file states the distance.
         let allowed = PARTED * self.accuracy + JOINED * length;
         (off <= allowed).then_some((forward, false, off))
     }

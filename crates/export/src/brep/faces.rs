@@ -9,7 +9,8 @@ use moldloft_parallel::prelude::*;
 use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_surface};
 use std::sync::Arc;
 
-/// Control points within this share of the largest coordinate from a plane lie in it.
+/// Distance of control points from a plane, relative to the largest coordinate, within which they
+/// are in it.
 const IN_PLANE: f64 = 1e-12;
 
 /// The NURBS of each outline's surface: of one that is another, turned and shifted, that fit moved; fits are made side by
@@ -135,7 +136,7 @@ fn moved(
             return None;
         }
     }
-    // Splines enlarge what their points are off by a few times.
+    // Splines amplify errors of their points by a small factor.
     let error = fit.error + 10.0 * off;
     let points = fit.points.iter().map(|p| motion.place(*p)).collect();
     (error <= accuracy).then(|| Nurbs { points, error, ..fit.clone() })
@@ -149,7 +150,7 @@ pub fn not_fitted(name: &str, error: &NotFitted, accuracy: f64) -> ExportFailure
         .into()
 }
 
-/// The plane that a surface lies in, its normal being that of the surface.
+/// The plane of a surface, with the normal of the surface.
 pub fn plane(surface: &Nurbs<2>) -> Option<SurfaceShape> {
     let [nu, nv] = surface.counts();
     let at = |i: usize, j: usize| surface.points[i * nv + j];

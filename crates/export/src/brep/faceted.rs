@@ -40,7 +40,7 @@ pub fn part(document: &Document, mesh: &Mesh, name: &str) -> FacetedPart {
     made
 }
 
-/// How far the middles of a set's triangles are from its surfaces, to first order.
+/// Distance of the centres of a set's triangles from its surfaces, to first order.
 fn error(document: &Document, name: &str, part: &FacetedPart) -> Option<f64> {
     let graph = document.graph();
     let object = graph.find(name).and_then(|key| graph.get(key))?;

@@ -15,9 +15,9 @@ use moldloft_spline::nurbs::Nurbs;
 
 /// Halvings of a piece.
 const DEEPEST: u32 = 16;
-/// What is nearer to a sheet is on it, as a share of the size.
+/// Distance from a sheet, relative to the size, below which a point is on it.
 const ON: f64 = 1e-7;
-/// What counts as straight, as a share of the size.
+/// Deviation, relative to the size, below which a line is straight.
 const STRAIGHT: f64 = 1e-12;
 
 /// Adds the lines and points of the shown bodies, and their images in planes of symmetry, a part for each body.
@@ -77,7 +77,7 @@ fn unknown(name: &str, p: Vec3) -> Diagnostic {
     .help("write it as obj or vtp, or hide it")
 }
 
-/// Adds the images of all lines and points in a coordinate plane, but of those that lie in it.
+/// Adds the images of all lines and points in a coordinate plane, except those in the plane.
 fn mirror(part: &mut Part, axis: usize) {
     let image = |p: &Vec3| {
         let mut p = p.to_array();
@@ -126,7 +126,7 @@ impl LinePiece {
         [self.ends[0] + self.tangents[0] * third, self.ends[1] - self.tangents[1] * third]
     }
 
-    /// How far it is from both sheets.
+    /// Distance from both sheets.
     fn off(&self, pair: [&Primitive; 2], scale: [f64; 2]) -> f64 {
         let [b, c] = self.inner();
         let at = |t: f64| {
@@ -242,7 +242,7 @@ fn spline(pieces: &[LinePiece], error: f64, size: f64) -> Option<Nurbs<1>> {
         at += piece.length;
         let Some(next) = pieces.get(k + 1) else { break };
         let smooth = piece.tangents[1].distance(next.tangents[0]) < 1e-9;
-        // Where the tangent is one, the point between follows from its neighbours.
+        // At a smooth junction the point between follows from its neighbours.
         if !smooth {
             points.push(piece.ends[1]);
         }

@@ -26,7 +26,7 @@ use moldloft_mesh::Mesh;
 /// Default accuracy of fits, relative to the model's diagonal.
 const ACCURACY: f64 = 1e-6;
 
-/// Distance from a plane of symmetry, as a share of the size, that counts as in the plane.
+/// Distance from a plane of symmetry, relative to the size, of points in the plane.
 const SIDE: f64 = 1e-6;
 
 /// The shown surfaces of a model, with their images in its planes of symmetry, as a boundary representation. A model
@@ -47,7 +47,8 @@ pub fn brep(
     }
 }
 
-/// As [`brep`], with bodies that have no faces on surfaces as triangles; and why each of these has none.
+/// As [`brep`], with triangles for bodies that have no faces on surfaces; and the reason for each
+/// of these.
 ///
 /// # Errors
 /// As [`brep`], but for such bodies.
@@ -90,7 +91,7 @@ pub fn brep_or_facets(
         let made = exact_body(&mut brep, document, mesh, &name, [accuracy, size]);
         if let Err(fault) = made {
             let reported = fault.diagnostics("step");
-            // Parts that facets miss, too, and what ran out of its limits are errors.
+            // Parts missed by the facets too, and exceeded limits, are errors.
             let faces_only = reported.iter().all(|d| d.id == "curved-body");
             if !faces_only || reported.is_empty() {
                 return Err(ExportFailure::from(reported));
@@ -130,8 +131,8 @@ fn exact_body(
     polyhedra::add(brep, mesh, name, size)
 }
 
-/// Refuses faces of a half that reach to both sides of its plane of symmetry, or lie on both: their images would
-/// double them.
+/// Refuses faces of a half that extend to both sides of its plane of symmetry, or are on both:
+/// their images would double them.
 fn check_side(brep: &Brep, axis: usize, letter: char, size: f64) -> Result<(), ExportFailure> {
     let (mut low, mut high) = (None, None);
     for face in &brep.faces {
@@ -153,7 +154,7 @@ fn check_side(brep: &Brep, axis: usize, letter: char, size: f64) -> Result<(), E
     }
 }
 
-/// What is not written exactly, and how near it is; nothing where all of it is.
+/// The inexact faces, with their accuracy; `None` if all are exact.
 pub(crate) fn fitted(brep: &Brep, document: &Document) -> Option<Diagnostic> {
     const NAMED: usize = 3;
     let mut names: Vec<&str> = Vec::new();

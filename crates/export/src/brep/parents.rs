@@ -5,7 +5,7 @@ use moldloft_num::Order;
 use moldloft_panel::{FaceOutline, OutlineCurve};
 use moldloft_registry::{CurveRef, Value};
 
-/// How far beyond [0, 1] a path may be by rounding.
+/// Maximum excess of a path beyond [0, 1] by rounding.
 const BEYOND: f64 = 1e-9;
 
 /// Puts the outline of a sub-surface between snakes on its parent; others stay as they are.

@@ -1,4 +1,4 @@
-//! Bodies of triangles as faces: triangles that lie in one plane and hang together are one plane face.
+//! Bodies of triangles as faces: connected coplanar triangles are one plane face.
 
 use crate::ExportFailure;
 use moldloft_brep::{Brep, BrepEdge, BrepFace, Coedge, SurfaceShape};
@@ -8,7 +8,7 @@ use moldloft_num::Vec3;
 use moldloft_picture::PALETTE;
 use std::collections::HashMap;
 
-/// Vertices within this share of the size from a plane lie in it.
+/// Distance of vertices from a plane, relative to the size, within which they are in it.
 const IN_PLANE: f64 = 1e-9;
 
 /// Most triangles that do not hang together with others in their plane, before a body counts as curved.
@@ -91,7 +91,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
             brep.vertices.len() - 1
         })
     };
-    // A vertex that two faces alone meet at, in one line, is none.
+    // A vertex of only two faces, on a straight line, is left out.
     let mut round: HashMap<u32, Vec<usize>> = HashMap::new();
     for (k, (t, _)) in triangles.iter().enumerate() {
         for &v in t {

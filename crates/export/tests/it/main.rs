@@ -1,4 +1,4 @@
-//! The table of formats: every row writes, and says what it does.
+//! The table of formats: every row writes as described.
 
 mod spline_patches;
 

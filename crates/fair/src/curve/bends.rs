@@ -8,25 +8,26 @@ use crate::optimum::goal::{Goal, GoalOptimum};
 use crate::{FairError, Measure, ShapeConstraints, Space};
 use moldloft_num::Vec3;
 
-/// The change of the measure, as a share, at which signs are settled, and times that they are made linear, where a turn
-/// fewer is all that they are for; and once the curve has them.
+/// Search under signs, when its only purpose is to remove turns: relative change of the measure at
+/// convergence, maximum number of linearisations, and the number of those after the signs hold.
 const SETTLED: f64 = 1e-3;
 const ROUNDS: usize = 12;
 const FEW: usize = 4;
 
-/// The share of a tolerance from which on it is reached.
+/// Fraction of a tolerance from which it counts as reached.
 const REACHED: f64 = 1.0 - 1e-4;
 
-/// Of more points than this a fairest curve with more turns than these owes them to rounding: sixth differences of
-/// so short steps have no digits left, and its signs say nothing.
+/// If there are more points, and the fairest curve has more turns than this, the turns are due to
+/// rounding: sixth differences of such short steps have no digits left, and their signs are
+/// meaningless.
 const MANY: usize = 2000;
 const ROUNDED_TURNS: usize = 32;
 
-/// Steps, and halvings of one of them, on the way between two curves.
+/// Steps, and halvings of one of them, of the interpolation between two curves.
 const SHARES: usize = 32;
 const HALVINGS: usize = 6;
 
-/// What is counted of a curve, on the same samples.
+/// Counts of a curve, all on the same samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BendCounts {
     /// Reversals of the tangent's turning.
@@ -69,10 +70,11 @@ impl<'a> BendCounter<'a> {
 }
 
 impl Data {
-    /// The curve of a goal, or one near it that bends no more often than it has to. Third derivatives may buy
-    /// smoothness with a bend: the signs of the fairest curve, or of that of least bending, are conditions then.
-    /// Where no such curve is found, one between it and the fairest is taken, which is within the
-    /// tolerances as both are.
+    /// The curve of a goal, or a nearby one without unnecessary turns. Third derivatives may trade
+    /// smoothness for a turn; then the signs of curvature of the fairest curve, or of the one with
+    /// the least bending, become conditions. If no such curve is found, the result is an
+    /// interpolation between the curve and the fairest, which is within the tolerances because both
+    /// are.
     pub(super) fn without_bends(
         &self,
         options: &DataOptions,
@@ -101,7 +103,7 @@ impl Data {
             return Ok(plain);
         }
         let least = plain.least;
-        // What the form costs is part of the gap.
+        // The gap includes the cost of the signs.
         let priced = |mut made: DataFit| {
             made.certificate.gap = made.certificate.gap.max(made.certificate.value - least);
             made.least = least;
@@ -111,8 +113,8 @@ impl Data {
         let known = job.points.len() <= MANY || most <= ROUNDED_TURNS;
         for (_, start) in starts.iter().filter(|s| known && s.0 <= most) {
             let Some(shape) = ShapeConstraints::pattern(space, start) else { continue };
-            // First under the weight of the goal's own curve: none under signs is better than that without by its
-            // measure and its squares.
+            // First with the weight of the goal's own curve: without signs that curve is optimal in
+            // the weighted sum, which therefore is a lower bound.
             let search = SignSearch {
                 weight: Some(plain.weight),
                 settled: SETTLED,
@@ -180,7 +182,7 @@ impl Data {
         Ok(kept)
     }
 
-    /// A curve that is between optima, with what is known of it but its gap.
+    /// The fit of a curve between optima; its gap is set by the caller.
     pub(super) fn between_optima(&self, points: Vec<Vec3<f64>>, value: f64, job: &Job) -> DataFit {
         let mut made = self.fit(GoalOptimum::unmoved(&points, value, false), job);
         let radii = &self.limit.radii;

@@ -1,7 +1,8 @@
 //! Signs of a plane curve's curvature and of its slope on a span, by Bernstein coefficients.
 //!
-//! x' x x'' and the numerator of the curvature's slope are polynomials on each span. Where all their
-//! Bernstein coefficients have one sign, so has the polynomial: the sign is proved, not sampled.
+//! x' x x'' and the numerator of the curvature's slope are polynomials on each span. If all
+//! Bernstein coefficients of a polynomial have one sign, so does the polynomial: a proof, not a
+//! sample.
 
 use moldloft_num::{Dual4, Real};
 
@@ -37,7 +38,7 @@ fn dot<T: Real>(a: P<T>, b: P<T>) -> T {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// What has a sign.
+/// Polynomial whose sign is constrained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SignedQuantity {
     /// The curvature: x' x x''.
@@ -64,7 +65,7 @@ impl SignedQuantity {
                 let times = |a: T, b: T| a * b;
                 let first = product(&third, &speed, times);
                 let second = product(&turn, &along, times);
-                // Of quadratics the first product is zero and of its own degree.
+                // For quadratics the first product is zero and has its own degree.
                 let first = if e.len() > 1 { first } else { vec![T::zero(); second.len()] };
                 let both = first.into_iter().zip(second);
                 both.map(|(a, b)| a * (p - 2.0) - b * (3.0 * (p - 1.0))).collect()

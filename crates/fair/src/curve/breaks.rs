@@ -1,9 +1,9 @@
-//! Corners that are meant, and single points that are wrong: both stand out among the jumps.
+//! Detection of intended corners and of single wrong points by outliers among the jumps.
 
 use crate::{Job, KnotJumps};
 use moldloft_num::Vec3;
 
-/// How many times the median a jump must be to stand out.
+/// Ratio to the median above which a jump is an outlier.
 const OUTSTANDING: f64 = 8.0;
 
 /// Minimum number of jumps that form a pattern.
@@ -23,7 +23,7 @@ pub enum Finding {
     Outlier {
         /// The control point.
         index: usize,
-        /// Its error: the point less this lies among its neighbours.
+        /// Error: the point minus this agrees with its neighbours.
         error: Vec3<f64>,
     },
 }
@@ -49,12 +49,12 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// What stands out, largest first.
+/// Outliers among the jumps, largest first.
 ///
 /// A single wrong point spreads over the jumps as its column of the jump matrix (on uniform cubics
-/// 1, -4, 6, -4, 1), a corner as the jumps of a hinge (1, -2, 1). While some jump is more than
-/// eight times the median, the better fit of the two patterns is taken out and reported. These are
-/// proposals: a curve that bends sharply on few control points stands out too.
+/// 1, -4, 6, -4, 1), a corner as the jumps of a hinge (1, -2, 1). While some jump exceeds eight
+/// times the median, the better fit of the two patterns is subtracted and reported. These are
+/// proposals: a sharp turn on few control points is an outlier too.
 pub fn findings(job: &Job) -> Vec<Finding> {
     let space = &job.space;
     let n = space.count();
@@ -158,9 +158,8 @@ fn pattern(
         .collect()
 }
 
-/// The job with what was found taken into account: corners become marks, and a wrong point may
-/// move as far as its error and the tolerance, so that it finds its place and its neighbours keep
-/// theirs.
+/// The job with corners as marks, and with the radius of a wrong point extended by its error, so
+/// that it can move to its neighbours instead of these to it.
 pub fn with_findings(job: &Job, found: &[Finding]) -> Job {
     let mut job = job.clone();
     for finding in found {

@@ -12,13 +12,13 @@ use moldloft_num::Vec3;
 const STEPS: usize = 120;
 const CENTRED: f64 = 0.25;
 
-/// How far a level is from the largest residual where it says no more.
+/// Relative distance between level and largest residual at convergence.
 const CLOSE: f64 = 1e-6;
 
-/// Residuals above this share of the level cannot be kept.
+/// Residuals above this fraction of the level are infeasible.
 const OUTER: f64 = 0.95;
 
-/// The share of the way to the largest residual that is left of a level.
+/// Fraction of the distance to the largest residual that remains after a step of the level.
 const LEFT: f64 = 0.1;
 
 /// The curve in the middle of the tolerances `radii` of points on the rows of a spline, begun at `start`; else the
@@ -150,7 +150,7 @@ impl CentreSearch<'_> {
             }
             by *= 0.5;
         }
-        // What is left is rounding.
+        // The rest is rounding.
         0.0
     }
 }

@@ -27,7 +27,7 @@ pub(crate) struct FittedSegment {
 }
 
 impl FittedSegment {
-    /// Place and direction at an arc length.
+    /// Position and direction at an arc length.
     pub fn at(&self, s: f64) -> (P<f64>, P<f64>) {
         let half = 0.5 * self.curvature * s;
         // The chord of an arc is s sin(half) / half long.
@@ -46,7 +46,7 @@ impl FittedSegment {
             return (along, left);
         }
         let k = self.curvature;
-        // From the centre, at (0, 1 / k) in the own frame.
+        // Relative to the centre, at (0, 1 / k) in the own frame.
         let turned = libm::atan2(along * k, 1.0 - left * k);
         let far = ((along * k).powi(2) + (1.0 - left * k).powi(2)).sqrt();
         (turned / k, (1.0 - far) / k)
@@ -60,7 +60,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// Place and direction at an arc length from its beginning.
+    /// Position and direction at an arc length from its start.
     pub fn at(&self, mut s: f64) -> (P<f64>, P<f64>) {
         let last = self.pieces.len() - 1;
         for piece in &self.pieces[..last] {
@@ -72,8 +72,8 @@ impl Chain {
         self.pieces[last].at(s)
     }
 
-    /// The arc length of the foot of a point near part `near`, and its distance. The first part
-    /// goes on before its start and the last beyond its end.
+    /// Arc length of the foot of a point near part `near`, and its distance. The first part is
+    /// extended before its start, the last beyond its end.
     pub fn foot(&self, p: P<f64>, near: usize) -> (f64, f64) {
         let last = self.pieces.len() - 1;
         let mut best = (0.0, f64::INFINITY);

@@ -8,7 +8,7 @@ use moldloft_num::{Order, Real, Vec3};
 pub struct Condition {
     /// Control points and factors.
     pub entries: Vec<(usize, Vec3<f64>)>,
-    /// What the sum must be.
+    /// Required value of the sum.
     pub value: f64,
 }
 
@@ -125,10 +125,10 @@ impl Condition {
         condition
     }
 
-    /// The curve runs on from a neighbour with continuous tangent direction and curvature at its end
-    /// (`at_end`) or its start: six conditions on its first and second derivative there; the end's
-    /// position is not among them. `other` are the neighbour's first and second derivative at the
-    /// common point, by a parameter that runs as the own one does. See [`joined`].
+    /// Continuous tangent direction and curvature with a neighbour at the end (`at_end`) or the
+    /// start: six conditions on the first and second derivative there; the end's position is not
+    /// among them. `other` are the neighbour's first and second derivative at the common point,
+    /// with respect to a parameter of the same direction. See [`joined`].
     ///
     /// # Errors
     /// As [`joined`].
@@ -214,8 +214,8 @@ pub(crate) fn end_jet<T: Real>(space: &Space, points: &[Vec3<T>], at_end: bool) 
 /// and gamma read off the own ones, so that speed and its change are kept.
 ///
 /// # Errors
-/// [`FairError::Singular`] when the neighbour has a zero tangent there, [`FairError::TurnsBack`] when the
-/// curve runs against it.
+/// [`FairError::Singular`] if the neighbour has a zero tangent there, [`FairError::TurnsBack`] if
+/// its direction is opposite.
 pub fn joined<T: Real>(own: [Vec3<T>; 2], other: [Vec3<T>; 2]) -> Result<[Vec3<T>; 2], FairError> {
     let ([d1, d2], [n1, n2]) = (own, other);
     let square = n1.norm_sq();

@@ -12,15 +12,15 @@ pub struct FitWithCorners<T> {
     pub fit: Fit,
     /// Its control points.
     pub points: Vec<Vec3<T>>,
-    /// The control points that are breaks: they stand at the data points of that name.
+    /// Control points that are breaks; they coincide with the data points of the breaks.
     pub marks: Vec<usize>,
     /// The parameter of each given point, in their order.
     pub at: Vec<f64>,
 }
 
-/// The spline through all points that is continuous, and no more, at the points `breaks` (from 0):
-/// knots of multiplicity `degree` separate the pieces, each of which passes through its own points
-/// alone. A piece of fewer than `degree + 1` points is the polynomial through them.
+/// The interpolating spline that is only continuous at the points `breaks` (from 0): knots of
+/// multiplicity `degree` separate the pieces, each of which interpolates its own points alone. A
+/// piece of fewer than `degree + 1` points is the polynomial through them.
 ///
 /// A closed curve with a break becomes an open one that begins and ends at its first break: its
 /// parameters count from there. Without breaks this is [`crate::interpolate`]. Parameters are those of

@@ -3,10 +3,11 @@
 //!
 //! minimise E(x) subject to |x(t_i) - p_i| <= a_i
 //!
-//! Knots stand at the data ([`InterpolationSpace`]), so the spline through them is the start and any tolerance
-//! can be kept, 0 too. The distance at a datum's parameter is at least its distance from the curve:
-//! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
-//! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
+//! Knots are at the data ([`InterpolationSpace`]), so that the interpolating spline is a feasible
+//! start for any tolerance, 0 included. The distance at a datum's parameter is at least its
+//! distance from the curve: the tolerance is guaranteed. The minimum of the measure is at the
+//! limits of the tolerances, fair but no nearer to the truth than the data; [`Goal`] selects
+//! another curve.
 
 use crate::curve::bends::BendCounter;
 use crate::curve::exact::is_exact;
@@ -25,34 +26,34 @@ use crate::{
 };
 use moldloft_num::{Real, Vec3};
 
-/// Data with what they allow.
+/// Data with their limits.
 #[derive(Clone, Debug)]
 pub struct Data {
     /// The data.
     pub points: Vec<Vec3<f64>>,
-    /// How far the curve may be from each, and in which directions it may leave them.
+    /// Maximum distance and directions of motion for each datum.
     pub limit: Limit,
-    /// Where they are on the curve, and the splines.
+    /// Parameters of the data, and the space of splines.
     pub layout: InterpolationSpace,
-    /// What open ends keep of the curve through the data.
+    /// Conditions at open ends, relative to the curve through the data.
     pub ends: [EndContinuity; 2],
 }
 
-/// What is wanted.
+/// Options of a curve near data.
 #[derive(Clone, Debug)]
 pub struct DataOptions {
     /// The measure to minimise.
     pub measure: Measure,
-    /// Which of the curves.
+    /// Selection among the curves within the tolerances.
     pub goal: Goal,
     /// Linear conditions on the control points.
     pub conditions: Vec<Condition>,
-    /// What shape it has to have, for these data: [`Data::shaped`].
+    /// Shape conditions, resolved for these data by [`Data::shaped`].
     pub shape: ShapeConstraints,
-    /// Whether the curve may have more inflections than the one of least bending within the same
-    /// tolerances.
+    /// True to allow more inflections than the curve of least bending within the same tolerances
+    /// has.
     pub bends: bool,
-    /// The certified gap, as a share of the measure.
+    /// Certified gap, relative to the measure.
     pub accuracy: f64,
 }
 
@@ -63,7 +64,7 @@ impl DataOptions {
         Self { measure, goal, conditions, shape, bends: true, accuracy: 1e-9 }
     }
 
-    /// Whether counts say which curve on the way to the fairest is taken.
+    /// True if counts of turns decide how far the result is moved towards the fairest curve.
     pub(super) fn is_gated(&self) -> bool {
         let jumps = matches!(self.measure, Measure::Jumps | Measure::JumpLengths);
         !self.bends && !jumps && matches!(self.goal, Goal::Near(_) | Goal::Budget(_))
@@ -75,7 +76,7 @@ impl DataOptions {
 pub struct DataFit {
     /// Its control points, on the layout's space.
     pub points: Vec<Vec3<f64>>,
-    /// Those of the curve through the data.
+    /// Control points of the interpolating curve.
     pub original: Vec<Vec3<f64>>,
     /// The distance of each datum from the curve at its parameter.
     pub residuals: Vec<f64>,
@@ -86,8 +87,8 @@ pub struct DataFit {
     pub certificate: Certificate,
     /// The least of the measure within the tolerances.
     pub least: f64,
-    /// What the fairest takes of the squares that [`Self::used`] counts; 3 where it is at all its
-    /// tolerances, 0 where it was not looked for.
+    /// Squares taken by the fairest curve, counted as in [`Self::used`]; 3 if all its tolerances
+    /// are reached, 0 if it was not computed.
     pub fairest_used: f64,
     /// The weight of the data beside the measure.
     pub weight: f64,
@@ -95,31 +96,31 @@ pub struct DataFit {
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
-    /// Inflections that the goal would have added to those of the curve through the data: where no
-    /// way without them was found that curve is taken, if there are no conditions.
+    /// Inflections that the goal would have added to those of the interpolating curve: if no curve
+    /// without them was found, that curve is the result, unless there are conditions.
     pub bends: usize,
-    /// The arcs that were asked for.
+    /// Arcs among the shape conditions.
     pub arcs: Vec<FoundArc>,
-    /// How far the curve went from the goal's own (0) towards the fairest (1, and 2 by the lengths for parameters),
-    /// so that it bends no more often than that one.
+    /// How far the curve was moved from the goal's own (0) towards the fairest (1; up to 2 with
+    /// chord lengths as parameters) to avoid further turns.
     pub fairer: f64,
 }
 
-/// Data of which neighbours in one place are one datum.
+/// Data in which coincident neighbours are merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// The data that are left.
     pub points: Vec<Vec3<f64>>,
     /// Their tolerances.
     pub radii: Vec<f64>,
-    /// Which of them each datum became.
+    /// Index of the merged datum for each given one.
     pub of: Vec<usize>,
 }
 
-/// Neighbours nearer than this share of the extent are in one place.
+/// Distance of neighbours, relative to the extent, within which they coincide.
 const TOGETHER: f64 = 1e-6;
 
-/// Joins neighbours that are in one place: their mean, as far from it as all their tolerances allow.
+/// Merges coincident neighbours: to their mean, with a tolerance within all of theirs.
 ///
 /// # Errors
 /// [`FairError::Coincident`] when no place is within the tolerances of both.
@@ -177,7 +178,7 @@ impl Data {
         Ok(parts)
     }
 
-    /// Adds the shape to parts that have none.
+    /// Adds the shape to parts without one.
     fn shape_parts(&self, parts: &mut Parts<'_>, options: &DataOptions, control: &[Vec3<f64>]) {
         parts.conditions.extend(options.shape.conditions(control).into_iter().map(|(c, _)| c));
         parts.halves = options.shape.halves(self, &parts.frozen, control);
@@ -192,8 +193,8 @@ impl Data {
         let layout = &self.layout;
         let radii = layout.radii(&self.limit.radii);
         let (mut frozen, mut conditions) = kept(job);
-        // Of what an end keeps, the position is a datum of its own; the rest is held by conditions,
-        // so that it follows the curve through the data when these change.
+        // The position of an end is a datum; the other derivatives are conditions, so that they
+        // follow the curve through the data when these change.
         let n = frozen.len();
         let held: Vec<usize> = self.held();
         for &c in &held {
@@ -307,14 +308,14 @@ impl Data {
         (1..first).chain((n - last.max(1)..n - 1).filter(move |&c| c >= first.max(1))).collect()
     }
 
-    /// Whether the data are exact from break to break.
+    /// True if the data are exact between breaks.
     pub(super) fn exact_parts(&self) -> bool {
         let layout = &self.layout;
         let closed = layout.space.is_closed() || layout.owner.first() == layout.owner.last();
         is_exact(&self.points, &layout.break_data(), closed)
     }
 
-    /// Which data pull: those with a tolerance that were not released.
+    /// Data that attract the curve: those with a positive, finite tolerance that were not released.
     fn pulls(&self) -> Vec<bool> {
         let open = released(&self.points, &self.limit.radii);
         let given = self.limit.radii.iter().map(|r| *r > 0.0 && r.is_finite());
@@ -426,21 +427,22 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
 /// Times that signs and lines are made linear again at most.
 const ROUNDS: usize = 40;
 
-/// From here on half a step only.
+/// Number of iterations after which half steps are taken.
 const WHOLE: usize = 12;
 
-/// After so many rounds without success signs are aimed at from farther inside, by what was missed,
-/// at most by this share of the mean tolerance.
+/// Number of failed rounds after which signs are required with a margin of the amount missed, and
+/// its maximum relative to the mean tolerance.
 const PATIENT: usize = 5;
 const INSIDE: f64 = 1e-2;
 
-/// The change of the measure, as a share, at which the search for the least under signs ends.
+/// Relative change of the measure at which the search for the minimum under signs ends.
 const SETTLED: f64 = 1e-8;
 
-/// How exactly curves are solved for where a change of the measure is settled: as a share of that.
+/// Accuracy of the solutions in such a search, relative to `settled`.
 const ROUGHLY: f64 = 1e-3;
 
-/// How many times the squares of the curve in the middle of the tolerances, from the least, a budget is at least.
+/// Minimum budget, relative to the squares of the curve in the middle of the tolerances, counted
+/// from the minimum.
 const ROOM: f64 = 1.5;
 
 /// The root mean square residual of the nearest curve, over the tolerance, up to which data have no noise, and from
@@ -448,19 +450,19 @@ const ROOM: f64 = 1.5;
 const QUIET: f64 = 1e-3;
 const NOISE: f64 = 1e-2;
 
-/// How far a curve is pulled back towards one that has the signs, share by share.
+/// Successive fractions by which a curve is moved towards one with the required signs.
 const PULLED: [f64; 3] = [1e-5, 1e-4, 1e-3];
 
-/// How a curve under signs is looked for.
+/// Parameters of the search for a curve under signs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SignSearch {
     /// The weight of the data; without one the goal's is found in each round.
     pub weight: Option<f64>,
-    /// The change of the measure, as a share, at which it is settled.
+    /// Relative change of the measure at convergence.
     pub settled: f64,
     pub rounds: usize,
-    /// What the measure and the weighed squares are at least: a curve that is as near to it as that is
-    /// settled, too.
+    /// Lower bound of the measure plus weighted squares; a curve within `settled` of it is
+    /// accepted.
     pub least: f64,
 }
 
@@ -492,7 +494,7 @@ impl Data {
         Ok(self.along(&least, job, &mut own)?.points)
     }
 
-    /// The curve of a goal that has the shape asked for.
+    /// The curve of a goal with the required shape.
     pub(super) fn under_shape(
         &self,
         options: &DataOptions,
@@ -525,7 +527,7 @@ impl Data {
             made.arcs.clone_from(&options.shape.arcs);
             return Ok(made);
         };
-        // Where the curvature turns is taken from fairer and fairer curves.
+        // The pattern of curvature extrema is taken from fairer and fairer curves.
         for start in [made.points.clone(), self.fairest(options, job)?, stiffest] {
             let shape = options.shape.by(space, &start);
             match self.with_signs(options, job, shape, &start, SignSearch::WHOLE) {
@@ -556,8 +558,8 @@ impl Data {
         Ok(self.along(&plain, job, &mut parts)?.points)
     }
 
-    /// The curve with the control points of lines and arcs in their places to rounding, where that
-    /// leaves all data within their tolerances.
+    /// The curve with the control points of lines and arcs exact to rounding, if all data stay
+    /// within their tolerances.
     fn exact(&self, shape: &ShapeConstraints, made: DataFit) -> DataFit {
         let points = shape.projected(&made.points);
         let residuals = self.residuals(&points);
@@ -569,8 +571,8 @@ impl Data {
         }
     }
 
-    /// How far equations may be missed before control points are put in their places: a share of
-    /// the tolerance, or rounding.
+    /// Residual of equations below which control points may be set exactly: a fraction of the mean
+    /// tolerance, at least rounding.
     fn slack(&self) -> f64 {
         let finite = || self.limit.radii.iter().filter(|r| r.is_finite());
         let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
@@ -585,8 +587,8 @@ impl Data {
         64.0 * f64::EPSILON * size
     }
 
-    /// The curve of a goal under signs: these are made linear at a curve, and again at the one found,
-    /// until it has them itself and no longer changes.
+    /// The curve of a goal under signs, which are linearised at a curve, then at the result, until
+    /// the result has them and has converged.
     pub(super) fn with_signs(
         &self,
         options: &DataOptions,
@@ -633,7 +635,8 @@ impl Data {
             };
             missed = options.shape.miss(self, &made.points, slack);
             if missed.0 > 0.0 && search.least.is_finite() {
-                // As near as that the first curve, which has the signs, may be a hair away.
+                // The violation is small: a slight move towards the first curve, which has the
+                // signs, removes it.
                 if let Some(pulled) = self.pulled_back(&options, &made, start, slack) {
                     let above = self.weighed_value(&pulled) - search.least;
                     if above <= search.settled * search.least.abs() {
@@ -741,7 +744,8 @@ impl Data {
         }
     }
 
-    /// How far data on few control points move from their nearest curve: not at all without noise.
+    /// Fraction by which data on few control points leave their nearest curve: 0 for data without
+    /// noise, 1 with noise.
     fn moves(&self, thin: &CurvesBesideData) -> f64 {
         let residuals = self.residuals(&thin.nearest);
         let within = residuals.iter().zip(&self.limit.radii).all(|(r, most)| r <= most);
@@ -750,9 +754,10 @@ impl Data {
         if within { share * share * (3.0 - 2.0 * share) } else { 1.0 }
     }
 
-    /// On a spline of few control points squares are counted from the least that they can be, and so is the budget
-    /// of `near`: what the goal has of noise that fills the tolerances, and at least what those control points take of
-    /// the noise that the data have. The curve of truth is in there about as often as not.
+    /// On a spline with few control points squares are counted from their minimum, and so is the
+    /// budget of `near`: that of the goal for noise that fills the tolerances, and at least the
+    /// part of the actual noise that these control points absorb. The true curve is within it about
+    /// half of the time.
     fn goal_beside_nearest<E, S>(
         &self,
         goal: Goal,
@@ -869,8 +874,8 @@ pub fn fair_data_with<T: Real>(
     let space = MovingSpace { space: &layout.space, knots: &knots };
     let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
     let wanted = layout.data(points);
-    // By how much control points must change so that the curve of `of` follows the data at the
-    // sites while knots and sites move.
+    // Change of the control points for which the curve of `of` follows the data at the sites while
+    // knots and sites move.
     let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
         let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
         let change: Vec<Vec3<T>> = (0..wanted.len())
@@ -895,12 +900,12 @@ pub fn fair_data_with<T: Real>(
              measure, or spacing \"index\"",
         ));
     }
-    // The optimum of the weight found, with what its answers need.
+    // The optimum for the weight found, with the factors that derivatives need.
     let pull = data.pull(&parts);
     check_unique(&mut parts, &found, &pull)?;
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
     let solved = parts.whole()?;
-    // Of jumps there are too few digits, and what a softened problem answers is near.
+    // Jumps have too few digits, and a softened problem gives approximate derivatives only.
     if weight > 0.0 && options.measure != Measure::Jumps && !solved.is_decided() {
         return Err(FairError::NoDerivative(
             "which tolerances are reached is not decided to rounding, so that derivatives are not \

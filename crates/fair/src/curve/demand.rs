@@ -1,4 +1,4 @@
-//! What a curve is to meet at a parameter, or to keep.
+//! Conditions on a curve at a parameter, and quantities that it preserves.
 
 use crate::{Condition, FairError, Space};
 use moldloft_num::Vec3;
@@ -8,10 +8,10 @@ use moldloft_num::Vec3;
 pub enum Demand {
     /// It passes through a point.
     Through(Vec3<f64>),
-    /// It runs along a direction.
+    /// Tangent direction.
     Tangent(Vec3<f64>),
-    /// It runs on from another curve at its start or end: that one's first and second derivative,
-    /// by a parameter that runs as its own.
+    /// Continuation of another curve at the start or end: its first and second derivative, with
+    /// respect to a parameter of the same direction.
     Join([Vec3<f64>; 2]),
     /// It keeps the area swept about the origin in the plane of x and y, to first order.
     Area,
@@ -22,7 +22,7 @@ pub enum Demand {
 }
 
 impl Demand {
-    /// What can be kept, by name.
+    /// Quantity to preserve, by name.
     pub fn kept(name: &str) -> Option<Self> {
         Some(match name {
             "area" => Self::Area,
@@ -32,11 +32,11 @@ impl Demand {
         })
     }
 
-    /// The conditions on control points that are at `control` before; the parameter is a share of
-    /// the domain.
+    /// Linear conditions on control points, linearised at `control`; `share` is the parameter
+    /// relative to the domain.
     ///
     /// # Errors
-    /// Those of [`Condition::join`].
+    /// As [`Condition::join`].
     pub fn conditions(
         self,
         space: &Space,

@@ -1,26 +1,26 @@
 //! Points that are exact: on a line, a conic, a plane cubic or a helix to rounding.
 //!
-//! These are as fair as a curve can be, whatever their spacing and parameters; where the goal is to
-//! move no more than is worth it, such points stay.
+//! These are as fair as a curve can be, for any spacing and parameters; goals that move points only
+//! for a gain leave them unchanged.
 
 use moldloft_num::Vec3;
 
-/// Rounding of coordinates, as a share of their size.
+/// Rounding of coordinates, relative to the size.
 const ROUNDING: f64 = 1e-12;
 
-/// So many points more than a curve is determined by make a coincidence impossible.
+/// Number of points beyond those that determine a curve, for a coincidence to be excluded.
 const SPARE: usize = 4;
 
-/// The same for one line of many, all of which have to be exact.
+/// The same for one of many lines, all of which must be exact.
 const SPARE_EACH: usize = 1;
 
-/// Whether points lie in order on a line, a circle, another conic, a plane cubic or a helix.
+/// True if the points are in order on a line, a circle, another conic, a plane cubic or a helix.
 pub(crate) fn exact(points: &[Vec3<f64>]) -> bool {
     exact_with(points, SPARE)
 }
 
-/// Whether points are exact from break to break: on a line, a conic, a plane cubic or a helix to rounding, in
-/// order, with some points more than such a curve is determined by.
+/// True if the points between breaks are exact: in order on a line, a conic, a plane cubic or a
+/// helix to rounding, with more points than determine such a curve.
 ///
 /// # Example
 /// ```
@@ -36,8 +36,8 @@ pub fn is_exact(points: &[Vec3<f64>], breaks: &[usize], closed: bool) -> bool {
     between_breaks(points, breaks, closed).iter().all(|part| exact(part))
 }
 
-/// The same of all lines through numbered points, each its points and whether it is closed; `breaks` are
-/// numbers of points. One whose points are in one place is exact.
+/// The same for lines through numbered points, each its points and whether it is closed; `breaks`
+/// are numbers of points. A line of coincident points is exact.
 pub fn are_exact(points: &[Vec3<f64>], lines: &[(Vec<usize>, bool)], breaks: &[usize]) -> bool {
     all_exact(lines.iter().flat_map(|(own, closed)| {
         let marks: Vec<usize> = (0..own.len()).filter(|&k| breaks.contains(&own[k])).collect();
@@ -46,15 +46,15 @@ pub fn are_exact(points: &[Vec3<f64>], lines: &[(Vec<usize>, bool)], breaks: &[u
     }))
 }
 
-/// Whether all lines of a grid or network are exact; one whose points are in one place is.
+/// True if all lines of a grid or network are exact; a line of coincident points is.
 pub(crate) fn all_exact(lines: impl IntoIterator<Item = Vec<Vec3<f64>>>) -> bool {
     lines
         .into_iter()
         .all(|line| line.iter().all(|p| *p == line[0]) || exact_with(&line, SPARE_EACH))
 }
 
-/// The parts of a list between breaks, which belong to both sides; of a closed list the last runs on
-/// to the first break.
+/// The parts of a list between breaks, which belong to both sides; the last part of a closed list
+/// extends to the first break.
 pub(crate) fn between_breaks<T: Copy>(list: &[T], breaks: &[usize], closed: bool) -> Vec<Vec<T>> {
     let n = list.len();
     let mut inner: Vec<usize> = breaks.iter().copied().filter(|&b| b < n).collect();
@@ -71,7 +71,8 @@ pub(crate) fn between_breaks<T: Copy>(list: &[T], breaks: &[usize], closed: bool
     ends.windows(2).map(|w| list[w[0]..=w[1]].to_vec()).collect()
 }
 
-/// Whether points lie in order on one of these curves, with so many points more than it needs.
+/// True if the points are in order on one of these curves, with `spare` points beyond those that
+/// determine it.
 fn exact_with(points: &[Vec3<f64>], spare: usize) -> bool {
     let n = points.len();
     let finite = points.iter().all(|p| p.is_finite());
@@ -125,7 +126,7 @@ fn frame(points: &[Vec3<f64>]) -> Option<[Vec3<f64>; 3]> {
     Some([a, b, a.cross(b)])
 }
 
-/// Whether plane points lie in order on an algebraic curve with these terms.
+/// True if plane points are in order on an algebraic curve with these terms.
 fn algebraic(points: &[[f64; 2]], terms: &[Term], close: f64, spare: usize) -> bool {
     let count = terms.len();
     if points.len() < count - 1 + spare {
@@ -135,7 +136,7 @@ fn algebraic(points: &[[f64; 2]], terms: &[Term], close: f64, spare: usize) -> b
     let term = |all: &Term, p: [f64; 2]| all.iter().map(|e| one(e, p)).sum::<f64>();
     let mut rows: Vec<Vec<f64>> =
         points.iter().map(|&p| terms.iter().map(|e| term(e, p)).collect()).collect();
-    // Elimination with complete pivoting: the last pivot says how far the columns are from
+    // Elimination with complete pivoting: the last pivot measures how far the columns are from
     // dependent.
     let mut order: Vec<usize> = (0..count).collect();
     for k in 0..count {
@@ -180,8 +181,9 @@ fn algebraic(points: &[[f64; 2]], terms: &[Term], close: f64, spare: usize) -> b
     false
 }
 
-/// Whether points follow each other along a curve: its tangent turns the same way before and after
-/// each chord, but for the chords that hold an inflection. Points that hop between branches do not.
+/// True if the points follow each other along the curve: its tangent turns in the same direction
+/// before and after each chord, except for chords with an inflection. Points that alternate between
+/// branches do not.
 fn in_order(points: &[[f64; 2]], powers: &[(usize, usize)], curve: &[f64]) -> bool {
     let slope = |[x, y]: [f64; 2]| {
         let part =
@@ -216,8 +218,8 @@ fn in_order(points: &[[f64; 2]], powers: &[(usize, usize)], curve: &[f64]) -> bo
     breaks <= 3
 }
 
-/// Whether points are on a helix: on a circle seen along its axis, at angles that grow with the
-/// height.
+/// True if the points are on a helix: on a circle in the view along its axis, at angles that
+/// increase with height.
 fn helix(points: &[Vec3<f64>], close: f64, spare: usize) -> bool {
     if points.len() < 6 + spare {
         return false;
@@ -279,8 +281,8 @@ fn largest(all: &[f64]) -> f64 {
     all.iter().fold(0.0, |m: f64, r| m.max(r.abs()))
 }
 
-/// How far points are from the helix about an axis that is nearest to them in least squares: from
-/// its cylinder, and along the circle from its angle.
+/// Distances of points from the least-squares helix about an axis: radially from its cylinder, and
+/// along the circle from its angle.
 fn off_helix(points: &[Vec3<f64>], axis: Vec3<f64>) -> Option<Vec<f64>> {
     let a = axis.perpendicular().normalized()?;
     let b = axis.cross(a);

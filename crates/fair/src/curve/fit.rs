@@ -6,7 +6,7 @@ use crate::{FairError, Motion, RowNorm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
-/// How data points are given parameters.
+/// Parametrisation of data points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterSpacing {
     /// Equal steps.
@@ -38,8 +38,8 @@ pub struct Fit {
 /// after the last being the first.
 ///
 /// # Errors
-/// [`FairError::Coincident`] when two neighbours have no distance and a distance is asked for,
-/// [`FairError::TurnsAlong`] when the points run back along a given direction.
+/// [`FairError::Coincident`] if two neighbours coincide and the spacing uses distances,
+/// [`FairError::TurnsAlong`] if the points are not monotone along the given direction.
 pub fn parameters(
     points: &[Vec3<f64>],
     spacing: ParameterSpacing,
@@ -102,14 +102,14 @@ pub fn parameters_with<T: Real>(
     Ok(at)
 }
 
-/// The least share of a chord that its projection must be for stations to count.
+/// Minimum ratio of a chord's projection to the chord for stations to be used.
 const SHALLOW: f64 = 0.2;
 
-/// A tolerance from this share of the extent on is that of a datum that was released.
+/// Tolerance, relative to the extent, from which a datum counts as released.
 const RELEASED: f64 = 0.5;
 
-/// Which data were released: those with a tolerance as large as half the extent, where others have smaller
-/// ones. Where they were read says nothing about the curve.
+/// Released data: their tolerance is at least half the extent, while others have smaller ones.
+/// Their positions carry no information about the curve.
 pub(crate) fn released<T: Real>(points: &[Vec3<T>], radii: &[f64]) -> Vec<bool> {
     let first = points.first().map(|p| p.re()).unwrap_or_default();
     let extent = points.iter().map(|p| (p.re() - first).norm()).fold(0.0, f64::max);
@@ -131,7 +131,7 @@ fn placed_between<T: Real>(
     if !out_of_place.contains(&true) {
         return None;
     }
-    // The nearest that is in place, and how many steps away it is.
+    // The nearest datum that was not released, and its number of steps.
     let next = |k: usize, on: bool| {
         (1..n).find_map(|by| {
             let at = match (closed, on) {
@@ -162,11 +162,11 @@ fn placed_between<T: Real>(
     Some(out)
 }
 
-/// The same where points move along a direction only: chords are measured across it, so that
-/// offsets at stations have these for parameters, unless a curve is too steep for that. A step is
-/// as steep as it must be: what the tolerances `radii` of its two points allow is taken off, so
-/// that noise between two close stations does not count. A datum whose tolerance is as large as half the
-/// extent, where others are smaller, was released: chords run past it.
+/// As [`parameters_with`], for points that move in one direction only: chords are measured
+/// perpendicular to it, so that offsets at stations have the stations as parameters, unless the
+/// curve is too steep for that. The slope of a step is reduced by the tolerances `radii` of its two
+/// points, so that noise between two close stations does not count. Chords skip released data
+/// (tolerance of at least half the extent, while others are smaller).
 ///
 /// # Errors
 /// As [`parameters`].
@@ -186,7 +186,7 @@ pub fn parameters_across<T: Real>(
         *p - Vec3::new(along * d.x, along * d.y, along * d.z)
     };
     let projected: Vec<Vec3<T>> = points.iter().map(flat).collect();
-    // What moves along a direction stays at its station.
+    // A point that moves along a direction keeps its station.
     let placed = placed_between(points, &projected, radii, closed);
     let points = placed.as_deref().unwrap_or(points);
     let n = points.len();

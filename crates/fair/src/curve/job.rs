@@ -1,10 +1,10 @@
-//! A curve to be faired: its spline, its original control points and what must be kept.
+//! A curve to be faired: spline, original control points and conditions.
 
 use crate::error::check_finite;
 use crate::{FairError, Limit, Measure, Space, SparseRows};
 use moldloft_num::Vec3;
 
-/// What an open end keeps.
+/// Condition at an open end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndContinuity {
     /// Nothing.
@@ -15,7 +15,7 @@ pub enum EndContinuity {
     Tangent,
     /// Position, first and second derivative.
     Curvature,
-    /// So many control points.
+    /// A number of fixed control points.
     Points(usize),
 }
 
@@ -31,13 +31,13 @@ impl EndContinuity {
         })
     }
 
-    /// What ends keep where nothing is said and control points move: of a curve through points its tangent, else two
+    /// Default condition at the ends when control points move: "tangent" for a fit, otherwise two
     /// control points.
     pub(crate) fn of_control(fitted: bool) -> Self {
         if fitted { Self::Tangent } else { Self::Points(2) }
     }
 
-    /// How many derivatives are kept, position included.
+    /// Number of derivatives kept, including the position.
     pub(crate) fn kept(self) -> usize {
         match self {
             EndContinuity::Free | EndContinuity::Points(_) => 0,
@@ -47,8 +47,8 @@ impl EndContinuity {
         }
     }
 
-    /// How many control points stay fixed so that the end is kept. A clamped spline's first k
-    /// points fix k - 1 derivatives; on other knots `degree` points hold the end's whole germ.
+    /// Number of control points fixed for the condition. The first k points of a clamped spline fix
+    /// k - 1 derivatives; on other knots `degree` points fix all derivatives at the end.
     pub(crate) fn points(self, clamped: bool, degree: usize) -> usize {
         match self {
             EndContinuity::Free => 0,
@@ -59,21 +59,21 @@ impl EndContinuity {
     }
 }
 
-/// A curve to be faired: its spline, the original control points, and what must be kept.
+/// A curve to be faired: spline, original control points and conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// What the control points mean.
+    /// Space of the spline.
     pub space: Space,
     /// The original control points.
     pub points: Vec<Vec3<f64>>,
     /// Weights of a rational curve; they stay as they are.
     pub weights: Option<Vec<f64>>,
-    /// How far points may move.
+    /// Limits on the moves.
     pub limit: Limit,
     /// Control points that are intended breaks: they do not move by a bit, and nothing is smoothed
     /// across them.
     pub marks: Vec<usize>,
-    /// What the ends of an open curve keep.
+    /// Conditions at open ends.
     pub ends: [EndContinuity; 2],
 }
 
@@ -114,7 +114,7 @@ impl Job {
         let space = if closed {
             Space::closed(degree, points.len())?
         } else {
-            // The space counts its knots, which are more: say what a user counts.
+            // The space would count knots; the error counts points.
             if points.len() < degree + 2 {
                 return Err(FairError::TooFew { expected: degree + 2, actual: points.len() });
             }
@@ -123,7 +123,7 @@ impl Job {
         Self::new(space, points, tolerance)
     }
 
-    /// Refuses what cannot be faired.
+    /// Checks the counts and values of the job.
     ///
     /// # Errors
     /// [`FairError`] with the first thing that is wrong.
@@ -157,7 +157,7 @@ impl Job {
         Ok(())
     }
 
-    /// Which control points stay fixed.
+    /// Control points that cannot move.
     pub fn frozen(&self) -> Vec<bool> {
         let n = self.points.len();
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();

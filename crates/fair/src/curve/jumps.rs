@@ -10,7 +10,7 @@ pub struct KnotJumps {
     /// jump of the derivative of order `degree`, times the local span length to that power. On
     /// uniform cubics it is the fourth difference 1, -4, 6, -4, 1.
     pub rows: SparseRows,
-    /// The knot (its place in the space's knots) of each row.
+    /// Knot of each row, by its index in the space's knots.
     pub knots: Vec<usize>,
     /// The control point that a step at this knot moves.
     pub moved: Vec<usize>,

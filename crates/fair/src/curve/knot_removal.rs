@@ -5,7 +5,7 @@ use crate::optimum::certificate::ball_gap;
 use crate::{FairError, Job, KnotJumps, Measure, RowNorm, SparseRows, shape};
 use moldloft_num::{Real, Vec3};
 
-/// Which knot comes next.
+/// Selection of the next knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// The one whose point can make the longest move within its limit. Points that sit on their
@@ -16,7 +16,7 @@ pub enum Rule {
     Literal,
 }
 
-/// What one step does.
+/// Action of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemovalStep {
     /// The knot's jump is made zero (Farin, Rein, Sapidis and Worsey 1987). On knots that are not
@@ -30,26 +30,26 @@ pub enum RemovalStep {
 /// When the steps end. The first that holds is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stops {
-    /// After so many steps.
+    /// Maximum number of steps.
     pub steps: usize,
-    /// When no move is longer than this share of the largest finite limit.
+    /// When no move is longer than this fraction of the largest finite limit.
     pub least_move: f64,
-    /// When a step lowers the measure by less than this share of it.
+    /// When a step lowers the measure by less than this fraction of it.
     pub least_drop: f64,
-    /// When the certified gap, asked for once in n steps, is below this share of the measure.
+    /// When the certified gap, computed every n steps, is below this fraction of the measure.
     pub gap: f64,
-    /// When the number of monotone curvature pieces, asked for once in n steps, no longer falls.
+    /// When the number of monotone pieces of curvature, counted every n steps, does not decrease.
     pub pieces: bool,
 }
 
 impl Stops {
-    /// So many steps, or nothing left to do.
+    /// At most `steps` steps.
     pub fn after(steps: usize) -> Self {
         Self { steps, least_move: 0.0, least_drop: 0.0, gap: 0.0, pieces: false }
     }
 }
 
-/// Which stop ended the steps.
+/// Reason for which the steps ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
     /// The number of steps was used up.
@@ -83,18 +83,18 @@ impl Stopped {
     }
 }
 
-/// How to make local steps.
+/// Options of local steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnotRemovalOptions {
-    /// Which knot comes next.
+    /// Selection of the next knot.
     pub rule: Rule,
-    /// What one step does.
+    /// Action of one step.
     pub step: RemovalStep,
     /// The measure that [`RemovalStep::Vertex`] lowers and that stops look at; one of squares.
     pub measure: Measure,
     /// When to end.
     pub stops: Stops,
-    /// Whether the steps are written down.
+    /// True to record the steps.
     pub log: bool,
 }
 
@@ -116,11 +116,11 @@ impl KnotRemovalOptions {
 pub struct Move {
     /// The control point.
     pub index: u32,
-    /// Where it went.
+    /// New position.
     pub to: Vec3<f64>,
 }
 
-/// What local steps led to.
+/// Result of local steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnotRemoval {
     /// The control points. Those that no step moved have their original bits.
@@ -129,7 +129,7 @@ pub struct KnotRemoval {
     pub steps: usize,
     /// Why they ended.
     pub stopped: Stopped,
-    /// The steps in order, if they were asked for; see [`replay`].
+    /// Steps in order, if recorded; see [`replay`].
     pub log: Vec<Move>,
 }
 
@@ -153,7 +153,7 @@ pub(crate) struct PointSteps {
 }
 
 impl PointSteps {
-    /// The steps of `job` by `step`, none for frozen points.
+    /// The steps of `job` by `step`; frozen points have none.
     pub fn of(job: &Job, step: RemovalStep, measure: &SparseRows) -> Self {
         let n = job.points.len();
         let frozen = job.frozen();
@@ -201,7 +201,7 @@ impl PointSteps {
         Self { rows, own, listeners }
     }
 
-    /// Where point `j` wants to go, and its form's length.
+    /// Unconstrained target of point `j`, and the length of its form.
     #[inline(always)]
     fn wanted(&self, j: usize, points: &[Vec3<f64>], origin: Vec3<f64>) -> (Vec3<f64>, f64) {
         if self.own[j] == 0.0 {
@@ -217,7 +217,7 @@ impl PointSteps {
     }
 }
 
-/// How much what points want counts where their moves are alike.
+/// Weight of the unconstrained move in the comparison of almost equal moves.
 const TIE: f64 = 1e-6;
 
 /// Makes local steps.
@@ -249,7 +249,7 @@ pub fn knot_removal_from(
     let n = job.points.len();
     let rows = job.measure_rows(options.measure)?;
     let steps = PointSteps::of(job, options.step, &rows);
-    // Where the step is not the measure's own, each step is checked to lower it.
+    // If the step is not the minimiser of the measure, each step is checked to decrease it.
     let check = match options.step {
         RemovalStep::Knot if !job.space.is_uniform() || job.weights.is_some() => {
             Some(PointSteps::of(job, RemovalStep::Vertex, &rows))

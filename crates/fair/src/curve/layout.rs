@@ -1,4 +1,4 @@
-//! Splines whose knots stand at the data: where data lie on the curve, and the curve through them.
+//! Splines with knots at the data: parameters of the data, and the interpolating spline.
 
 use crate::curve::fit::{fit_with, values};
 
@@ -8,11 +8,11 @@ use crate::{FairError, Space, SparseRows, fit};
 use moldloft_num::{Banded, Real, Vec3};
 use moldloft_spline::KnotVector;
 
-/// A space of splines with as many control points as there are sites, of which one passes through
-/// any data at the sites.
+/// A space of splines with as many control points as sites: for any data at the sites it has a
+/// unique interpolating spline.
 ///
-/// Knots stand at the sites but for those next to the ends ("not a knot", de Boor 1978), so that
-/// polynomials are reproduced at any spacing. At a break the spline is continuous and no more.
+/// Knots are at the sites except those next to the ends ("not a knot", de Boor 1978), so that
+/// polynomials are reproduced at any spacing. At a break the spline is only continuous.
 #[derive(Clone, Debug)]
 pub struct InterpolationSpace {
     /// The splines.
@@ -21,7 +21,7 @@ pub struct InterpolationSpace {
     pub sites: Vec<f64>,
     /// The sites as combinations of the data.
     sources: SparseRows,
-    /// Which datum each site is.
+    /// Datum of each site.
     pub owner: Vec<Option<usize>>,
     /// The parameter of each datum.
     pub at: Vec<f64>,
@@ -29,9 +29,9 @@ pub struct InterpolationSpace {
     pub marks: Vec<usize>,
     /// Values at the sites over the control points.
     pub rows: SparseRows,
-    /// Sites as shares of the way from one parameter of the list to another.
+    /// Sites as interpolations between two parameters of the list.
     site_of: Vec<Share>,
-    /// Knots as shares of the way from one site to another.
+    /// Knots as interpolations between two sites.
     knot_of: Vec<Share>,
     /// The datum at which a closed curve with breaks begins.
     first: Option<usize>,
@@ -39,8 +39,8 @@ pub struct InterpolationSpace {
     pub(crate) thin: Option<CurvesBesideData>,
 }
 
-/// A share of the way from one place of a list to another; from the last to the first of a closed
-/// curve when the second is the length of the list.
+/// An interpolation between two items of a list, by indices and fraction; if the second index is
+/// the length of the list, between the last and the first of a closed curve.
 type Share = (usize, usize, f64);
 
 impl InterpolationSpace {
@@ -194,7 +194,7 @@ impl InterpolationSpace {
         }
     }
 
-    /// Whether a knot stands at each datum, so that a spline passes through them.
+    /// True if a knot is at each datum, so that the spline interpolates.
     pub fn interpolates(&self) -> bool {
         self.thin.is_none()
     }
@@ -236,9 +236,9 @@ impl InterpolationSpace {
         self.marks.iter().filter_map(|&m| self.owner[m]).collect()
     }
 
-    /// Makes the knot at a datum, or at a share of the way from it to the next one, a double knot of
-    /// a cubic: the curvature may jump there. The knots for it are taken from near by, where
-    /// `spare` says so if there are any. Without any everything stays.
+    /// Doubles the knot of a cubic at a datum, or at a fraction of the interval to the next one, so
+    /// that the curvature may jump there. The knots are taken from the neighbourhood, preferably
+    /// where `spare` is true; if there are none, nothing changes.
     pub(crate) fn doubled(
         &mut self,
         datum: usize,
@@ -299,7 +299,7 @@ impl InterpolationSpace {
         Ok(true)
     }
 
-    /// The data that a site hangs on.
+    /// The data that a site depends on.
     pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
         self.sources.row(site).0.iter().map(|&c| c as usize)
     }
@@ -340,7 +340,7 @@ impl InterpolationSpace {
             Ok(out)
         };
         let mut control = solve(values)?;
-        // Once more for what rounding left.
+        // A second pass removes rounding.
         let short: Vec<Vec3<T>> = (0..n)
             .map(|k| {
                 let (columns, factors) = self.rows.row(k);
@@ -395,9 +395,9 @@ impl InterpolationSpace {
         Ok((control.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect(), knots))
     }
 
-    /// By how much control points can move when the curve moves at the sites by these radii at
-    /// most: the collocation matrix is totally positive, so its inverse has the signs of a
-    /// chequer-board and one solution with alternating signs has the sums of its entries' sizes.
+    /// Maximum move of each control point when the curve moves at the sites by at most these radii.
+    /// The collocation matrix is totally positive, so that the inverse has checkerboard signs and
+    /// one solution with alternating signs gives the row sums of absolute values.
     ///
     /// # Errors
     /// [`FairError::Singular`].
@@ -414,7 +414,7 @@ impl InterpolationSpace {
         if !self.space.is_closed() || n.is_multiple_of(2) {
             return Ok(size(&self.through(&alternating(radii))?));
         }
-        // Signs alternate round a closed curve when it is run through twice.
+        // Signs alternate around a closed curve when it is traversed twice.
         let twice = |all: &[f64]| -> Vec<f64> {
             all.iter().copied().chain(all.iter().map(|t| t + 1.0)).collect()
         };
@@ -454,7 +454,7 @@ impl InterpolationSpace {
     }
 }
 
-/// A share of the way between two places of a list.
+/// Interpolation between two items of a list.
 fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
     if share == 0.0 {
         return list[a];
@@ -463,8 +463,8 @@ fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
     list[a] + (to - list[a]) * share
 }
 
-/// The parameters of a piece with at least `degree + 1` sites, each as a combination of the data:
-/// what is missing is taken from the polynomial through the others, spread over its gaps.
+/// Parameters of a piece with at least `degree + 1` sites, each as a combination of the data:
+/// missing sites are on the polynomial through the data, distributed over its gaps.
 fn completed(degree: usize, at: &[f64]) -> Vec<(Share, Vec<(usize, f64)>)> {
     let m = at.len();
     let datum = |k: usize| ((k, k, 0.0), vec![(k, 1.0)]);

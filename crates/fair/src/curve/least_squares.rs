@@ -4,8 +4,8 @@ use crate::optimum::band::Band;
 use crate::{FairError, Space, SparseRows};
 use moldloft_num::Vec3;
 
-/// An order of the control points with a narrow band: as they stand, those of closed curves from both sides of
-/// the first in turn.
+/// An order of the control points with a narrow band: the natural one; for closed curves
+/// alternately from both sides of the first.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowOrder {
     pub place: Vec<usize>,
@@ -35,14 +35,14 @@ impl LeastSquares {
         Self { order: NarrowOrder::of(space), fixed }
     }
 
-    /// Which control points are not given.
+    /// Control points that are not prescribed.
     pub fn free(&self) -> Vec<bool> {
         let mut free = vec![true; self.order.place.len()];
         self.fixed.iter().for_each(|f| free[f.0] = false);
         free
     }
 
-    /// The control points; none where the data do not determine them.
+    /// The control points; `None` if the data do not determine them.
     ///
     /// # Errors
     /// [`FairError::TooLarge`].
@@ -81,7 +81,7 @@ impl LeastSquares {
         for &(c, p) in &self.fixed {
             control[c] = p;
         }
-        // Once more for what rounding left.
+        // Iterative refinement.
         for _ in 0..2 {
             let mut right = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
             for (k, &weight) in weights.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How far control points may move, and in which directions.
+//! Limits on the moves of control points.
 
 use crate::FairError;
 use moldloft_num::{Real, Vec3};
@@ -16,14 +16,14 @@ pub enum Motion {
     Across(Vec3<f64>),
 }
 
-/// How far each control point may move from its original place.
+/// Limits on the moves of control points from their original positions.
 ///
-/// A radius of 0 freezes a point. No radius at all ("tolerance none") lets it move freely.
+/// A radius of 0 freezes a point; an infinite one ("tolerance none") leaves it free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// In which directions.
     pub motion: Motion,
-    /// The largest distance, per control point; `f64::INFINITY` for none.
+    /// Maximum move of each control point; `f64::INFINITY`: free.
     pub radii: Vec<f64>,
 }
 

@@ -1,5 +1,4 @@
-//! One curve to be faired: what its control points mean, how points become a spline, what may move
-//! how far, and the step of knot removal.
+//! Fairing of one curve: splines of points, limits, conditions and knot removal.
 
 pub(crate) mod bends;
 mod bernstein;

@@ -1,4 +1,4 @@
-//! Where a curve's curvature should rise and fall to have few monotone pieces.
+//! Pattern of rising and falling curvature with few monotone pieces.
 
 use crate::Space;
 use crate::interrogate::shape;

@@ -1,12 +1,12 @@
-//! The curve near its data: no fairer than noise of the tolerance's size asks for, and never with
-//! more inflections than the fairest, nor with more than two monotone pieces of curvature more.
+//! The curve near its data: residuals up to the level of noise that fills the tolerance, no more
+//! inflections than the fairest curve, and at most two more monotone pieces of curvature.
 //!
-//! Third derivatives may buy smoothness with a bend, parameters by curvature may follow the
-//! noise's, and a budget leaves some ripples of the data's. On the way from the goal's curve to the
-//! fairest (whose budget rises to what the fairest takes, and whose parameters then go back to the
-//! lengths) these disappear. How far it goes is an integral of counts in which a ripple counts by
-//! its persistence (Edelsbrunner, Letscher and Zomorodian 2002), so it is a continuous function of
-//! the data: no count flips the result.
+//! Third derivatives may trade smoothness for a turn, parameters by curvature may follow the
+//! curvature of noise, and a budget leaves ripples of the data. These disappear along a path from
+//! the goal's curve to the fairest: the budget rises to what the fairest takes, then the parameters
+//! return to chord lengths. The position on the path is an integral of counts in which a ripple
+//! counts by its persistence (Edelsbrunner, Letscher and Zomorodian 2002); it is therefore a
+//! continuous function of the data.
 
 use crate::curve::bends::{BendCounter, BendCounts};
 use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
@@ -18,27 +18,28 @@ use crate::optimum::goal::Goal;
 use crate::{FairError, InterpolationSpace, SparseRows};
 use moldloft_num::Vec3;
 
-/// Steps of the integral from the goal's budget to what the fairest takes, and back to the lengths.
+/// Steps of the integral from the goal's budget to that of the fairest, and back to chord lengths.
 const BUDGET_STEPS: usize = 20;
 const PARAMETER_STEPS: usize = 4;
 
-/// The step of the last search, which goes by the counts themselves.
+/// Step of the final search by exact counts.
 const COUNTED_STEP: f64 = 0.05;
 
 /// Monotone pieces that the curve near its data may have more than the fairest.
 const MORE_PIECES: f64 = 2.0;
 
-/// The fairest takes so many times the goal's budget at least: the way has a length.
+/// Minimum ratio of the fairest curve's squares to the goal's budget, so that the path has a
+/// length.
 const LEAST_WAY: f64 = 1.05;
 
-/// Where a ripple begins to count and where it counts whole, in those that are counted: of a curve
-/// on the way it counts early, of the fairest late, so that what is within the soft limits is
-/// within the limits.
+/// Persistences at which a ripple starts to count and counts fully. Ripples of the curve count
+/// earlier than those of the fairest, so that a curve within the soft limits is within the exact
+/// ones.
 const EARLY: [f64; 2] = [0.8, 1.0];
 const LATE: [f64; 2] = [1.0, 1.25];
 
-/// Below this share of the way from the data the budget is read from the goal and not from the
-/// curve.
+/// Fraction of the distance from the data below which the budget is taken from the goal and not
+/// from the curve.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Steps of the same integral under a shape, where each curve is a search of its own, and on few
@@ -48,7 +49,7 @@ const SHAPED_STEPS: usize = 5;
 /// A curve with the spline that it is on, where that is not the data's own.
 pub(super) type Relaid = (Option<InterpolationSpace>, DataFit);
 
-/// What a curve may have: the counts of the fairest and some pieces more.
+/// Limits of a curve: the counts of the fairest plus some pieces.
 struct CountLimits {
     soft: SoftCounts,
     signs: usize,
@@ -56,7 +57,7 @@ struct CountLimits {
 }
 
 impl CountLimits {
-    /// Those of fairest curves, of which the first is the one that is taken in the end.
+    /// Limits from fairest curves, the first of which is the final one.
     fn of(fairest: &[Vec<Sample>], more: f64) -> Self {
         let all: Vec<SoftCounts> = fairest.iter().map(|s| SoftCounts::of(s, LATE)).collect();
         let least = |of: fn(&SoftCounts) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -69,7 +70,7 @@ impl CountLimits {
         }
     }
 
-    /// How far a curve is beyond the limits, at most 1.
+    /// Excess of a curve over the limits, from 0 to 1.
     fn beyond(&self, samples: &[Sample]) -> f64 {
         let own = SoftCounts::of(samples, EARLY);
         let signs = own.inflections - self.soft.inflections;
@@ -82,8 +83,7 @@ impl CountLimits {
     }
 }
 
-/// How many pieces more than the fairest the curve of a goal may have: as many as it likes where a
-/// budget was named.
+/// Monotone pieces allowed beyond those of the fairest; unlimited for goals other than `near`.
 fn more_pieces(goal: Goal) -> f64 {
     if matches!(goal, Goal::Near(_)) { MORE_PIECES } else { f64::INFINITY }
 }
@@ -96,7 +96,7 @@ pub(super) struct TurnedFrom<'a> {
     pub at: &'a [f64],
 }
 
-/// The way from the goal's curve to the fairest.
+/// The path from the goal's curve to the fairest.
 struct FairingPath<'a> {
     data: &'a Data,
     job: &'a Job,
@@ -106,7 +106,7 @@ struct FairingPath<'a> {
     pull: SparseRows,
     goal: DataFit,
     fairest: Vec<Vec3<f64>>,
-    /// The least of the measure, and how far the goal's curve is from the data to the optimum.
+    /// Minimum of the measure, and the optimality gap of the goal's curve.
     least: f64,
     share: f64,
     /// The budgets of the goal's curve and of the fairest.
@@ -124,7 +124,8 @@ impl FairingPath<'_> {
         self.budgets[0] * libm::pow(self.budgets[1] / self.budgets[0], x)
     }
 
-    /// Between the data's own curve and one, as far as the goal's is, and farther along the way.
+    /// Interpolation between the data's own curve and `points`, at the goal's fraction and beyond,
+    /// along the path.
     fn towards(&self, points: &[Vec3<f64>], x: f64) -> Vec<Vec3<f64>> {
         let share = self.share + (1.0 - self.share) * x;
         if share >= 1.0 {
@@ -134,7 +135,7 @@ impl FairingPath<'_> {
         both.map(|(from, to)| *from + (*to - *from) * share).collect()
     }
 
-    /// The curve on the way to the fairest, near enough to be counted.
+    /// The curve on the path to the fairest, accurate enough for counts.
     fn rough(&mut self, x: f64) -> Result<Vec<Vec3<f64>>, FairError> {
         if x == 0.0 {
             return Ok(self.goal.points.clone());
@@ -151,7 +152,7 @@ impl FairingPath<'_> {
         Ok(self.towards(&points, x))
     }
 
-    /// The optimum of a budget on the way.
+    /// The optimum of a budget on the path.
     fn exact(&mut self, x: f64) -> Result<DataFit, FairError> {
         let goal = if x < 1.0 && self.goal.weight > 0.0 {
             Goal::Budget(self.budget(x))
@@ -173,7 +174,7 @@ impl FairingPath<'_> {
         Ok(Some(Data { layout, ..self.data.clone() }))
     }
 
-    /// The curve at a place of the way, with its layout where that is another.
+    /// The curve at a position of the path, with its layout if that differs.
     fn made(&mut self, x: f64) -> Result<Relaid, FairError> {
         if x == 0.0 {
             return Ok((None, self.goal.clone()));
@@ -214,7 +215,7 @@ impl FairingPath<'_> {
         }
     }
 
-    /// A curve that is between optima, with what it measures more than the least for its gap.
+    /// A curve between optima; its gap is its excess over the minimum.
     fn measured(&self, points: Vec<Vec3<f64>>) -> Result<DataFit, FairError> {
         let options = &self.plain;
         let rows = options.measure.rows(&self.data.layout.space)?;
@@ -226,8 +227,8 @@ impl FairingPath<'_> {
 }
 
 impl Data {
-    /// The curve of the goal `near` or `budget`, or one on the way from it to the fairest. `turned`
-    /// is where the parameters come from if they follow the turns.
+    /// The curve of the goal `near` or `budget`, or one on the path from it to the fairest.
+    /// `turned` is the source of the parameters if they follow the turns.
     pub(super) fn gated<'a>(
         &'a self,
         options: &DataOptions,
@@ -282,7 +283,7 @@ impl Data {
             turned,
             counter,
         };
-        // The least of what is too many so far, so that the way ends where nothing is.
+        // Running minimum of the excess: the path ends where it is 0.
         let (mut x, mut over) = (0.0, 1.0_f64);
         // Few knots have few ripples, and many data take long.
         let steps = if self.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };

@@ -1,5 +1,4 @@
-//! From what is asked of a curve near its points to the curve: the same way for models, Python and
-//! the command.
+//! A curve near its points from a request: the same for models, Python and the command.
 
 use crate::curve::data::{
     Data, DataFit, DataOptions, MovingFit, fair_data, fair_data_with, merged,
@@ -16,22 +15,22 @@ use crate::{FairError, InterpolationSpace, Limit, Measure, Motion, ShapeConditio
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::SplineWithKnotDerivatives;
 
-/// How points get their parameters.
+/// Parametrisation of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointSpacing {
-    /// By the turns of the curve for the goals `near` and `budget` where nothing else is asked for,
-    /// and on few knots where the points are many; else by distance.
+    /// By curvature for the goals `near` and `budget` without further conditions, and with few
+    /// knots for many points; otherwise by chord length.
     Auto,
     /// Lengths, longer where the curve turns.
     Curvature,
-    /// As said.
+    /// A given parametrisation.
     Given(ParameterSpacing),
 }
 
-/// What is asked of a curve near its points. Points are counted from 0.
+/// Points and conditions of a curve near them. Points are counted from 0.
 #[derive(Clone, Debug)]
 pub struct CurveRequest<T> {
-    /// How far the curve may be from each point.
+    /// Maximum distance of each point from the curve.
     pub tolerances: Vec<T>,
     /// Points that it passes through.
     pub fixed: Vec<usize>,
@@ -41,40 +40,40 @@ pub struct CurveRequest<T> {
     pub breaks: Vec<usize>,
     /// Polynomial degree.
     pub degree: usize,
-    /// Whether the last point is followed by the first.
+    /// True if the first point follows the last.
     pub closed: bool,
     /// The measure to minimise; [`CurveRequest::data_measure`] without one.
     pub measure: Option<Measure>,
-    /// Which of the curves.
+    /// Selection among the curves within the tolerances.
     pub goal: Goal,
-    /// How the points get their parameters, and these themselves where they are given.
+    /// Parametrisation, and the parameters themselves if given.
     pub spacing: PointSpacing,
     /// Rising parameters of the points, of a closed curve less than 1 apart.
     pub at: Option<Vec<T>>,
-    /// What open ends keep of the curve through the points.
+    /// Conditions at open ends, relative to the curve through the points.
     pub ends: [EndContinuity; 2],
     /// In which directions it leaves them.
     pub motion: Motion,
-    /// What shape it has.
+    /// Shape conditions.
     pub shape: Vec<ShapeCondition>,
     /// Conditions at parameters in [0, 1].
     pub conditions: Vec<(f64, Demand)>,
-    /// Whether it may have more inflections and pieces than the fairest.
+    /// True to allow more inflections and monotone pieces than the fairest curve has.
     pub bends: bool,
-    /// The certified gap, as a share of the measure; rounding allows no less than the one without.
+    /// Certified gap, relative to the measure; `None`: rounding, the smallest possible.
     pub accuracy: Option<f64>,
 }
 
 /// A curve near its points.
 #[derive(Clone, Debug)]
 pub struct NearCurve<T> {
-    /// The data: neighbours in one place are one of them.
+    /// The data; coincident neighbours are merged.
     pub data: Data,
-    /// Which datum each point became.
+    /// Index of the merged datum for each point.
     pub of: Vec<usize>,
     /// Control points and knots of the curve.
     pub made: MovingFit<T>,
-    /// What is known of it.
+    /// The fit with its figures.
     pub fit: DataFit,
     /// The measure that was taken.
     pub measure: Measure,
@@ -93,7 +92,7 @@ impl<T: Real> NearCurve<T> {
         report_of(&self.data, self.measure, &self.fit)
     }
 
-    /// The spline; none where it has no open form.
+    /// The spline; `None` without an open form.
     pub fn curve(&self) -> Option<SplineWithKnotDerivatives<T>> {
         let space = &self.data.layout.space;
         let (knots, control) = space.open_form(&self.made.knots, &self.made.points);
@@ -149,12 +148,12 @@ impl<T: Real> CurveRequest<T> {
         if degree >= 3 { Measure::Variation } else { Measure::Bending }
     }
 
-    /// Whether nothing but a goal and tolerances are asked for.
+    /// True without conditions besides goal and tolerances.
     fn plain(&self) -> bool {
         self.shape.is_empty() && self.conditions.is_empty() && self.motion == Motion::Ball
     }
 
-    /// Whether parameters follow the turns.
+    /// True if parameters follow the curvature.
     fn turns(&self) -> bool {
         let free = self.closed || self.ends.iter().all(|e| e.kept() < 2);
         match self.spacing {
@@ -167,7 +166,7 @@ impl<T: Real> CurveRequest<T> {
         }
     }
 
-    /// Whether many points may be on few knots.
+    /// True if many points may have few knots.
     fn thins(&self, measure: Measure) -> bool {
         let along = matches!(self.motion, Motion::Along(_));
         let measured = !matches!(measure, Measure::Jumps | Measure::JumpLengths);
@@ -184,8 +183,8 @@ impl<T: Real> CurveRequest<T> {
     /// The curve near `points`.
     ///
     /// # Errors
-    /// [`FairError`]: of too few points, of points and tolerances that are none, of conditions and
-    /// shapes that cannot hold (numbered as they are given), of derivatives that are not known.
+    /// [`FairError`] for too few points, values that are not finite, contradicting conditions and
+    /// shapes (numbered as given), and derivatives that are not available.
     pub fn curve(&self, points: &[Vec3<T>]) -> Result<NearCurve<T>, FairError> {
         let n = points.len();
         let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
@@ -324,7 +323,8 @@ impl<T: Real> CurveRequest<T> {
                 let made = MovingFit::still(&data.layout, &fit);
                 return Ok(NearCurve { data, of, made, fit, measure });
             }
-            // What nothing held back moves as the goal's own curve does.
+            // If no turn had to be removed, the result is the goal's own curve, which has
+            // derivatives.
             let free = DataOptions { bends: true, ..options.clone() };
             let plain = fair_data(&data, &free).map_err(own)?;
             if layout.is_some() || plain.points != fit.points {

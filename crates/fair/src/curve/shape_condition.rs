@@ -8,19 +8,20 @@ use moldloft_num::Vec3;
 /// convex is a turn to the left, as of a graph over x (or over y) from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeCondition {
-    /// Between two data the curve turns one way: to the left (convex) or to the right (concave).
+    /// Between two data the curve turns in one direction: to the left (convex) or to the right
+    /// (concave).
     Turn {
         /// The first and the last datum.
         between: [usize; 2],
         /// To the left.
         left: bool,
     },
-    /// Between two data the curve has no inflection; which way it turns is left to it.
+    /// Between two data the curve has no inflection; its direction of turning is free.
     OneWay {
         /// The first and the last datum.
         between: [usize; 2],
     },
-    /// A straight run from datum to datum.
+    /// A straight line from datum to datum.
     Straight {
         /// The first and the last datum.
         between: [usize; 2],
@@ -32,7 +33,7 @@ pub enum ShapeCondition {
         /// The first and the last datum.
         between: [usize; 2],
     },
-    /// At most so many pieces of monotone curvature.
+    /// Maximum number of pieces of monotone curvature.
     Pieces(usize),
     /// The whole curve stays where `direction . x` is at most `most`.
     Within {
@@ -48,7 +49,7 @@ pub enum ShapeCondition {
     },
 }
 
-/// How shapes are written, for messages.
+/// Syntax of shapes, for messages.
 const GRAMMAR: &str = "convex, concave, one-way, straight or arc with points (convex=4-10; alone the \
                        whole curve), straight=4-10:0,1 in a direction, pieces=2, within=0,1:4.6, \
                        side=0,-1";
@@ -59,7 +60,7 @@ impl ShapeCondition {
     /// `pieces=2`, `within=0,1:4.6`, `side=0,-1`.
     ///
     /// # Errors
-    /// What was expected.
+    /// The expected syntax.
     ///
     /// # Example
     /// ```

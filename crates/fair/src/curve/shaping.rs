@@ -38,7 +38,7 @@ impl CurvePlane {
     /// The plane of a curve, if it is plane.
     fn of(space: &Space, points: &[Vec3<f64>]) -> Option<Self> {
         let normal = shape::plane_normal(&shape::samples(space, points, None, 4))?;
-        // From above; a vertical plane with z up and x, or else y, to the right.
+        // Seen from above; for a vertical plane with z up and x, or else y, to the right.
         let back = if normal.z.abs() > 1e-9 {
             normal.z < 0.0
         } else if normal.y.abs() > 1e-9 {
@@ -68,18 +68,18 @@ impl CurvePlane {
     }
 }
 
-/// What has a sign on a span.
+/// A signed quantity on a span.
 #[derive(Clone, Debug)]
 struct Signed {
     span: isize,
     what: SignedQuantity,
     positive: bool,
-    /// How far a coefficient may be on the other side.
+    /// Tolerated violation of a coefficient.
     slack: f64,
     owner: usize,
 }
 
-/// A reversal of the curvature on a span that is not counted, as a share of its range: half of what
+/// Reversal of the curvature on a span, relative to its range, that is tolerated: half of what
 /// counts.
 const UNCOUNTED: f64 = 5e-4;
 
@@ -94,7 +94,7 @@ struct CollinearPoints {
     owner: usize,
 }
 
-/// Where and what is asked, resolved for data: see [`Data::shaped`].
+/// Shape conditions resolved for data; see [`Data::shaped`].
 #[derive(Clone, Debug, Default)]
 pub struct ShapeConstraints {
     plane: Option<CurvePlane>,
@@ -102,16 +102,16 @@ pub struct ShapeConstraints {
     lines: Vec<CollinearPoints>,
     /// Control points of arcs.
     fixed: Vec<(usize, Vec3<f64>)>,
-    /// Whose these are, one by one.
+    /// Condition of each equation.
     arc_of: Vec<usize>,
     /// Spans that lines and arcs determine.
     determined: Vec<isize>,
     limits: Vec<(usize, Vec3<f64>, f64)>,
     sides: Vec<(usize, Vec3<f64>)>,
-    /// Parts that turn one way, whichever.
+    /// Parts that turn in one direction, either of both.
     one_way: Vec<(usize, Vec<isize>)>,
     pieces: Option<(usize, usize)>,
-    /// How far inside their signs coefficients are aimed at, as a length.
+    /// Required margin inside the signs, as a length.
     pub(crate) margin: f64,
     /// The arcs.
     pub arcs: Vec<FoundArc>,
@@ -139,7 +139,7 @@ fn refused(shape: usize, why: impl Into<String>) -> FairError {
     FairError::Shapeless { shape, why: why.into() }
 }
 
-/// A run whose end has no room for the knots of another curvature.
+/// Error for a run without enough points at its end for a change of curvature.
 fn crowded(shape: usize, point: usize) -> FairError {
     refused(
         shape,
@@ -154,7 +154,7 @@ impl Data {
     /// The data with knots where straight runs and arcs begin and end, and the shape for them.
     ///
     /// # Errors
-    /// [`FairError::Shapeless`] for what these data cannot have: with the number of the condition.
+    /// [`FairError::Shapeless`] with the number of a condition that these data cannot meet.
     pub fn shaped(
         mut self,
         wanted: &[ShapeCondition],
@@ -253,7 +253,7 @@ impl Data {
             runs.sort_by_key(|r| r.1);
             out.runs(&mut self, &runs)?;
         }
-        // Signs after the knots have their places.
+        // Signs after the knots are final.
         for (owner, condition) in wanted.iter().enumerate() {
             let of = |between: &[usize; 2]| -> Vec<isize> {
                 let layout = &self.layout;
@@ -287,7 +287,7 @@ impl Data {
 type Run = (usize, [usize; 2], bool, Option<Vec3<f64>>);
 
 impl ShapeConstraints {
-    /// Whether nothing is asked.
+    /// True without conditions.
     pub fn is_empty(&self) -> bool {
         self.signs.is_empty()
             && self.lines.is_empty()
@@ -397,7 +397,7 @@ impl ShapeConstraints {
         let mut found: Vec<Option<(Chain, Vec<f64>)>> = Vec::new();
         for (group, made) in chains.iter().zip(placed_at) {
             let Some(made) = made else {
-                // A line by itself may leave with another curvature.
+                // Outside a single line the curvature may differ.
                 for k in group[0].1 {
                     let inside = |m: usize| group[0].1[0] < m && m < group[0].1[1];
                     if k != 0
@@ -458,7 +458,7 @@ impl ShapeConstraints {
         points
     }
 
-    /// Holds the control points of a chain: those of arcs at their places, others on their lines.
+    /// Fixes the control points of a chain: those of arcs exactly, others on their lines.
     fn hold(
         &mut self,
         data: &Data,
@@ -530,8 +530,8 @@ impl ShapeConstraints {
             if rows.len() > n {
                 return Err(refused(run.0, "an arc needs more points between its ends"));
             }
-            // Between its ends the spline has the second derivative of the arc as nearly as it can:
-            // curvature is what an arc is about. Places follow from it to a higher order.
+            // Between its ends the spline has approximately the second derivative of the arc, since
+            // curvature defines an arc. Positions then agree to a higher order.
             let mut near: Vec<(Vec<f64>, P<f64>)> = Vec::new();
             for &span in &spans {
                 let (a, b) = (space.knot(span), space.knot(span + 1));
@@ -593,7 +593,7 @@ impl ShapeConstraints {
         Ok(())
     }
 
-    /// How far the spline of an arc is from its circle, and by how much its curvature differs.
+    /// Distance of the spline of an arc from its circle, and the difference of curvature.
     fn check(
         &mut self,
         data: &Data,
@@ -660,7 +660,7 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
     })?;
     let (from, to) = (group[0].1[0], group[group.len() - 1].1[1]);
     let mut feet: Vec<f64> = Vec::new();
-    // How far along the chain a point may be from its foot.
+    // Maximum distance along the chain between a point and its foot.
     let mut rooms: Vec<f64> = Vec::new();
     let near = |k: usize| group.iter().position(|r| r.1[0] <= k && k <= r.1[1]).unwrap_or(0);
     for (k, &p) in points.iter().enumerate().take(to + 1).skip(from) {
@@ -681,13 +681,14 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
     Ok((found, feet))
 }
 
-/// The share of the way that a tolerance leaves along a chain by which a point may be beside its foot.
+/// Fraction of the possible distance, by the tolerance, that a point may have from its foot along a
+/// chain.
 const ROOM: f64 = 0.9;
 
-/// Places that rise, each within its room of a foot: noise puts points that are near each other in the wrong
-/// order. The nearest in the sum of squares with a step between them (by pooling neighbours that violate the
-/// order: Ayer, Brunk, Ewing, Reid and Silverman 1955), the step as large as the rooms allow; else the first
-/// foot that runs back.
+/// Increasing positions, each within `rooms` of its foot; noise can reverse the order of close
+/// points. Least-squares solution with a minimum step between positions, by pooling adjacent
+/// violators (Ayer, Brunk, Ewing, Reid and Silverman 1955), with the largest step that `rooms`
+/// allow; otherwise the error is the index of the first reversed foot.
 fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
     let Some(first) = (1..feet.len()).find(|&k| feet[k] <= feet[k - 1]) else { return Ok(feet) };
     let least = rooms.iter().copied().fold(f64::INFINITY, f64::min);
@@ -695,7 +696,7 @@ fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
     let mut step = if largest.is_finite() { largest } else { least };
     for _ in 0..HALVINGS {
         step *= 0.5;
-        // Blocks of one mean, with how many feet they have.
+        // Mean and number of feet of each block.
         let mut blocks: Vec<(f64, usize)> = Vec::new();
         for (k, s) in feet.iter().enumerate() {
             blocks.push((s - step * k as f64, 1));
@@ -718,7 +719,7 @@ fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
     Err(first)
 }
 
-/// How often the step between places is halved.
+/// Maximum number of halvings of the step.
 const HALVINGS: usize = 12;
 
 impl ShapeConstraints {
@@ -787,8 +788,8 @@ impl ShapeConstraints {
         }
     }
 
-    /// The half-spaces of signs, limits and sides, made linear at a curve. What concerns points that
-    /// do not move is left out.
+    /// Half-spaces of signs, limits and sides, linearised at a curve; those that concern fixed
+    /// points only are left out.
     pub(crate) fn halves(
         &self,
         data: &Data,
@@ -817,7 +818,7 @@ impl ShapeConstraints {
         };
         for &(owner, d, most) in &self.limits {
             for span in space.spans() {
-                // Of quarters: the Bézier points of whole spans are too far from the curve where
+                // Bézier points of quarters: those of whole spans are too far from the curve where
                 // it turns away from its limit.
                 for row in halved(&halved(&[space.bezier_of(span)])).into_iter().flatten() {
                     beyond(space.columns(span).zip(row).collect(), d, most, owner);
@@ -837,8 +838,8 @@ impl ShapeConstraints {
         out
     }
 
-    /// The coefficients of a sign as half-spaces, and what they are now: lengths, negative where the
-    /// sign is wrong.
+    /// Coefficients of a sign as half-spaces, and their present values: lengths, negative where the
+    /// sign is violated.
     fn linear(
         &self,
         space: &Space,
@@ -872,8 +873,8 @@ impl ShapeConstraints {
         all.into_iter().filter_map(half).collect()
     }
 
-    /// By how much a curve misses what it has to have, as a length, and whose condition that is.
-    /// Equations are met within `slack`.
+    /// Largest violation of a curve, as a length, and the condition it belongs to. Equations hold
+    /// within `slack`.
     pub(crate) fn miss(&self, data: &Data, control: &[Vec3<f64>], slack: f64) -> (f64, usize) {
         let mut worst = (0.0, 0);
         let mut found = |off: f64, owner: usize| {
@@ -925,8 +926,8 @@ impl ShapeConstraints {
         out
     }
 
-    /// The shape with the signs that parts which turn one way have by a curve, and with pieces where
-    /// that curve has them.
+    /// The shape with the signs of a curve for its parts that turn in one direction, and with
+    /// pieces if that curve has them.
     pub(crate) fn by(&self, space: &Space, control: &[Vec3<f64>]) -> Self {
         let mut out = self.clone();
         let normal = self.plane.map(|p| p.normal());
@@ -974,7 +975,7 @@ impl ShapeConstraints {
         out
     }
 
-    /// How many pieces it may have, where a number was asked for.
+    /// Maximum number of pieces, if given.
     pub(crate) fn most_pieces(&self) -> Option<usize> {
         self.pieces.map(|(_, most)| most)
     }
@@ -984,7 +985,7 @@ impl ShapeConstraints {
         Self { pieces: None, ..self.clone() }
     }
 
-    /// Whether a curve has few enough pieces; the number that it has.
+    /// The condition and the number of pieces of a curve, if there are too many.
     pub(crate) fn counted(&self, space: &Space, control: &[Vec3<f64>]) -> Option<(usize, usize)> {
         let (owner, most) = self.pieces?;
         let all = shape::pieces(space, control);

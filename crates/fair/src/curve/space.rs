@@ -1,9 +1,9 @@
-//! Splines of one degree on one knot sequence, open or closed: what control points mean.
+//! Spline spaces of one degree on one knot sequence, open or closed.
 
 use crate::{FairError, SparseRows};
 use moldloft_spline::{Basis, KnotVector};
 
-/// The splines of one degree on one knot sequence, open or closed: what control points mean.
+/// Splines of one degree on one knot sequence, open or closed.
 ///
 /// Control point s of an open space belongs to the basis function on knots `s ..= s + degree + 1`.
 /// A closed space has as many knots as control points (a period); control point j belongs to the
@@ -93,7 +93,7 @@ impl Space {
         self.period.is_some()
     }
 
-    /// True when the first and the last knot stand `degree + 1` times.
+    /// True if the first and the last knot have the multiplicity `degree + 1`.
     pub fn is_clamped(&self) -> bool {
         let (p, n) = (self.degree, self.count);
         !self.is_closed() && self.knots[0] == self.knots[p] && self.knots[n] == self.knots[n + p]
@@ -165,8 +165,8 @@ impl Space {
         (k, t)
     }
 
-    /// The space as an open knot vector over [0, 1], and the control point that stands at each of
-    /// its places: a closed spline repeats its first `degree` points.
+    /// The space as an open knot vector over [0, 1], and the control point of each of its
+    /// coefficients: a closed spline repeats its first `degree` points.
     pub fn knot_vector(&self) -> (KnotVector, Vec<usize>) {
         let (p, n) = (self.degree as isize, self.count as isize);
         let (from, to) = if self.is_closed() { (-p, n + p) } else { (0, n + p) };
@@ -269,9 +269,9 @@ impl Space {
             .collect()
     }
 
-    /// The Bézier points of all spans as rows over the control points. Points that two spans
-    /// share stand once. With weights the rows give the displacement of the rational curve's
-    /// Bézier points (projected) for a displacement of its control points.
+    /// Bézier points of all spans as rows over the control points, without duplicates at common
+    /// ends. With weights the rows give the displacement of the rational curve's projected Bézier
+    /// points for a displacement of its control points.
     pub fn bezier(&self, weights: Option<&[f64]>) -> SparseRows {
         let mut rows = SparseRows::new();
         self.each_bezier(weights, |entries| rows.push(entries.iter().copied()));
@@ -312,8 +312,8 @@ impl Space {
         BezierExtraction::default().rows(self, k).to_vec()
     }
 
-    /// For each control point, by how much it can move at most when every Bézier point of the
-    /// displacement stays within 1 (the norm of the inverse of [`Space::bezier`] on one span).
+    /// Maximum move of each control point when every Bézier point of the displacement stays within
+    /// 1 (the norm of the inverse of [`Space::bezier`] on one span).
     pub fn reach(&self, weights: Option<&[f64]>) -> Vec<f64> {
         let p = self.degree;
         let mut reach = vec![f64::INFINITY; self.count];

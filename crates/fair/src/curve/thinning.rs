@@ -1,12 +1,12 @@
 //! Few knots for many data.
 //!
-//! With a knot at each of ten thousand data, third derivatives have no digits left, and most knots say
-//! nothing: noise hides what they could. Here knots are as many as the data show to be needed. A span is
-//! halved as long as the residuals of the least squares keep a pattern in it: of blocks of white noise the
-//! squared sums are as large as the differences from one datum to the next say, and larger where the spline
-//! is too stiff. All spans are halved once more, so that fairness has a choice, and those on which the
-//! tolerances cannot be kept. Data have the parameters of their feet on that curve (Hoschek 1988), so that
-//! residuals are distances from it.
+//! With a knot at each of ten thousand data, third derivatives have no digits left, and most knots
+//! are determined by noise. The number of knots is therefore chosen from the data: a span is halved
+//! while the least-squares residuals on it have a pattern. For white noise the squared sums of
+//! blocks are as large as differences between consecutive data predict; they are larger where the
+//! spline is too stiff. All spans are halved once more, to leave freedom for fairing, and those on
+//! which the tolerances do not hold. Parameters are those of the feet on the resulting curve
+//! (Hoschek 1988), so that residuals are distances from it.
 
 use crate::curve::centre::centre;
 use crate::curve::exact::is_exact;
@@ -25,22 +25,23 @@ pub(crate) const MANY_DATA: usize = 500;
 const FIRST_SPANS: usize = 8;
 const SPAN_DATA: usize = 8;
 
-/// The same where tolerances ask for it, and data for each span at least in all.
+/// Minimum number of data per span for halving because of tolerances, and minimum average over all
+/// spans.
 const NARROW_DATA: usize = 4;
 const SPARSE: usize = 3;
 
-/// Blocks of a span, and the standard deviations beyond which their sums are no noise.
+/// Blocks of a span, and the number of standard deviations beyond which their sums are not noise.
 const BLOCKS: usize = 8;
 const DEVIATIONS: f64 = 4.0;
 
-/// Residuals below this share of the tolerance are small enough.
+/// Residuals below this fraction of the tolerance are small enough.
 const FINE: f64 = 1e-4;
 
 /// Rounds of halving at most, and of feet once no span is halved.
 const ROUNDS: usize = 24;
 const FOOT_ROUNDS: usize = 3;
 
-/// Averages of so many points and of twice as many have the same length but for noise.
+/// Maximum ratio of the lengths of averages over n and 2n points at which the difference is noise.
 const SAME_LENGTH: f64 = 1.03;
 
 /// Averages at least.
@@ -55,15 +56,15 @@ const PARTS: usize = 8;
 pub(crate) struct CurvesBesideData {
     /// The control points of the curve of least squares, each over its tolerance.
     pub nearest: Vec<Vec3<f64>>,
-    /// Those of a curve strictly inside the tolerances.
+    /// Control points of a curve strictly inside the tolerances.
     pub centre: Vec<Vec3<f64>>,
 }
 
-/// A spline of few knots for many data in tolerances, with a place for each; none where the data are few or
-/// exact, some have no tolerance of their own or may move in some directions only (but along one from stations on a
-/// line, which are the parameters then), or no such spline stays within the
-/// tolerances. With `turning` parameters run faster where the curve turns, as
-/// [`crate::curvature_parameters`] do.
+/// A spline with few knots for many data within tolerances, and the parameters of the data. `None`
+/// if the data are few or exact, if some have no tolerance of their own, if their motion is
+/// restricted (except along one direction, from stations on a line, which are then the parameters),
+/// or if no such spline is within the tolerances. With `turning`, parameters advance faster where
+/// the curve turns, as in [`crate::curvature_parameters`].
 ///
 /// # Errors
 /// [`FairError`] of the spaces of splines.
@@ -111,11 +112,11 @@ pub fn thinned(
     thinning.run(turning)
 }
 
-/// Stations are on a line to this share of the extent.
+/// Deviation of stations from a line, relative to the extent, up to which they are on it.
 const IN_LINE: f64 = 1e-12;
 
-/// Rising parameters in [0, 1] of points that move along a direction only, by their stations: none where these are not
-/// on a line, or some are in one place.
+/// Increasing parameters in [0, 1] of points that move in one direction, from their stations;
+/// `None` if these are not on a line or coincide.
 fn stations(points: &[Vec3<f64>], along: Vec3<f64>) -> Option<Vec<f64>> {
     let flat = |p: &Vec3<f64>| *p - along * along.dot(*p);
     let (first, last) = (flat(points.first()?), flat(points.last()?));
@@ -140,18 +141,18 @@ fn stations(points: &[Vec3<f64>], along: Vec3<f64>) -> Option<Vec<f64>> {
 struct Thinning<'a> {
     points: &'a [Vec3<f64>],
     radii: &'a [f64],
-    /// What a squared residual counts.
+    /// Weights of the squared residuals.
     weights: Vec<f64>,
     degree: usize,
     closed: bool,
-    /// Which ends stay at their data.
+    /// True for the ends that stay at their data.
     hold: [bool; 2],
     /// The data at which spans begin, and of an open curve the last one.
     bounds: Vec<usize>,
     /// The parameters of these, and of the data.
     knots: Vec<f64>,
     at: Vec<f64>,
-    /// Whether the data stay at their parameters.
+    /// True if the data keep their parameters.
     stationed: bool,
 }
 
@@ -226,7 +227,7 @@ impl<'a> Thinning<'a> {
                     return Ok(Some(InterpolationSpace::thin(fitted.space, at, rows, thin)));
                 }
                 Err(beyond) => {
-                    // Where the tolerances cannot be kept spans are halved.
+                    // Spans on which the tolerances do not hold are halved.
                     let narrow = |s: &std::ops::Range<usize>| {
                         s.len() >= 2 * NARROW_DATA && s.clone().any(|i| beyond[i])
                     };
@@ -257,7 +258,7 @@ impl<'a> Thinning<'a> {
             knots.push(self.knots[k]);
             if split[k] {
                 let end = self.knots.get(k + 1).copied().unwrap_or(1.0);
-                // Data may lie at feet in any order.
+                // Feet need not be in the order of the data.
                 let middle = (span.start + span.end) / 2;
                 let own = self.at[middle];
                 let low = self.knots[k] + 0.1 * (end - self.knots[k]);
@@ -308,13 +309,13 @@ impl<'a> Thinning<'a> {
         }))
     }
 
-    /// Which spans have residuals with a pattern.
+    /// For each span, true if its residuals have a pattern.
     fn patterned(&self, fitted: &FittedSpline) -> Vec<bool> {
         let across: Vec<Vec3<f64>> = (0..self.points.len())
             .map(|i| {
                 let [p, along, _] = fitted.pieces.at(self.at[i]);
                 let off = p - self.points[i];
-                // Over the tolerance; what was released says nothing.
+                // Relative to the tolerance; released data have no influence.
                 let scale = self.weights[i].sqrt();
                 let normal =
                     off - along * (off.dot(along) / along.norm_sq().max(f64::MIN_POSITIVE));
@@ -425,8 +426,8 @@ impl<'a> Thinning<'a> {
     }
 }
 
-/// Parameters in [0, 1] by the lengths between averages of so many neighbours that noise does not lengthen them,
-/// even between these.
+/// Parameters in [0, 1] from the lengths between averages over enough neighbours for noise not to
+/// lengthen them, interpolated linearly.
 fn pilot(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     let n = points.len();
     let averages = |size: usize| -> Vec<(f64, Vec3<f64>)> {

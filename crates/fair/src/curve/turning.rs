@@ -1,11 +1,11 @@
-//! Parameters that run faster where a curve turns, and how much of what the tolerances allow the curve
-//! nearest to the truth takes.
+//! Parameters that advance faster where a curve turns, and the budget for which the curve is
+//! nearest to the truth.
 //!
-//! With arc lengths for parameters a nose is a short place where third derivatives are large, and a fair
-//! curve pays for it in the gaps beside. With steps ds (1 + (k / 2m)^2)^(1/4), k the curvature and m its
-//! mean, it has more room: these lie between the arc length and, to the power of a half, the angle of the
-//! tangent. The curvature is that of the curve that takes all of the squares that noise has: one that is nearer to the
-//! data turns with their noise, and where nothing but noise turns the steps would be its.
+//! With arc length as the parameter, a nose is a short interval with large third derivatives, which
+//! a fair curve compensates by gaps beside it. Steps of ds (1 + (k / 2m)^2)^(1/4), with the
+//! curvature k and its mean m, make the interval longer: they are between the arc length and the
+//! square root of the tangent angle. The curvature is that of the curve with the full squares of
+//! noise: a curve nearer to the data would turn with their noise.
 
 use crate::curve::data::{Data, DataOptions, MovingFit, fair_data_with};
 use crate::curve::moving::MovingSpace;
@@ -17,15 +17,15 @@ use moldloft_num::{Real, Vec3};
 /// The curvature, in means, from which on parameters run faster.
 const SHARP: f64 = 2.0;
 
-/// What noise has across a curve where it is as large along it, of which parameters take that along: the budget
-/// of the goal `near` for plane curves, and for others.
+/// Budget of the goal `near` for plane curves and for others: the part of isotropic noise that is
+/// across the curve; the part along it is absorbed by the parameters.
 const PLANE_BUDGET: f64 = 0.5;
 const SPACE_BUDGET: f64 = 0.8;
 
-/// Flat to this share of the extent is plane.
+/// Relative deviation from a plane up to which points are plane.
 const FLAT: f64 = 1e-9;
 
-/// The budget of the curve whose turns are taken: what noise has in thirds of the squared tolerances.
+/// Budget of the curve whose curvature is used, in thirds of the squared tolerances: that of noise.
 const TURNS_BUDGET: f64 = 1.0;
 
 /// A turn of the tangent, in radians, below which a curve is straight.
@@ -50,7 +50,7 @@ pub fn near_budget(points: &[Vec3<f64>], motion: Motion) -> f64 {
     PLANE_BUDGET
 }
 
-/// Whether points are in one plane.
+/// True if the points are in one plane.
 fn is_plane(points: &[Vec3<f64>]) -> bool {
     let Some(&first) = points.first() else { return true };
     let far = |of: &dyn Fn(Vec3<f64>) -> Vec3<f64>| {
@@ -105,7 +105,7 @@ pub fn curvature_parameters<T: Real>(
     let options = DataOptions::of(measure, Goal::Budget(TURNS_BUDGET));
     let (made, _) = fair_data_with(data, &options, points, tolerances, at)?;
     let steps = steps(data, &made, &data.layout.moving(at).0);
-    // Where the curve has no length somewhere the parameters stay.
+    // If a part of the curve has zero length the parameters are unchanged.
     Ok(steps.map_or_else(|| at.to_vec(), |steps| numbered(data, &steps, at.len())))
 }
 

@@ -1,4 +1,4 @@
-//! How far a faired curve is from its original.
+//! Deviation of a faired curve from its original.
 
 use crate::{Job, shape};
 use moldloft_num::Vec3;
@@ -9,8 +9,8 @@ use moldloft_num::Vec3;
 pub struct Deviation {
     /// The largest move of a control point.
     pub control: f64,
-    /// No point of the curve is farther from its original than this: the largest Bézier point of
-    /// the displacement, of which the curve is a convex combination.
+    /// Certified bound of the distance of the curve from its original: the largest Bézier point of
+    /// the displacement, which is a convex combination of these.
     pub certified: f64,
     /// The largest distance found by sampling.
     pub sampled: f64,

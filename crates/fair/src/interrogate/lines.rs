@@ -3,8 +3,9 @@
 use crate::interrogate::outliers::{DataFinding, data_findings, detectable};
 use moldloft_num::Vec3;
 
-/// What differs from its neighbours along lines through numbered points: the line, and the finding with the number of
-/// the point. A line is its points and whether it is closed.
+/// Points that differ from their neighbours along lines through numbered points, as the index of
+/// the line and the finding with the number of the point. A line is its points and whether it is
+/// closed.
 ///
 /// A wrong digit shows in all lines that judge its point, or in two of them, a knuckle in one. Points
 /// that are `marked` are left out.

@@ -1,4 +1,4 @@
-//! How fair a shape is: curvature and its derivatives, distances, and reports of a fairing.
+//! Analysis of fairness: curvature and its derivatives, distances, and reports of a fairing.
 
 pub(crate) mod deviation;
 pub(crate) mod lines;

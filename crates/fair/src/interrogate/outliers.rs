@@ -1,9 +1,10 @@
 //! Wrong digits and knuckles among data at any spacing: proposals, with the evidence.
 //!
-//! Each point is left out and predicted by a cubic through its neighbours, five on either side, by
-//! their chord lengths. What is off along the curve is a matter of spacing and no finding; what is
-//! off across it is set against a scale of the neighbourhood that the whole file moderates (Smyth
-//! 2004). A knuckle differs from a wrong digit: leaving the point out cures a wrong digit.
+//! Each point is left out and predicted by a cubic through five neighbours on either side,
+//! parametrised by chord length. Only the error across the curve counts, since the error along it
+//! is a matter of spacing; it is compared with a scale of the neighbourhood that is moderated by
+//! the whole file (Smyth 2004). Leaving the point out removes the outlier at a wrong digit, but not
+//! at a knuckle.
 
 use crate::interrogate::short_lists::{SHORT, short_knuckles, swapped};
 use moldloft_num::Vec3;
@@ -15,11 +16,11 @@ pub enum DataFinding {
     WrongDigit {
         /// The point.
         index: usize,
-        /// Where its neighbours have it, straight across the curve.
+        /// Predicted position: the point moved across the curve.
         expected: Vec3<f64>,
-        /// How far it is off, as a multiple of its scale.
+        /// Error relative to the local scale.
         score: f64,
-        /// How far off it had to be to be found.
+        /// Smallest error that would have been reported.
         least: f64,
     },
     /// A point at which the tangent turns: probably a break that is meant.
@@ -31,7 +32,7 @@ pub enum DataFinding {
         /// The turn as a multiple of its scale.
         score: f64,
     },
-    /// A point that seems to belong behind the next one: the way through both runs back.
+    /// A point that seems to belong after the next one: the polyline through both reverses.
     Swapped {
         /// The first of the two.
         index: usize,
@@ -78,9 +79,9 @@ impl std::fmt::Display for DataFinding {
 /// everywhere as it is here.
 const CHANCE: f64 = 0.01;
 
-/// From which score on a point is proposed, at least and at most. Noise that differs from place to
-/// place has long tails by Student's law; that of rounding and drawing is bounded, and of 2 169
-/// aerofoils none had a false finding at 5 that was not near an end.
+/// Range of the score from which a point is proposed. Noise of varying strength has long tails by
+/// Student's law; that of rounding and drawing is bounded. At a score of 5, of 2 169 aerofoils none
+/// had a false finding away from the ends.
 const SCORES: [f64; 2] = [4.0, 5.0];
 
 /// The same where fewer than `CLOSE` neighbours are on one side: there a cubic is extrapolated, and a
@@ -93,32 +94,32 @@ const ASIDE_SCORE: f64 = 6.0;
 /// Leaving a point out cures when no neighbour has a larger score without it.
 const CURED: f64 = 6.0;
 
-/// From which score on the turn of a knuckle is proposed.
+/// Minimum score of a knuckle's turn.
 const KNUCKLE_SCORE: f64 = 20.0;
 
-/// Turns beyond this are noses, unless both sides are straight or the turn stands out by `STANDS_OUT`
-/// and those beside it do not lead up to it.
+/// Turn in radians beyond which it counts as a nose, unless both sides are straight or the turn is
+/// `STANDS_OUT` times its neighbours, which do not grow towards it.
 const LARGEST_TURN: f64 = 0.44;
 
 /// A polygon that doubles back by more than this is a nose that the points do not resolve.
 pub(super) const DOUBLES_BACK: f64 = 1.75;
 
-/// How many times the turns beside it a knuckle's is, where a nose could be as sharp.
+/// Minimum ratio of a knuckle's turn to those beside it, for turns at which a nose is possible.
 pub(super) const STANDS_OUT: f64 = 6.0;
 
 /// Neighbours on either side.
 const SIDE: usize = 5;
 
-/// Neighbours on either side that have to agree, and on how much of what all find: more of it beside
-/// an end.
+/// Number of neighbours on either side that must confirm an error, and the part of it that they
+/// must confirm: more beside an end.
 const CLOSE: usize = 3;
 const CONFIRMS: [f64; 2] = [0.5, 0.8];
 
-/// Points of which the scale of the others is looked at, those that stand out most by their own
-/// neighbourhood's scale and by the file's.
+/// Number of points whose influence on the scales of others is examined: those with the largest
+/// score by the scale of their neighbourhood and by that of the file.
 const CANDIDATES: [usize; 2] = [8, 4];
 
-/// Points of which anything is said, at least.
+/// Minimum number of points for any finding.
 const FEWEST: usize = 12;
 
 /// Proposals at most.
@@ -131,7 +132,7 @@ const PRIOR: [f64; 2] = [4.0, 60.0];
 /// Degrees of freedom of the scale of a neighbourhood.
 const FREEDOM: f64 = (2 * SIDE - 4) as f64;
 
-/// What a point looks like from its neighbours.
+/// Prediction of a point from its neighbours.
 #[derive(Clone, Copy, Debug)]
 struct NeighbourFit {
     /// Across the curve, over the root of 1 + leverage.
@@ -143,9 +144,9 @@ struct NeighbourFit {
     /// The scale of the neighbours about their cubic.
     scale: f64,
     judged: bool,
-    /// Whether there are as many neighbours on either side.
+    /// True with as many neighbours on either side.
     central: bool,
-    /// Whether there are enough of them on either side for a point to be one among others.
+    /// True with enough neighbours on either side to interpolate.
     inner: bool,
 }
 
@@ -177,7 +178,7 @@ impl<const C: usize> ThinQr<C> {
         Some(Self { q: a, r })
     }
 
-    /// What the last column has that the others do not.
+    /// Norm of the part of the last column that is orthogonal to the others.
     pub(super) fn last(&self) -> f64 {
         self.r[C - 1][C - 1]
     }
@@ -218,8 +219,7 @@ fn cubic(c: &[Vec3<f64>; 4], x: f64) -> [Vec3<f64>; 3] {
     ]
 }
 
-/// The indices of the neighbours of place `i` in a list, so many on either side, and how many of them
-/// are before it.
+/// Indices of the neighbours of item `i`, `side` on either side, and the number of them before it.
 fn window(i: usize, n: usize, side: usize, closed: bool) -> (Vec<usize>, usize) {
     let side = side.min((n - 1) / 2);
     if closed {
@@ -302,8 +302,8 @@ fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<Nei
     })
 }
 
-/// Whether the nearest neighbours alone, `CLOSE` on either side, have the point as far off and on the
-/// same side: where a cubic does not follow the curve they miss it by much less.
+/// True if the `CLOSE` nearest neighbours on either side confirm the error in size and direction;
+/// where a cubic does not follow the curve their error is much smaller.
 fn confirmed(points: &[Vec3<f64>], i: usize, closed: bool, wide: &NeighbourFit) -> bool {
     seen(points, i, CLOSE, closed).is_some_and(|close| {
         let share = CONFIRMS[usize::from(!close.central)];
@@ -323,7 +323,7 @@ fn median(mut all: Vec<f64>) -> f64 {
 #[derive(Clone, Copy, Debug)]
 struct Judged {
     seen: NeighbourFit,
-    /// How far it is off, as a multiple of its scale.
+    /// Error relative to the local scale.
     score: f64,
     /// The score from which it is proposed.
     least: f64,
@@ -337,8 +337,9 @@ fn inverse_trigamma(y: f64) -> f64 {
     (1.0 + (1.0 + 2.0 * y).sqrt()) / (2.0 * y)
 }
 
-/// How many degrees of freedom the file's scale has for a neighbourhood (Smyth 2004, equation 14, with
-/// a robust variance): the variance of the logarithms of the squared scales beyond what noise has.
+/// Degrees of freedom of the file's scale for a neighbourhood (Smyth 2004, equation 14, with a
+/// robust variance): from the variance of the logarithms of the squared scales beyond that of
+/// noise.
 fn prior(scales: impl Iterator<Item = f64>, floor: f64) -> f64 {
     let logs: Vec<f64> = scales.map(|s| 2.0 * libm::log(s.max(floor))).collect();
     let middle = median(logs.clone());
@@ -364,12 +365,12 @@ fn threshold(count: usize, freedom: f64) -> f64 {
     student.clamp(SCORES[0], SCORES[1])
 }
 
-/// What all points look like from their neighbours.
+/// Predictions of all points from their neighbours.
 fn fits(points: &[Vec3<f64>], closed: bool) -> Vec<Option<NeighbourFit>> {
     (0..points.len()).map(|i| seen(points, i, SIDE, closed)).collect()
 }
 
-/// The scale of a file, and how many degrees of freedom it has for a neighbourhood.
+/// Scale of a file, and its degrees of freedom for a neighbourhood.
 #[derive(Clone, Copy, Debug)]
 struct FileScale {
     scale: f64,
@@ -390,8 +391,8 @@ impl FileScale {
     /// A point set against its scale.
     fn judge(&self, seen: NeighbourFit) -> Judged {
         let file = self.scale;
-        // Where cubics miss by more than noise does the file says little: a nose has a scale of
-        // its own. The squares of noise exceed the double in one neighbourhood of twenty.
+        // Where cubics miss by more than noise the file's scale has little weight: a nose has its
+        // own scale. The squares of noise exceed twice their mean in one of twenty neighbourhoods.
         let beyond = (seen.scale * seen.scale / (file * file).max(f64::MIN_POSITIVE) - 2.0) / 2.0;
         let weight = self.weight + (PRIOR[0] - self.weight) * beyond.clamp(0.0, 1.0);
         let usual = threshold(self.count, weight + FREEDOM);
@@ -407,7 +408,7 @@ impl FileScale {
     }
 }
 
-/// What all points but one look like from each other, where `all` is what they look like with it.
+/// Predictions of all points with one left out; `all` are those with it.
 fn without(
     points: &[Vec3<f64>],
     all: &[Option<NeighbourFit>],
@@ -455,8 +456,7 @@ fn clearest(points: &[Vec3<f64>], closed: bool, floor: f64) -> Option<(usize, Ju
         .max_by(|a, b| a.1.score.total_cmp(&b.1.score))
 }
 
-/// Half the step of the digits that all coordinates have, over the root of three: what rounding
-/// does to a reading.
+/// Standard deviation of rounding to the common digits of all coordinates: half the step over √3.
 pub fn digit_scale(points: &[Vec3<f64>]) -> f64 {
     let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
     let whole = |step: f64| {
@@ -475,7 +475,7 @@ pub fn digit_scale(points: &[Vec3<f64>]) -> f64 {
     0.0
 }
 
-/// The points between knuckles, which cubics do not run across, and whether they are a closed list.
+/// The points between knuckles, which cubics do not cross, and whether they are a closed list.
 fn pieces(n: usize, closed: bool, knuckles: &[DataFinding]) -> Vec<(Vec<usize>, bool)> {
     let mut cuts: Vec<usize> = knuckles.iter().map(DataFinding::index).collect();
     cuts.sort_unstable();
@@ -515,13 +515,13 @@ fn wrong_digits(
     out
 }
 
-/// What stands out among data, wrong digits first, the clearest first. Nothing is said of wrong digits in lists of
-/// fewer than a dozen points, and of knuckles and the order in lists of fewer than seven.
+/// Findings among data: wrong digits first, the largest score first. Wrong digits are reported for
+/// at least 12 points, knuckles and order for at least 7.
 pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     let n = points.len();
     let swapped = swapped(points, closed);
     if !swapped.is_empty() {
-        // What else there is shows in the other order.
+        // Further findings are determined in the corrected order.
         let mut ordered = points.to_vec();
         swapped.iter().for_each(|&k| ordered.swap(k, (k + 1) % n));
         let said = swapped.iter().map(|&index| DataFinding::Swapped { index });
@@ -553,7 +553,8 @@ fn ordered_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     out
 }
 
-/// How large an error of each point would have been found; infinite where points are not judged.
+/// For each point, the smallest error that would have been found; infinite if the point is not
+/// judged.
 pub fn detectable(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.least * j.deviation)
 }
@@ -564,8 +565,8 @@ pub fn predicted(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.deviation)
 }
 
-/// Each point is judged as it is when it is looked for: between knuckles, without the wrong digits that
-/// are clearer, and by the scale that the others have among themselves.
+/// Each point is judged as in the search: between knuckles, without the wrong digits of higher
+/// score, and by the scale of the others.
 fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> Vec<f64> {
     let n = points.len();
     let mut out = vec![f64::INFINITY; n];
@@ -621,7 +622,7 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
         straight: bool,
         /// Its turn over the largest beside it.
         sharpness: f64,
-        /// Whether the turns beside it grow towards it, as at a nose.
+        /// True if the turns beside it grow towards it, as at a nose.
         led: bool,
         /// The turn of the polygon.
         turn: f64,

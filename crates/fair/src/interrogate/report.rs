@@ -1,4 +1,4 @@
-//! All about one fairing, as data: what the command line prints.
+//! Data of one fairing, as printed by the command line.
 
 use crate::{
     Certificate, Data, DataFit, DataOptions, Deviation, FairError, Finding, Job, KnotJumps,
@@ -8,23 +8,23 @@ use crate::{
 use moldloft_num::Vec3;
 use std::fmt;
 
-/// How the fairing is to be done.
+/// Algorithm of a fairing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mode {
     /// The optimum within the tolerance.
     Optimum(OptimumOptions),
     /// KnotRemoval steps.
     KnotRemoval(KnotRemovalOptions),
-    /// So many sweeps over all points; see [`sweeps`].
+    /// Number of sweeps over all points; see [`sweeps`].
     Sweeps(Measure, usize),
-    /// So many cycles over waves of all lengths; see [`levels`].
+    /// Number of multilevel cycles; see [`levels`].
     Multilevel(Measure, usize),
 }
 
 /// Counts and sums over a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveStatistics {
-    /// The measure that was asked for.
+    /// The selected measure.
     pub measure: f64,
     /// Sum of squared jumps.
     pub jumps: f64,
@@ -38,7 +38,7 @@ pub struct CurveStatistics {
     pub largest_curvature: f64,
 }
 
-/// The result of a fairing with all that is to be said about it. The time is the caller's to take.
+/// Result of a fairing with its figures. The caller measures the time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FairingReport {
     /// The faired control points.
@@ -243,7 +243,7 @@ pub(crate) fn report_of(
     Ok(report)
 }
 
-/// What stands out and is not taken into account yet.
+/// Findings that are not marked yet.
 fn unmarked(job: &Job) -> Vec<Finding> {
     let mut found = crate::findings(job);
     found.retain(|f| !job.marks.contains(&f.index()));

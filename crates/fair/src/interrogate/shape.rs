@@ -16,8 +16,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Of the sums of basis functions and their derivatives times control points, and for a rational
-    /// curve of the same with weights (Piegl and Tiller 1997, eq. 4.8).
+    /// From the sums of basis functions and their derivatives times control points, and for a
+    /// rational curve the same with weights (Piegl and Tiller 1997, eq. 4.8).
     pub(crate) fn of_sums(t: f64, a: [Vec3<f64>; 4], weights: Option<[f64; 4]>) -> Self {
         let Some(w) = weights else {
             let [point, derivatives @ ..] = a;
@@ -167,13 +167,14 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
 /// its knots because its second derivative is linear there, nor where the points at the knots are on one
 /// circle those that a spline has between such points.
 ///
-/// Samples are those of [`samples`], so many on each span.
+/// Samples are those of [`samples`], the same number on each span.
 pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
     let Some(floors) = curvature_floors(samples, share) else { return 1 };
     runs_above(&curvatures(samples), &floors).max(1)
 }
 
-/// At each sample the reversal of the curvature that is not counted; none where the whole range says nothing.
+/// Reversal of the curvature at each sample below which it does not count; `None` if the whole
+/// range does not count.
 pub(crate) fn curvature_floors(samples: &[Sample], share: f64) -> Option<Vec<f64>> {
     let values = curvatures(samples);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -216,8 +217,8 @@ fn circles(samples: &[Sample], spans: &[std::ops::Range<usize>]) -> Vec<f64> {
     knots.windows(3).map(curvature).collect()
 }
 
-/// The circles that touch span `k`, those of its own knots and of the next, three at least, with the
-/// least and the largest; none on fewer.
+/// The circles through knots near span `k`, at least three, with the least and the largest
+/// curvature; `None` for fewer.
 fn circles_near(circles: &[f64], k: usize) -> Option<(&[f64], f64, f64)> {
     let last = circles.len().checked_sub(3)?;
     let near = &circles[k.saturating_sub(2).min(last)..(k + 2).clamp(3, circles.len())];
@@ -225,8 +226,8 @@ fn circles_near(circles: &[f64], k: usize) -> Option<(&[f64], f64, f64)> {
     Some((near, low, near.iter().copied().fold(0.0, f64::max)))
 }
 
-/// The curvature beside span `k`, where the points know how it goes there: the circles through them turn
-/// once at most, and differ by no more than half.
+/// Curvature beside span `k`, if the points determine it: the circles through them reverse once at
+/// most and differ by no more than half.
 fn known_beside(circles: &[f64], k: usize) -> Option<f64> {
     let (near, low, high) = circles_near(circles, k)?;
     let steps = near.windows(2).map(|w| w[1] - w[0]).filter(|d| d.abs() > UNCOUNTED * high);
@@ -235,19 +236,19 @@ fn known_beside(circles: &[f64], k: usize) -> Option<f64> {
     (high - low <= 0.5 * high && turns <= 1).then_some(high)
 }
 
-/// The error of a cubic's second derivative in the square of the longest span beside a place times the
-/// fourth derivative there: an eighth is that of the straight line between its values at the knots (de Boor
-/// 2001, ch. II), a quarter that of these values: the equation of a knot between steps h and k is off by
-/// (h^2 - h k + k^2) / 4 of it, and its 2 on the diagonal outweighs the 1 beside.
+/// Error of a cubic's second derivative, in units of the squared length of the longest adjacent
+/// span times the fourth derivative there: an eighth is that of the straight line between its
+/// values at the knots (de Boor 2001, ch. II), a quarter that of these values: the equation of a
+/// knot between steps h and k has an error of (h^2 - h k + k^2) / 4 of it, and its 2 on the
+/// diagonal dominates the 1 beside it.
 const OWN_ERROR: f64 = 0.375;
 
-/// The fourth derivative is that of so many spans on either side: noise of the points, whose third
-/// derivatives alternate, makes none.
+/// Spans on either side that are averaged for the fourth derivative: noise of the points, whose
+/// third derivatives alternate, cancels.
 const SMOOTH: usize = 3;
 
-/// At each sample how far a cubic's curvature may be off that of the curve that it stands for, from its
-/// pieces alone; zero for splines of other degrees and rational ones, and where the points at its knots are
-/// none of such a curve.
+/// For each sample, the estimated error of a cubic's curvature, from its pieces alone; zero for
+/// other degrees, for rational splines, and if the knots are not on such a curve.
 fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; samples.len()];
     let second = |i: usize| samples[i].derivatives[1];
@@ -264,7 +265,7 @@ fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f
     }
     let third =
         |s: &std::ops::Range<usize>| (second(s.end - 1) - second(s.start)) * (1.0 / width(s));
-    // Where the second derivative jumps the curve is another one.
+    // A jump of the second derivative separates two curves.
     let smooth = |a: &std::ops::Range<usize>, b: &std::ops::Range<usize>| {
         (second(b.start) - second(a.end - 1)).norm() <= 1e-6 * most
     };
@@ -286,7 +287,7 @@ fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f
             for i in span.clone() {
                 let square = samples[i].derivatives[0].norm_sq();
                 if square > 0.0 {
-                    // That of a circle, or less.
+                    // At most that of a circle.
                     let fourth = (fourth / square).min(bend * bend * bend * square);
                     out[i] = OWN_ERROR * squares[k] * fourth;
                 }
@@ -315,14 +316,13 @@ fn felt(widths: &[f64]) -> Vec<f64> {
     out
 }
 
-/// A range of curvatures, as a share of the largest, that is a circle's: the ripple of a cubic with
-/// some forty spans round it.
+/// Relative range of curvature of a circle: the ripple of a cubic with about forty spans around it.
 const SAME: f64 = 4e-3;
 
-/// The reversals of the curvature that a cubic through points of a circle has more at uneven places than at
-/// even ones, in squares of the angle of the longest span: this for each time that it is longer than the
-/// shortest, but at most so many, and this share of the curvature. Of 150 draws of 12 to 52 places at random
-/// those are beyond that have a span of a radian or more.
+/// Additional reversals of curvature of a cubic through points on a circle at uneven spacing, in
+/// squares of the angle of the longest span: the factor per ratio of the longest to the shortest
+/// span, its maximum, and the maximum relative to the curvature. Of 150 random draws of 12 to 52
+/// points only those with a span of a radian or more exceed it.
 const RIPPLE: f64 = 0.25;
 const UNEVEN_RIPPLE: f64 = 2.0;
 const LARGEST_RIPPLE: f64 = 0.25;
@@ -409,11 +409,11 @@ fn straight_floors(samples: &[Sample]) -> Vec<f64> {
     out
 }
 
-/// A straight stretch of so many spans, at an end of half as many, is a straight run; shorter ones are those
-/// that rounded data have.
+/// Minimum number of spans of a straight run; half as many at an end. Shorter straight parts occur
+/// in rounded data.
 const LONG_STRETCH: usize = 4;
 
-/// Which samples are in straight runs.
+/// For each sample, true in a straight run.
 fn in_straight_runs(samples: &[Sample]) -> Vec<bool> {
     let floors = straight_floors(samples);
     let mut out = vec![false; samples.len()];
@@ -432,14 +432,13 @@ fn in_straight_runs(samples: &[Sample]) -> Vec<bool> {
     out
 }
 
-/// The number of sign changes of the curvature: how often x' x x'' turns against its last
-/// direction. Where it comes to zero and goes back there are two inflections in one place; a
-/// straight stretch is a change where it begins and where it ends. But a straight run of four spans or more (of
-/// two at an end) is no more than one change: where the curve turns the other way after it. A curve that is
-/// straight within rounding has none.
+/// Number of sign changes of the curvature: reversals of x' x x''. A zero without a change of sign
+/// counts as two inflections at one parameter; a straight part counts at its begin and at its end,
+/// but a straight run (four spans or more, two at an end) counts at most once, if the curve turns
+/// the other way after it. A curve that is straight within rounding has none.
 ///
-/// On rounded data, whose second differences are often exactly zero, rounding decides whether such a
-/// place is a touch or none.
+/// On rounded data, whose second differences are often exactly zero, rounding decides whether the
+/// curvature touches zero.
 pub fn inflections(samples: &[Sample]) -> usize {
     let most = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
     if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
@@ -448,9 +447,9 @@ pub fn inflections(samples: &[Sample]) -> usize {
     let runs = in_straight_runs(samples);
     let mut last: Option<Vec3<f64>> = None;
     let mut changes = 0;
-    // Where the curve is straight: from and to. Both sides of a knot are one place.
+    // Start and end of a straight part; both sides of a knot are the same parameter.
     let mut straight: Option<[f64; 2]> = None;
-    // What touches a straight run at its ends is part of it.
+    // A zero next to a straight run is part of it.
     let mut after_run = false;
     for (s, &run) in samples.iter().zip(&runs) {
         if run {
@@ -486,8 +485,8 @@ pub fn inflections(samples: &[Sample]) -> usize {
 /// The turn of the tangent, in radians, below which a reversal is not counted as an inflection.
 const LEAST_TURN: f64 = 1e-4;
 
-/// How often a plane curve turns back: the reversals of its tangent's turning by more than a
-/// ten-thousandth of a radian. 0 for curves in space, which have no sign of curvature.
+/// Number of reversals of the tangent's rotation by more than a ten-thousandth of a radian, for
+/// plane curves; 0 for space curves, whose curvature has no sign.
 pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
     reversals(&bends(space, points))
 }
@@ -526,7 +525,7 @@ pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
     monotone_pieces(&bends(space, points), UNCOUNTED)
 }
 
-/// The share of the curvature's range below which a reversal is not counted.
+/// Fraction of the curvature's range below which a reversal is not counted.
 pub(crate) const UNCOUNTED: f64 = 1e-3;
 
 /// The length of the curve, by the 8-point Gauss-Legendre rule on each span.
@@ -582,7 +581,7 @@ pub fn comb(samples: &[Sample], scale: f64) -> Vec<Vec3<f64>> {
 }
 
 /// The k-orthotomic of a plane curve for a point p: p + k ((x - p) . n) n. It has cusps exactly at
-/// inflections when p lies on no tangent (Hoschek 1985).
+/// inflections if no tangent passes through p (Hoschek 1985).
 pub fn orthotomic(samples: &[Sample], p: Vec3<f64>, k: f64) -> Vec<Vec3<f64>> {
     let normal = plane_normal(samples).unwrap_or(Vec3::of(0.0, 0.0, 1.0));
     samples

@@ -1,8 +1,8 @@
 //! Knuckles of short lists, and neighbours in the wrong order.
 //!
-//! A station of a boat has seven to twelve points: too few for a scale that others have. Here a
-//! hinge in a cubic is set against a cubic without, by what both leave of the points, and against a
-//! polynomial of two degrees more, which follows a smooth curve better than a hinge does.
+//! A station of a boat has seven to twelve points, too few for a scale from other points. A hinge
+//! in a cubic is compared with a cubic by their residuals, and with a polynomial of two degrees
+//! more, which follows a smooth curve better than a hinge does.
 
 use crate::interrogate::outliers::{DOUBLES_BACK, DataFinding, STANDS_OUT, ThinQr};
 use moldloft_num::{Real, Vec3};
@@ -10,29 +10,28 @@ use moldloft_num::{Real, Vec3};
 /// Points that such a list has, at least and at most.
 pub(super) const SHORT: [usize; 2] = [7, 20];
 
-/// Points about a hinge that are looked at, at most, and on either side at least.
+/// Maximum number of points used for a hinge, and minimum on either side.
 const WINDOW: usize = 11;
 const SIDE: usize = 2;
 
-/// From which ratio of a hinge to its deviation on it is proposed, by the degrees of freedom that
-/// are left, from two on: one false in a thousand of Gaussian noise by Student's law, for all
-/// places of a list.
+/// Minimum ratio of a hinge to its deviation, by the remaining degrees of freedom, from two on: one
+/// false finding in a thousand for Gaussian noise by Student's law, over all positions of a list.
 const SCORES: [f64; 6] = [32.0, 13.0, 9.0, 7.5, 6.7, 6.2];
 
-/// How many times more a smooth polynomial with one coefficient more leaves of the points, in
-/// squares.
+/// Minimum ratio of the squared residuals of a smooth polynomial with one more coefficient to those
+/// of the hinge.
 const SMOOTHER: f64 = 4.0;
 
-/// The turn, in radians, beyond which a hinge stands between sides that turn by less than this
-/// share of it: else a nose is as sharp.
+/// Turn, in radians, beyond which both sides of a hinge must turn by less than `BESIDE` of it;
+/// otherwise it can be a nose.
 const SHARP: f64 = 0.44;
 const BESIDE: f64 = 0.5;
 
-/// Turns beside a nose, in radians, and how many times those farther off they are at least.
+/// Turns beside a nose: minimum in radians, and minimum ratio to those next to them.
 const LEADS: f64 = 0.02;
 const GROWS: f64 = 1.3;
 
-/// What columns leave of points, in squares, and their coefficients.
+/// Squared residual of a least-squares fit, and its coefficients.
 fn left<const C: usize>(
     rows: Vec<[f64; C]>,
     points: &[Vec3<f64>],
@@ -47,7 +46,7 @@ fn left<const C: usize>(
     Some((rows.iter().zip(points).map(off).sum(), c, last))
 }
 
-/// The hinge at a place of a list, if it is one.
+/// The hinge at a position of a list, if there is one.
 fn hinge(points: &[Vec3<f64>], at: usize, floor: f64) -> Option<DataFinding> {
     let n = points.len();
     let half = WINDOW / 2;
@@ -135,15 +134,15 @@ pub(super) fn short_knuckles(points: &[Vec3<f64>], floor: f64) -> Vec<DataFindin
     out
 }
 
-/// The share of a step back, in that of its neighbours, from which on it is none of noise; how much
-/// shorter the way is the other way round; and the share of a list at most whose steps run back:
-/// noise is larger than the steps else.
+/// Reversed order of points: the minimum backward step relative to its neighbours, the maximum
+/// length of the reordered path relative to the given one, and the maximum fraction of backward
+/// steps in a list; with more of them noise exceeds the steps.
 const BACK: f64 = 0.25;
 const SHORTER: f64 = 0.8;
 const FEW: f64 = 0.1;
 
-/// The first of each two neighbours that are in the wrong order: the way through them runs back and
-/// the other way round it does not.
+/// The first of each two neighbours in the wrong order: the polyline through them reverses, and in
+/// the other order it does not.
 pub(super) fn swapped(points: &[Vec3<f64>], closed: bool) -> Vec<usize> {
     let n = points.len();
     if n < SHORT[0] {
@@ -166,6 +165,6 @@ pub(super) fn swapped(points: &[Vec3<f64>], closed: bool) -> Vec<usize> {
     let back = (0..n - 2)
         .filter(|&k| (points[k + 1] - points[k]).dot(points[k + 2] - points[k + 1]) < 0.0)
         .count();
-    // A pair turns the polygon back at two places.
+    // A pair reverses the polygon twice.
     if back as f64 > 2.0 * found.len() as f64 + FEW * n as f64 { Vec::new() } else { found }
 }

@@ -1,5 +1,5 @@
 //! Counts of inflections and monotone pieces that are continuous in the curve: each ripple counts
-//! by how far it stands out.
+//! by its persistence.
 
 use crate::interrogate::shape::{Sample, UNCOUNTED, curvature_floors, curvatures};
 
@@ -30,10 +30,10 @@ impl SoftCounts {
     }
 }
 
-/// The swings of a list of numbers in floors, each with the monotone pieces that go with it: two
-/// inside, one at an end. The smallest goes first (in order: the rainflow count of Matsuishi and
-/// Endo 1968), so a swing is what its extremes differ by once all smaller ones are gone. The last
-/// is not in the list.
+/// Swings of a list of numbers relative to floors, each with its number of monotone pieces: two
+/// inside, one at an end. Swings are removed in increasing order (the rainflow count of Matsuishi
+/// and Endo 1968), so that a swing is the difference of its extrema after all smaller ones are
+/// removed. The last is not in the list.
 fn swings(values: &[f64], floors: &[f64]) -> Vec<(f64, f64)> {
     let share = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() / a.1.max(b.1);
     let range = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs();
@@ -50,7 +50,7 @@ fn swings(values: &[f64], floors: &[f64]) -> Vec<(f64, f64)> {
             stack.drain(last - 3..last - 1);
         }
     }
-    // What is left grows and then shrinks: the smallest is at one of the ends.
+    // The remaining swings grow, then shrink: the smallest is at one of the ends.
     let mut left = stack.as_slice();
     while let [first, second, .., before, last] = left {
         let at_start = range(first, second) < range(before, last);
@@ -77,8 +77,8 @@ fn extremes(values: &[f64], floors: &[f64]) -> Vec<(f64, f64)> {
     out
 }
 
-/// The heights, in floors, of the parts of one sign, each with the inflections that go with it: two
-/// inside, one at an end. The lowest goes first.
+/// Heights, relative to the floor, of the parts of one sign, each with its number of inflections:
+/// two inside, one at an end. The lowest is removed first.
 fn lobes(values: &[f64], floor: f64) -> Vec<(f64, f64)> {
     let mut heights: Vec<f64> = Vec::new();
     let mut positive = None;

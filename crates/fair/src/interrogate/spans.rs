@@ -1,12 +1,12 @@
-//! A spline span by span, at the same shares of every span: what all samples of a span have in common
-//! is made once.
+//! Evaluation of a spline at the same relative parameters on every span; common factors are
+//! computed once.
 
 use crate::Space;
 use crate::curve::space::BezierExtraction;
 use crate::interrogate::shape::Sample;
 use moldloft_num::{Order, Vec3};
 
-/// The Bernstein polynomials of a degree at a share of the span.
+/// Bernstein polynomials at a relative parameter of the span.
 fn bernstein(degree: usize, s: f64) -> Vec<f64> {
     let mut row = vec![1.0];
     for _ in 0..degree {
@@ -20,10 +20,12 @@ fn bernstein(degree: usize, s: f64) -> Vec<f64> {
     row
 }
 
-/// Calls `f` with the samples of each span at the shares (0 .. 1) of it, in order along the curve.
+/// Calls `f` with the samples of each span at the relative parameters `shares` (0 .. 1), in order
+/// along the curve.
 ///
-/// Positions, first and second derivatives have the bits of [`crate::interrogate::shape::sample_in`]; third
-/// derivatives are those of the span's Bezier points, or zero where they are not asked for.
+/// Positions, first and second derivatives are bit-identical to
+/// [`crate::interrogate::shape::sample_in`]; third derivatives are those of the span's Bezier
+/// points, or zero if not requested.
 pub(crate) fn each_span(
     space: &Space,
     points: &[Vec3<f64>],
@@ -32,7 +34,7 @@ pub(crate) fn each_span(
     mut f: impl FnMut(&mut dyn Iterator<Item = Sample>),
 ) {
     let p = space.degree();
-    // Of third derivatives the polynomials; below degree three there are none.
+    // Third derivatives are zero below degree three.
     let rest = p.checked_sub(3).filter(|_| third);
     let places: Vec<(f64, Vec<f64>)> =
         shares.map(|s| (s, rest.map_or(Vec::new(), |d| bernstein(d, s)))).collect();
@@ -65,7 +67,7 @@ pub(crate) fn each_span(
         }
         let knots = space.local_knots(k);
         let sample = |(share, row): &(f64, Vec<f64>)| {
-            // The end is the next span's beginning to the bit: by that spans are told apart.
+            // The end is bit-identical to the next span's start, by which spans are told apart.
             let t = if *share == 1.0 { b } else { a + (b - a) * share };
             let mut sums = [Vec3::zero(); 4];
             let mut w = [0.0; 4];
@@ -86,12 +88,13 @@ pub(crate) fn each_span(
     }
 }
 
-/// The basis functions at the same shares of every span, to sample many splines of one space without third
-/// derivatives. Their samples have the bits of [`each_span`]'s.
+/// The basis functions at the same relative parameters of every span, to sample many splines of one
+/// space without third derivatives. Their samples are bit-identical to those of [`each_span`].
 pub(crate) struct SpanBasis {
     degree: usize,
     shares: Vec<f64>,
-    /// The parameters, and after these the values of all orders, sample by sample; none of very many.
+    /// Parameters followed by the values of all orders, sample by sample; `None` for more than
+    /// `MOST_KEPT` numbers.
     values: Option<Vec<f64>>,
 }
 

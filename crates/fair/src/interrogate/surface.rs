@@ -55,7 +55,7 @@ pub fn look(surface: &dyn Surface<f64>, u: f64, v: f64) -> Option<SurfaceAnalysi
     })
 }
 
-/// The value of which isophotes are level lines: the cosine between the normal and the light.
+/// Cosine between the normal and the light; its level lines are the isophotes.
 pub fn isophote(look: &SurfaceAnalysis, light: Vec3<f64>) -> f64 {
     look.normal.dot(light.normalized().unwrap_or_default())
 }
@@ -89,7 +89,7 @@ pub fn zebra(look: &SurfaceAnalysis, view: Vec3<f64>, axis: Vec3<f64>, stripes: 
 }
 
 impl SurfaceAnalysis {
-    /// The same seen from the other side: the normal turned round, and with it the signs of the mean
+    /// The same seen from the other side: with the opposite normal, and opposite signs of the mean
     /// and the principal curvatures.
     pub fn turned(&self) -> Self {
         let SurfaceCurvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;
@@ -109,8 +109,8 @@ pub struct PointField {
     pub values: Vec<f64>,
 }
 
-/// What viewers show of a surface: curvatures, the isophotes of light along +z, zebra stripes of a
-/// view along +z round the x axis (eight to a turn), normals.
+/// Fields for viewers: curvatures, isophotes of light along +z, zebra stripes of a view along +z
+/// around the x axis (eight to a turn), and normals.
 pub fn fields(looks: &[Option<SurfaceAnalysis>]) -> Vec<PointField> {
     let (x, z) = (Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 0.0, 1.0));
     let numbers = |name, of: &dyn Fn(&SurfaceAnalysis) -> f64| PointField {
@@ -140,9 +140,9 @@ pub fn orthotomic(look: &SurfaceAnalysis, p: Vec3<f64>, k: f64) -> Vec3<f64> {
     p + look.normal * (k * (look.point - p).dot(look.normal))
 }
 
-/// The metric eta_y of a plane grid whose point (i, j) stands at `i * n + j`: with xi along i and
-/// eta along j in steps of 1, eta_y = x_xi / (x_xi y_eta - x_eta y_xi). Differences are central
-/// inside and one-sided at the rims; zero where cells have no area.
+/// The metric eta_y of a plane grid whose point (i, j) has the index `i * n + j`: with xi along i
+/// and eta along j in steps of 1, eta_y = x_xi / (x_xi y_eta - x_eta y_xi). Differences are central
+/// inside and one-sided at the rims; zero for cells without area.
 ///
 /// # Errors
 /// [`crate::FairError`] unless the grid is at least 2 by 2 and has m n points.

@@ -1,4 +1,4 @@
-//! `FairCurve`: the faired spline of points.
+//! `FairCurve`: a fair spline near points.
 
 use super::faired::{CurveContext, FairedSpline};
 use super::options::{curve_options, shared_options};
@@ -10,28 +10,33 @@ use std::sync::Arc;
 
 shared_options! {
     {
-        /// A fair B-spline curve within a tolerance of the one through its points.
+        /// A fair B-spline curve within a tolerance of its points.
         ///
-        /// Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
-        /// which is taken; members say how it came out: `deviation` (the greatest distance of a point from it),
-        /// `value` and `gap` (its measure, and how much less any other has at most), `active` (tolerances that
-        /// are reached), `used` (squared residuals as a multiple of those of noise that fills the tolerance),
-        /// `fairest_used` (the same of the fairest) and `findings` (points that do not fit their neighbours).
-        /// Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
-        /// not move. The result is continuous in the points. Points can be control points
-        /// (`as = "control"`); these, curves that join others, the bounds "curve" and "points" and the modes of single steps
-        /// move control points, and take the number of a point for its parameter, as the report of 1991 does, unless
-        /// `spacing` names another. Their members are `deviation`
-        /// (how far control points, or the points themselves, moved; of fits with `knots` or a `count` the greatest distance of a
-        /// point), `value`, `gap`, of optima `active`, and of the others `steps`.
-        /// Points on a line, conic, plane cubic or helix stay in any case, unless `goal` is "fairest". In mode "faithful" the
-        /// worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
-        /// point, and which knot comes first may change with the points.
+        /// The curve minimises `measure` among all splines with knots at the points, within the
+        /// tolerance of each point; `goal` selects how far the data are smoothed. Data that are as
+        /// fair as the tolerance allows are interpolated unchanged. Parameters and knots follow the
+        /// spacing of the points, and the result depends continuously on the points.
         ///
-        /// What Python has besides: `breaks` and `release` are numbers here, never "auto", so that a small move of a point makes no
-        /// corner; `ends` are words; the log of single steps comes from the command (`moldloft fair model.sdl:name --log`);
-        /// optima are solved to rounding, so that derivatives are known, and have no `accuracy`; a model's points are
-        /// those that were read, so that there is no `original`.
+        /// Members: `deviation` (largest distance of a point from the curve), `value` (the
+        /// measure), `gap` (upper bound on how much lower the measure of any admissible curve can
+        /// be), `active` (number of tolerances reached), `used` (mean squared residual relative to
+        /// noise that fills the tolerance), `fairest_used` (the same for the fairest curve) and
+        /// `findings` (number of points that do not fit their neighbours).
+        ///
+        /// Control points are moved instead of data with `as = "control"`, `joins`, `knots`,
+        /// `weights`, `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
+        /// Members are then `deviation` (largest move of a control point or point; with `knots`,
+        /// `weights` or `count` the largest distance of a point), `value`, `gap`, and `active` for
+        /// the optimum or `steps` for the other modes.
+        ///
+        /// Points on a line, conic, plane cubic or helix do not move, unless `goal` is "fairest".
+        /// Mode "faithful" repeats the removal and re-insertion of the worst knot (Farin and
+        /// Sapidis 1989), one step per point; its result may jump where two knots are equally bad.
+        ///
+        /// Differences from the Python function: `breaks` and `release` are numbers, never "auto";
+        /// `ends` are words; the log of single steps is available from the command (`moldloft fair
+        /// model.sdl:name --log`); there are no `accuracy` (optima are solved to rounding, so that
+        /// derivatives exist) and no `original`.
         #[derive(Kind)]
         #[kind(
             class = Curve,
@@ -42,36 +47,37 @@ shared_options! {
         pub struct FairCurve<T: Real>
     }
     {
-        /// Points, at least degree + 2 of them (closed: 2 degree + 2).
+        /// Points, at least degree + 2 (closed: 2 degree + 2).
         #[field(min_items = 3)]
         points: Vec<Point<T>>,
-        /// How far the curve may be from each of the points; 0 passes through all.
+        /// Largest distance of each point from the curve, in units of length; 0: interpolation.
         #[field(min = 0)]
         tolerance: T,
-        /// The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
-        /// "variation". Without it "variation" of points that the curve is near ("bending" below degree 3), and "second"
-        /// where control points move.
+        /// Measure to minimise: "second" or "third" (squared differences of control points),
+        /// "jumps" or "jump-lengths" (squares or lengths of the jumps of the highest derivative),
+        /// "bending" or "variation" (integral of the squared second or third derivative). Default:
+        /// "variation" for data ("bending" below degree 3), "second" where control points move.
         #[field(default)]
         measure: Option<Arc<str>>,
-        /// Meaning of the points: "fit" (the curve passes through them before it is faired), "control"
-        /// (its control points) or "points" (they are faired and then interpolated: of optima the same as "fit" unless the
-        /// spacing is "index").
+        /// Role of the points: "fit" (interpolated, then faired), "control" (control points) or
+        /// "points" (faired, then interpolated; for the optimum the same as "fit", except with
+        /// `spacing = "index"`).
         #[field(default = "fit")]
         r#as: Arc<str>,
-        /// Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
-        /// across them. A curve through its points has corners there; a closed one begins at the
+        /// Numbers of points, from 1, that are intended breaks: they do not move, nothing is
+        /// smoothed across them, and the curve has corners there. A closed curve starts at the
         /// first of them.
         #[field(default)]
         breaks: Option<Vec<usize>>,
-        /// What open ends keep of the curve through the points: "free" (within the tolerance), "position",
-        /// "tangent", "curvature" or a number of control points. Without it "free" of points that the curve is near,
-        /// "tangent" of fits whose control points move, and else "2".
+        /// Condition at open ends, relative to the curve through the points: "free" (within the
+        /// tolerance), "position", "tangent", "curvature" or a number of fixed control points.
+        /// Default: "free" for data, "tangent" for fits whose control points move, otherwise "2".
         #[field(default)]
         ends: Option<Arc<str>>,
-        /// "optimum", or steps of the report of 1991: "faithful" (knots removed and re-inserted, the longest
-        /// achievable move first), "literal" (the largest jump first; may stall), "vertex" (one control point at a time
-        /// to its own best place), "sweeps" (all points in order) or "levels" (waves of all lengths). The last two have no
-        /// derivatives.
+        /// "optimum", or stepwise: "faithful" (removal and re-insertion of knots, longest
+        /// achievable move first), "literal" (largest jump first; may stall), "vertex" (each
+        /// control point to its own minimum), "sweeps" (all points in order) or "levels"
+        /// (multilevel cycles). "sweeps" and "levels" have no derivatives.
         #[field(default = "optimum")]
         mode: Arc<str>,
         /// Polynomial degree.
@@ -80,43 +86,43 @@ shared_options! {
         /// 1 for a closed curve, whose first point is not repeated.
         #[field(default = 0, min = 0, max = 1)]
         closed: usize,
-        /// Curves that it runs on from, or into, with the same tangent direction and curvature: each
-        /// begins or ends where this one does. They stay as they are; `ends` is for the other end.
+        /// Curves to continue with the same tangent direction and curvature; each begins or ends at
+        /// the first or last point. They are not changed. `ends` applies to an end without a
+        /// neighbour.
         #[field(default)]
         joins: Option<Vec<CurveRef<T>>>,
     }
     [knots]
     {
-        /// How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z", for
-        /// offsets at stations), "index", or "curvature" (lengths, longer where the curve turns). "auto" is
-        /// "curvature" for the goals "near" and "budget" where nothing but these is asked for and ends keep no tangents,
-        /// else "chord"; of single steps and joins "index".
+        /// Parametrisation of the points: "chord", "centripetal", a coordinate ("x", "y" or "z",
+        /// for offsets at stations), "index", or "curvature" (chord lengths, extended where the
+        /// curve turns). "auto" is "curvature" for the goals "near" and "budget" without further
+        /// conditions, otherwise "chord"; with control points, joins or single steps it is "index".
         #[field(default = "auto")]
         spacing: Arc<str>,
     }
     [goal] [along] [share] [curve]
     {
-        /// Points that the curve passes through at `through_at`. No derivatives.
+        /// Points on the curve at `through_at`. No derivatives.
         #[field(default)]
         through: Option<Vec<Point<T>>>,
-        /// What it keeps of the curve before, to first order: "area" (swept about the origin in
-        /// the plane of x and y), "volume" (of revolution about x) or "centroid" (of the control points). No derivatives.
+        /// Quantities of the initial curve that are preserved to first order: "area" (swept about
+        /// the origin in the plane of x and y), "volume" (of revolution about x) or "centroid" (of
+        /// the control points). No derivatives.
         #[field(default)]
         keep: Option<Vec<Arc<str>>>,
     }
 }
 
-/// Ends within this share of the curve's extent are one place.
+/// Ends closer than this fraction of the curve's extent coincide.
 const TOGETHER: f64 = 1e-9;
 
-/// The field of the joins.
 const JOINS: FieldId = FairCurve::<f64>::JOINS;
 
-/// The ways in which points of curves get parameters.
+/// Values of `spacing`.
 const SPACINGS: [&str; 8] = ["auto", "chord", "centripetal", "x", "y", "z", "index", "curvature"];
 
 impl<T: Real> FairCurve<T> {
-    /// What the curve keeps.
     fn kept(&self) -> Result<Vec<Demand>, CallError> {
         let one = |(k, word): (usize, &Arc<str>)| {
             Demand::kept(word).ok_or_else(|| {
@@ -132,7 +138,7 @@ impl<T: Real> FairCurve<T> {
 }
 
 impl<T: Real> FairCurve<T> {
-    /// What the curve runs on from at its start and its end, and which of the joins that is.
+    /// For each end, the index of the curve to continue and its first and second derivative.
     #[expect(clippy::type_complexity, reason = "two ends, each with a place and derivatives")]
     fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], CallError> {
         let mut found = [None; 2];
@@ -187,7 +193,7 @@ impl<T: Real> FairCurve<T> {
                 .in_item(k)
                 .in_field(JOINS));
             }
-            // The neighbour's parameter runs into the start, or on from the end, or the other way.
+            // The derivative is reversed if the neighbour's parameter has the opposite direction.
             let sign = if a == b { -1.0 } else { 1.0 };
             found[a] = Some((k, [jets[b][1].map(|x| x * sign), jets[b][2]]));
         }
@@ -195,7 +201,7 @@ impl<T: Real> FairCurve<T> {
     }
 }
 
-/// Which of the joins a refusal is about.
+/// Error about one of the joined curves.
 fn unjoined(error: &FairError, joins: [Option<usize>; 2]) -> Option<CallError> {
     let present: Vec<usize> = joins.iter().flatten().copied().collect();
     let about = |k: Option<&usize>, id: &'static str, message: String| {

@@ -1,4 +1,4 @@
-//! What a model asks of a curve near its points besides the tolerance.
+//! Conditions on a curve near its points, besides the tolerance.
 
 use super::Intent;
 use super::figures::FairFigures;
@@ -11,7 +11,6 @@ use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::SplineWithKnotDerivatives;
 use std::sync::Arc;
 
-/// All that is asked.
 pub(crate) struct Demands<T> {
     pub shape: Vec<ShapeCondition>,
     /// Conditions with their parameters in [0, 1].
@@ -21,11 +20,11 @@ pub(crate) struct Demands<T> {
     pub fixed: Vec<usize>,
     pub release: Vec<usize>,
     pub bends: bool,
-    /// Parameters of the points, given one by one.
+    /// Parameters of the points.
     pub at: Option<Vec<T>>,
 }
 
-/// The shapes that texts ask for, of `count` points; the field of the texts.
+/// Parses the shape conditions of `count` points.
 pub(crate) fn shapes_of(
     texts: Option<&[Arc<str>]>,
     count: usize,
@@ -39,7 +38,7 @@ pub(crate) fn shapes_of(
     texts.unwrap_or_default().iter().enumerate().map(shape).collect()
 }
 
-/// Refuses a list that has not one item for each of `count` points.
+/// Refuses a list whose length is not `count`.
 pub(crate) fn one_each<T>(
     what: &str,
     list: Option<&[T]>,
@@ -56,7 +55,7 @@ pub(crate) fn one_each<T>(
 }
 
 impl<T: Real> Intent<T> {
-    /// The faired spline within the tolerances of the points themselves, and what is to be said of it.
+    /// The faired spline within individual tolerances, and its figures.
     pub fn near(
         &self,
         points: &[Vec3<T>],

@@ -1,5 +1,5 @@
-//! Curves whose control points are faired: at the index, under a bound on the whole curve, with knots or a
-//! number of control points of the user's, or step by step.
+//! Curves faired by moving control points: parametrised by index, with a bound on the whole curve,
+//! with given knots or number of control points, or step by step.
 
 use super::figures::FairFigures;
 use super::{GivenKnots, Intent, PointRole, indices, moves};
@@ -13,59 +13,55 @@ use crate::{
 };
 use moldloft_num::{Real, Vec3};
 
-/// How control points are faired.
+/// Algorithm that moves the control points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum CurveMethod {
-    /// The optimum.
     Optimum,
-    /// Single steps; as many as there are points where no number is given.
+    /// Single steps; default: one per point.
     Steps(KnotRemovalOptions, Option<usize>),
-    /// So many sweeps over all points.
+    /// Number of sweeps over all points.
     Sweeps(usize),
-    /// So many cycles over waves of all lengths.
+    /// Number of multilevel cycles.
     Levels(usize),
 }
 
-/// A curve whose control points move.
 pub(crate) struct DirectCurve<T> {
     pub intent: Intent<T>,
     pub role: PointRole,
     pub method: CurveMethod,
-    /// What the tolerance bounds; that of the role without it.
+    /// Quantity that the tolerance bounds; `None`: the default of the role.
     pub bound: Option<Bound>,
-    /// First and second derivative of what the curve runs on from, at its start and end, by a
-    /// parameter that runs as its own.
+    /// First and second derivative of the curve to continue at the start and the end, with respect
+    /// to a parameter of the same direction.
     pub joins: [Option<[Vec3<T>; 2]>; 2],
-    /// Knots of the control points, and their weights, which stay.
+    /// Given knots and weights; not changed.
     pub own: GivenKnots,
-    /// Control points of a fit by least squares.
+    /// Number of control points of a least-squares fit.
     pub count: Option<usize>,
-    /// Tolerances of the points.
     pub tolerances: Option<Vec<T>>,
-    /// Points that do not move, from 1.
+    /// Numbers, from 1, of points that do not move.
     pub fixed: Vec<usize>,
     pub conditions: Vec<(f64, Demand)>,
 }
 
-/// What came of it.
 pub(crate) struct DirectResult<T> {
     pub space: Space,
     pub control: Vec<Vec3<T>>,
     pub figures: FairFigures,
 }
 
-/// A spline before it is faired.
+/// A spline to be faired.
 struct SplineToFair<T> {
     space: Space,
     control: Vec<Vec3<T>>,
     marks: Vec<usize>,
-    /// The parameters of points on it.
+    /// Parameters of the points on it.
     at: Option<Vec<f64>>,
-    /// Whether it need not pass through these.
+    /// True for a least-squares fit, which need not interpolate the points.
     beside: bool,
 }
 
-/// Points that moved, the certificate, tolerances that are reached by an optimum, and steps.
+/// Moved points, certificate, and the number of active tolerances (optimum) or of steps.
 struct MovedControlPoints<T> {
     points: Vec<Vec3<T>>,
     certificate: Option<Certificate>,
@@ -82,14 +78,14 @@ const STEPS: &str =
 const CONDITIONS: &str =
     "derivatives of curves with conditions are not known: take the curve without them";
 
-/// The largest residual, as a share of the extent, at which a fit passes through its points.
+/// Largest residual, relative to the extent, at which a fit counts as interpolation.
 const THROUGH: f64 = 1e-9;
 
 impl<T: Real> DirectCurve<T> {
     /// The faired spline of points.
     ///
-    /// Its figures are those of what moves: control points, or the points themselves; of fits with knots or a
-    /// number of control points of the user's how far points are from the curve.
+    /// The deviation is the largest move of a control point or point; for fits with given knots or
+    /// number of control points, the largest distance of a point from the curve.
     pub fn made(&self, points: &[Vec3<T>]) -> Result<DirectResult<T>, FairError> {
         let n = points.len();
         let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
@@ -131,7 +127,8 @@ impl<T: Real> DirectCurve<T> {
         Ok(DirectResult { space: laid.space, control: moved.points, figures })
     }
 
-    /// Whether points stay: exact ones are as fair as can be, and what is near them is they themselves.
+    /// True if the points are exact (line, conic, …) and the goal is "near": they are then already
+    /// fair.
     pub fn stays(&self, plain: &[Vec3<f64>], marks: &[usize]) -> bool {
         let free = self.own.weights.is_none()
             && self.conditions.is_empty()
@@ -140,8 +137,8 @@ impl<T: Real> DirectCurve<T> {
             && is_exact(plain, marks, self.intent.closed)
     }
 
-    /// The points faired themselves: as the control points of a uniform spline, for which interpolation and
-    /// the measures commute.
+    /// The points faired as control points of a uniform spline, for which interpolation and the
+    /// measures commute.
     pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
         Ok(self.moved_points(points)?.points)
     }
@@ -161,7 +158,7 @@ impl<T: Real> DirectCurve<T> {
         self.within(&laid, &each)
     }
 
-    /// The points as control points.
+    /// The given points as control points.
     fn controlled(
         &self,
         points: &[Vec3<T>],
@@ -176,7 +173,7 @@ impl<T: Real> DirectCurve<T> {
         Ok(SplineToFair { space, control: points.to_vec(), marks, at: None, beside: false })
     }
 
-    /// The spline through all points, with corners at marks.
+    /// Interpolating spline with corners at marks.
     fn through(
         &self,
         points: &[Vec3<T>],
@@ -194,7 +191,7 @@ impl<T: Real> DirectCurve<T> {
         })
     }
 
-    /// The spline through the points, or near them.
+    /// Interpolating spline, or a least-squares fit.
     fn fitted(
         &self,
         points: &[Vec3<T>],
@@ -256,7 +253,7 @@ impl<T: Real> DirectCurve<T> {
         })
     }
 
-    /// The tolerance of each control point: of fits what they leave of those of the points near it.
+    /// Tolerance of each control point; for fits, the tolerance that remains at the points near it.
     fn each(&self, laid: &SplineToFair<T>, plain: &[Vec3<f64>]) -> Result<Vec<T>, FairError> {
         let n = laid.control.len();
         let mut own = match (&self.tolerances, &laid.at) {
@@ -265,7 +262,7 @@ impl<T: Real> DirectCurve<T> {
             (Some(each), None) => each.clone(),
         };
         if let Some(at) = laid.at.as_ref().filter(|_| laid.beside) {
-            // A fit that misses its points leaves less.
+            // The residual of a fit is subtracted from the tolerance.
             let given = match &self.tolerances {
                 Some(each) => each.iter().map(|t| t.re()).collect(),
                 None => vec![self.intent.tolerance.re(); plain.len()],
@@ -299,7 +296,7 @@ impl<T: Real> DirectCurve<T> {
     ) -> Result<MovedControlPoints<T>, FairError> {
         let SplineToFair { space, control: points, .. } = laid;
         let measure = self.intent.measure.unwrap_or(Measure::Second);
-        // What an end keeps is counted in points where these move: with tangents, two of them.
+        // For `as = "points"` an end condition counts fixed points: 2 for "tangent".
         let end = |end: EndContinuity| match (self.role, end) {
             (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
             (PointRole::Points, end) => EndContinuity::Points(end.kept()),
@@ -406,7 +403,8 @@ impl<T: Real> MovedControlPoints<T> {
     }
 }
 
-/// The tolerance of data as that of control points: the least near each, of all where none is near.
+/// Converts tolerances of data to control points: the minimum over the data in the support of each;
+/// the overall minimum for a support without data.
 fn near<T: Real>(space: &Space, at: &[f64], tolerances: &[T]) -> Vec<T> {
     let less = |a: T, b: T| if b.re() < a.re() { b } else { a };
     let all = tolerances.iter().copied().reduce(less).unwrap_or_else(T::zero);

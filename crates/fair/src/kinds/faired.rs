@@ -1,4 +1,4 @@
-//! From the options of curves and snakes to the faired spline.
+//! Conversion of the options of curves and snakes to a faired spline.
 
 use super::demands::{Demands, one_each, shapes_of};
 use super::direct::{CurveMethod, DirectCurve};
@@ -16,22 +16,22 @@ use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::{BSplineCurve, SplineWithKnotDerivatives};
 use std::sync::Arc;
 
-/// What curves ask for that snakes do not, or in another way.
+/// Options of curves that differ for snakes.
 pub(crate) struct CurveContext<T> {
-    /// First and second derivative of what the curve runs on from, at its start and end.
+    /// First and second derivative of the curve to continue at the start and the end.
     pub joins: [Option<[Vec3<T>; 2]>; 2],
-    /// Points that it passes through, and what it keeps.
+    /// Points on the curve, and quantities to preserve.
     pub through: Vec<Vec3<T>>,
     pub keep: Vec<Demand>,
-    /// The field of what it keeps.
+    /// Field of the preserved quantities.
     pub keep_field: FieldId,
-    /// What ends keep none the less if they keep nothing else.
+    /// Minimum condition at the ends.
     pub least_end: Option<EndContinuity>,
-    /// The share of the goals.
+    /// Default of `share`.
     pub budget: f64,
-    /// Whether "auto" may be "curvature".
+    /// True if "auto" may select "curvature".
     pub turns: bool,
-    /// The ways in which points get parameters.
+    /// Allowed values of `spacing`.
     pub spacings: &'static [&'static str],
 }
 
@@ -39,11 +39,11 @@ pub(crate) struct CurveContext<T> {
 pub(crate) struct FairedSpline<T: Real> {
     pub curve: FairedCurve<T>,
     pub members: Vec<(&'static str, f64)>,
-    /// Whether an open curve begins and ends at its points.
+    /// For each end, true if an open curve ends at its point.
     pub kept: [bool; 2],
 }
 
-/// A spline whose knots follow the points, or not.
+/// A spline whose knots depend on the points, or are constant.
 pub(crate) enum FairedCurve<T: Real> {
     Moving(SplineWithKnotDerivatives<T>),
     Still(BSplineCurve<T>),
@@ -72,10 +72,10 @@ impl<T: Real> Curve<T> for FairedCurve<T> {
     moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
-/// The modes of curves.
+/// Values of `mode`.
 const MODES: [&str; 6] = ["optimum", "faithful", "literal", "vertex", "sweeps", "levels"];
 
-/// Sweeps and cycles of levels where no number is given.
+/// Default numbers of sweeps and of multilevel cycles.
 const SWEEPS: usize = 10;
 const CYCLES: usize = 2;
 
@@ -98,7 +98,7 @@ impl<T: Real> CurveOptions<T> {
         let index = spacing == PointSpacing::Given(ParameterSpacing::Uniform);
         let own = self.own()?;
         let given = own.knots.is_some() || own.weights.is_some();
-        // Points that move are those of the curve through them.
+        // With `as = "points"` the interpolating curve is faired.
         let data = role != PointRole::Control && (!index || bound.is_some());
         let near = data && optimum && alone && !given && self.count.is_none();
         if near && matches!(bound, None | Some(None)) {
@@ -116,7 +116,7 @@ impl<T: Real> CurveOptions<T> {
         self.direct(points, context, demands, (role, method, bound, intent, own), unmade)
     }
 
-    /// A curve whose control points move.
+    /// A curve faired by moving control points.
     fn direct(
         &self,
         points: &[Vec3<T>],
@@ -199,7 +199,7 @@ impl<T: Real> CurveOptions<T> {
                 "as = \"fit\": the index is the parameter here",
             ));
         }
-        // The index is the parameter of the report's modes and of joins unless another is named.
+        // Stepwise modes and joins are parametrised by index by default.
         let by_chords = fitted || bound.is_some();
         intent.spacing = match &*self.spacing {
             "chord" | "centripetal" | "index" => intent.spacing,
@@ -234,14 +234,14 @@ impl<T: Real> CurveOptions<T> {
         };
         let spline = spline
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(fields.points))?;
-        // Fits of few control points end at their points, too.
+        // Least-squares fits interpolate their ends too.
         let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
         let end = |at: usize| !closed && (keeps(kept[at]) || joined[at]);
         let members = made.figures.members_of_moves();
         Ok(FairedSpline { curve: FairedCurve::Still(spline), members, kept: [end(0), end(1)] })
     }
 
-    /// What is asked for, and how points get their parameters.
+    /// Goal, motion, end conditions and parametrisation.
     fn intent(&self, context: &CurveContext<T>) -> Result<(Intent<T>, PointSpacing), CallError> {
         let fields = &self.fields;
         let motion = self.motion()?;
@@ -282,13 +282,12 @@ impl<T: Real> CurveOptions<T> {
         Ok((intent, spacing))
     }
 
-    /// The directions in which points may move.
     pub fn motion(&self) -> Result<Motion, CallError> {
         let fields = [self.fields.along, self.fields.motion];
         super::motion(self.along, self.motion.as_deref(), fields)
     }
 
-    /// What the tolerance bounds: none given, the data, or a bound of control points.
+    /// `None`: not given; `Some(None)`: "data"; otherwise a bound of control points.
     #[expect(clippy::option_option, reason = "not given, the data, or a bound of control points")]
     fn bound(&self) -> Result<Option<Option<Bound>>, CallError> {
         Ok(match self.bound.as_deref() {
@@ -329,7 +328,6 @@ impl<T: Real> CurveOptions<T> {
         })
     }
 
-    /// Weights and knots.
     fn own(&self) -> Result<GivenKnots, CallError> {
         let fields = &self.fields;
         let list = |what, x: &Option<Vec<T>>, field| -> Result<Option<Vec<f64>>, CallError> {
@@ -352,7 +350,7 @@ impl<T: Real> CurveOptions<T> {
         })
     }
 
-    /// What is asked of a curve near its points.
+    /// Conditions on a curve near its points.
     fn demands(&self, n: usize, context: &CurveContext<T>) -> Result<Demands<T>, CallError> {
         let fields = &self.fields;
         let shape = shapes_of(self.shape.as_deref(), n, fields.shape)?;
@@ -421,12 +419,12 @@ impl<T: Real> CurveOptions<T> {
         })
     }
 
-    /// The first of what only curves near their points have that is given.
+    /// The first given option that only curves near their points accept.
     fn near_only(&self, role: PointRole) -> Option<(&'static str, FieldId)> {
         let fields = &self.fields;
         let given = [
             (self.shape.is_some(), "shape", fields.shape),
-            // Control points of a fit are no points of the user's.
+            // `fixed` numbers control points in other roles.
             (role == PointRole::Fit && !self.fixed.is_empty(), "fixed", fields.fixed),
             (self.release.is_some(), "release", fields.release),
             (self.bends, "bends", fields.bends),
@@ -436,7 +434,7 @@ impl<T: Real> CurveOptions<T> {
         given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
     }
 
-    /// The first option of steps that is given.
+    /// The first given option of single steps.
     fn stepwise_only(&self) -> Option<(&'static str, FieldId)> {
         let fields = &self.fields;
         let stops = self.stops.iter().any(|x| x.re() != 0.0) || self.stop_pieces;
@@ -460,7 +458,7 @@ impl<T: Real> CurveOptions<T> {
             .in_field(field)
     }
 
-    /// A refusal as a fault at its argument.
+    /// Converts an error to one at its argument.
     fn unmade(&self, error: FairError) -> CallError {
         let fields = &self.fields;
         let places = ArgumentFields {

@@ -1,40 +1,40 @@
-//! What faired objects say of themselves.
+//! Members of faired objects.
 
 use crate::{Certificate, DataFit, GridFit, NetworkFit};
 
-/// Figures of a faired object, which become its members.
+/// Figures of a faired object, the values of its members.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FairFigures {
-    /// The greatest distance of a point from the result at its parameter.
+    /// Largest distance of a point from the result at the point's parameter.
     pub deviation: f64,
-    /// The measure of the result, and its optimality gap.
+    /// Measure of the result, and its optimality gap.
     pub value: f64,
     pub gap: f64,
-    /// Tolerances that are reached.
+    /// Number of tolerances reached.
     pub active: usize,
-    /// The mean of squared residuals over tolerances, over 1/3; and that of the fairest.
+    /// Mean squared residual over tolerance, relative to 1/3; and the same for the fairest result.
     pub used: f64,
     pub fairest_used: f64,
-    /// Points that do not fit their neighbours.
+    /// Number of points that do not fit their neighbours.
     pub findings: usize,
-    /// Single steps, sweeps or cycles that were made.
+    /// Number of single steps, sweeps or cycles.
     pub steps: Option<usize>,
 }
 
 impl FairFigures {
-    /// Of a curve near its data, whose tolerances are `radii`.
+    /// Figures of a curve near data with tolerances `radii`.
     pub fn of_curve(made: &DataFit, radii: &[f64], findings: usize) -> Self {
         let own = Self::of_residuals(&made.residuals, radii, findings);
         Self { active: made.active, ..own }.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
-    /// Of a surface near its data.
+    /// Figures of a surface near data.
     pub fn of_surface(made: &GridFit, radii: &[f64], findings: usize) -> Self {
         let own = Self::of_residuals(&made.residuals, radii, findings);
         Self { active: made.active, ..own }.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
-    /// Of a curve of a network: its own points, the network's measure.
+    /// Figures of a curve in a network: its own residuals, the measure of the whole network.
     pub fn of_network(
         made: &NetworkFit,
         residuals: &[f64],
@@ -45,8 +45,8 @@ impl FairFigures {
         own.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
-    /// Of control points, or points that move themselves: how far they moved, and what is known of the
-    /// optimum: the certificate, how many limits an optimum reaches, and how many steps were made.
+    /// Figures of moved control points or points, from the moves and, if solved, the certificate,
+    /// the number of active tolerances of an optimum and the number of steps.
     pub fn of_moves(
         moved: impl Iterator<Item = f64>,
         made: Option<(&Certificate, Option<usize>, Option<usize>)>,
@@ -62,7 +62,7 @@ impl FairFigures {
         })
     }
 
-    /// The members that are known of control points and points that move themselves.
+    /// Members of moved control points and points; unavailable ones are left out.
     pub fn members_of_moves(&self) -> Vec<(&'static str, f64)> {
         let all = self.members().into_iter();
         let known = ["deviation", "value", "gap", "active"];
@@ -78,7 +78,7 @@ impl FairFigures {
     }
 
     fn of_residuals(residuals: &[f64], radii: &[f64], findings: usize) -> Self {
-        // Released points have a tolerance, but none that they were given.
+        // A released point has a very large radius, which it does not reach.
         let least = radii.iter().copied().filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
         let limited = residuals.iter().zip(radii).filter(|(_, a)| **a > 0.0 && **a < 1e3 * least);
         let reached = limited.filter(|(r, a)| **r > **a * (1.0 - 1e-4)).count();
@@ -90,7 +90,6 @@ impl FairFigures {
         }
     }
 
-    /// The members.
     pub fn members(&self) -> [(&'static str, f64); 7] {
         [
             ("deviation", self.deviation),

@@ -1,4 +1,4 @@
-//! The functions `fair`, `jumps` and `curvature` of the language.
+//! The functions `fair`, `jumps` and `curvature`.
 
 use super::direct::{CurveMethod, DirectCurve};
 use super::{ArgumentFields, Intent, PointRole, faithful, fault, measure};
@@ -7,11 +7,12 @@ use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
 use std::sync::Arc;
 
-/// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
+/// Faired points, each within a tolerance of the original.
 ///
-/// On uniform points the same steps fair the points themselves: interpolation and fourth
-/// differences commute. Open rows keep their first and last two points. Points on a line, conic,
-/// plane cubic or helix stay.
+/// The points are faired as control points of a uniform cubic; on uniform points this is the same
+/// as fairing the interpolated points, because interpolation and fourth differences commute. Open
+/// rows keep their first and last two points. Points on a line, conic, plane cubic or helix do not
+/// move.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -21,19 +22,19 @@ use std::sync::Arc;
                curve q = fair(p, 0.01);"
 )]
 pub struct Fair<T: Real> {
-    /// Points, five or more (closed: eight or more).
+    /// Points, at least 5 (closed: 8).
     #[field(min_items = 5)]
     points: Vec<Vec3<T>>,
-    /// Largest move of each point.
+    /// Largest move of each point, in units of length; 0: unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// The measure to minimise; see `FairCurve`.
+    /// Measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// "optimum" or "faithful".
+    /// "optimum" or "faithful"; see `FairCurve`.
     #[field(default = "optimum")]
     mode: Arc<str>,
-    /// 1 for a closed row, whose first point is not repeated.
+    /// 1: closed row; the first point is not repeated.
     #[field(default = 0, min = 0, max = 1)]
     closed: usize,
 }
@@ -83,10 +84,10 @@ impl<T: Real> Build<T> for Fair<T> {
     }
 }
 
-/// The unfairness of a row of points: the length of the jump of the third derivative at each knot of
-/// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
+/// Jumps of the third derivative of the uniform cubic with given control points, a measure of
+/// unfairness: `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|` at each knot.
 ///
-/// An open row has four fewer jumps than points.
+/// An open row of n points has n - 4 jumps, a closed one n.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -96,10 +97,10 @@ impl<T: Real> Build<T> for Fair<T> {
                farray e = jumps(p);"
 )]
 pub struct Jumps<T: Real> {
-    /// Points, five or more (closed: eight or more).
+    /// Control points, at least 5 (closed: 8).
     #[field(min_items = 5)]
     points: Vec<Vec3<T>>,
-    /// 1 for a closed row, whose first point is not repeated.
+    /// 1: closed row; the first point is not repeated.
     #[field(default = 0, min = 0, max = 1)]
     closed: usize,
 }
@@ -124,7 +125,7 @@ impl<T: Real> Build<T> for Jumps<T> {
             let entries = columns.iter().zip(factors);
             let sum: Vec3<T> = entries
                 .fold(Vec3::zero(), |s, (&c, &a)| s + self.points[c as usize].map(|x| x * a));
-            // A jump that is exactly zero has no derivative of its length.
+            // The length of a zero jump is not differentiable; its derivative is set to zero.
             if sum.norm_sq().re() == 0.0 { T::zero() } else { sum.norm() }
         };
         let row = (0..jumps.rows.len()).map(length).collect();
@@ -132,7 +133,7 @@ impl<T: Real> Build<T> for Jumps<T> {
     }
 }
 
-/// The curvature of a curve at a parameter or a row of parameters: |C' x C''| / |C'|^3.
+/// Curvature |C' x C''| / |C'|^3 of a curve at a parameter or an array of parameters.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -142,9 +143,8 @@ impl<T: Real> Build<T> for Jumps<T> {
                float k = curvature(c, 0.5);"
 )]
 pub struct Curvature<T: Real> {
-    /// The curve.
     curve: CurveRef<T>,
-    /// A parameter, or a row of them.
+    /// A parameter, from 0 to 1, or an array of them.
     t: Value<T>,
 }
 
@@ -162,7 +162,7 @@ impl<T: Real> Build<T> for Curvature<T> {
                 .in_field(Self::T));
             }
             let cross = d1.cross(d2);
-            // A straight stretch: the root of zero has no derivative.
+            // On a straight part the norm is not differentiable; its derivative is set to zero.
             let bend = if cross.norm_sq().re() == 0.0 { T::zero() } else { cross.norm() };
             Ok(bend / (speed * speed * speed))
         };

@@ -1,4 +1,4 @@
-//! Fairing in the graph: the kinds that store an intent and run again when their points change.
+//! Kinds and functions of fairing for the model graph; they are rebuilt when their points change.
 
 mod curve;
 mod demands;
@@ -47,26 +47,24 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// How points become a fair spline: what the arguments of the kinds say.
+/// Arguments that turn points into a fair spline.
 pub(crate) struct Intent<T> {
     pub tolerance: T,
     pub degree: usize,
     pub closed: bool,
-    /// The measure; that of data or of control points without one.
+    /// `None`: the default for data or for control points.
     pub measure: Option<Measure>,
-    /// What the ends keep; what those of data or of control points keep where nothing is said.
+    /// Conditions at the start and the end; `None`: the default for data or for control points.
     pub ends: [Option<EndContinuity>; 2],
-    /// Intended breaks, from 1.
+    /// Indices of intended breaks, from 1.
     pub breaks: Vec<usize>,
-    /// How points get their parameters; the index for control points and knot removal.
+    /// Parameters of the points; uniform for control points and knot removal.
     pub spacing: ParameterSpacing,
-    /// Which of the curves within the tolerances is wanted.
     pub goal: Goal,
-    /// The directions in which points may move.
     pub motion: Motion,
 }
 
-/// A word that an option does not have, as a fault at its argument.
+/// Error for an unknown word of an option, at its argument.
 pub(crate) fn unread(error: WordError, field: FieldId) -> CallError {
     let said = if error.id == "unknown-name" {
         format!("unknown {} \"{}\"", error.noun, error.found)
@@ -79,12 +77,12 @@ pub(crate) fn unread(error: WordError, field: FieldId) -> CallError {
         .in_field(field)
 }
 
-/// The way in which points get their parameters that is called `name`.
+/// Parametrisation of points called `name`.
 pub(crate) fn spacing(name: &str, field: FieldId) -> Result<PointSpacing, CallError> {
     words::spacing(name).map_err(|e| unread(e, field))
 }
 
-/// The same where the turns of a curve give none.
+/// As [`spacing`], without "auto" and "curvature".
 pub(crate) fn plain_spacing(name: &str, field: FieldId) -> Result<ParameterSpacing, CallError> {
     match spacing(name, field)? {
         PointSpacing::Given(spacing) => Ok(spacing),
@@ -98,14 +96,15 @@ pub(crate) fn plain_spacing(name: &str, field: FieldId) -> Result<ParameterSpaci
     }
 }
 
-/// The budget of the goals: 1 is what noise takes that fills the tolerances evenly.
+/// Default of `share`; 1 is the mean squared residual of noise that fills the tolerances evenly.
 pub const BUDGET: f64 = 0.8;
 
-/// The same of networks by the index whose hull the measure does not have: of 36 networks of six hulls all come
-/// nearer to the truth with it, and 5 of 30 do not with that of curves.
+/// Default share for networks parametrised by index. Measured on 36 networks of six hulls that the
+/// measure does not describe: with this value all come nearer to the truth; with [`BUDGET`] 5 of 30
+/// do not.
 pub const NETWORK_BUDGET: f64 = 0.3;
 
-/// The goal called `name` with its share; the fields of both.
+/// Goal called `name` with its parameter `share`. The fields are those of both.
 pub(crate) fn goal_of(
     name: &str,
     share: Option<f64>,
@@ -118,17 +117,17 @@ pub(crate) fn goal_of(
     })
 }
 
-/// Knots and weights of the user's.
+/// Knots and weights given by the user.
 #[derive(Clone, Default)]
 pub(crate) struct GivenKnots {
     pub knots: Option<Vec<f64>>,
     pub weights: Option<Vec<f64>>,
-    /// How far the first knot of a closed curve is from itself, once round.
+    /// Period of the knots of a closed curve; `None`: 1.
     pub period: Option<f64>,
 }
 
 impl GivenKnots {
-    /// The space of `count` control points on its knots, or on uniform ones.
+    /// Open space of `count` control points on the given knots, by default clamped uniform ones.
     pub fn space(&self, degree: usize, count: usize) -> Result<Space, FairError> {
         let Some(knots) = &self.knots else {
             return if count < degree + 2 {
@@ -149,7 +148,7 @@ impl GivenKnots {
         Space::open(KnotVector::new(degree, knots.clone())?)
     }
 
-    /// The closed space of `count` control points.
+    /// Closed space of `count` control points.
     pub fn ring(&self, degree: usize, count: usize) -> Result<Space, FairError> {
         let Some(knots) = &self.knots else {
             return Space::periodic(
@@ -166,18 +165,18 @@ impl GivenKnots {
     }
 }
 
-/// What the given points are.
+/// Role of the given points.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointRole {
-    /// Points that the spline passes through before it is faired.
+    /// The spline is interpolated through the points, then faired.
     Fit,
-    /// Control points.
+    /// The points are the control points of the spline.
     Control,
-    /// Points that are faired themselves, and then interpolated.
+    /// The points are faired, then interpolated.
     Points,
 }
 
-/// The places of the arguments that can be at fault.
+/// Fields of the arguments that errors refer to.
 #[derive(Clone, Copy)]
 pub(crate) struct ArgumentFields {
     pub points: FieldId,
@@ -194,7 +193,7 @@ fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> CallError {
         .in_field(field)
 }
 
-/// The role called `name`, an argument in `field`.
+/// Role called `name`.
 pub(crate) fn role(name: &str, field: FieldId) -> Result<PointRole, CallError> {
     Ok(match name {
         "fit" => PointRole::Fit,
@@ -204,12 +203,10 @@ pub(crate) fn role(name: &str, field: FieldId) -> Result<PointRole, CallError> {
     })
 }
 
-/// The measure called `name`.
 pub(crate) fn measure(name: &str, field: FieldId) -> Result<Measure, CallError> {
     words::measure(name).map_err(|e| unread(e, field))
 }
 
-/// True for the mode "faithful", false for "optimum".
 pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
     match name {
         "optimum" => Ok(false),
@@ -218,12 +215,11 @@ pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
     }
 }
 
-/// The end condition called `name`.
 pub(crate) fn end(name: &str, field: FieldId) -> Result<EndContinuity, CallError> {
     words::end(name).map_err(|e| unread(e, field))
 }
 
-/// The directions in which points may move: `along`, and what it means; the fields of both.
+/// Motion from `along` and the word of `motion`; the fields are those of both.
 pub(crate) fn motion<T: Real>(
     along: Option<Vec3<T>>,
     word: Option<&str>,
@@ -240,7 +236,7 @@ pub(crate) fn motion<T: Real>(
     words::motion(along.map(|d| d.re()), word).map_err(|e| unread(e, of_word))
 }
 
-/// A refusal as a fault at its argument.
+/// Converts an error to one at its argument.
 pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
     let text = error.to_string();
     match error {
@@ -277,7 +273,7 @@ pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
     }
 }
 
-/// Numbers of points, from 1, as indices.
+/// Converts point numbers, from 1, to indices.
 pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, FairError> {
     let from_zero = |&b: &usize| match b.checked_sub(1) {
         Some(index) if index < count => Ok(index),
@@ -286,7 +282,7 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
     numbers.iter().map(from_zero).collect()
 }
 
-/// How far points moved.
+/// Distances between the points before and after.
 pub(crate) fn moves<T: Real, U: Real>(
     after: &[Vec3<T>],
     before: &[Vec3<U>],

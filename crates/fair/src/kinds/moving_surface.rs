@@ -1,18 +1,19 @@
-//! A spline surface whose knots carry derivatives, as those of surfaces through data do.
+//! A spline surface whose knots carry derivatives, as surfaces through data have.
 
 use crate::FairError;
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, SurfaceFormula, Vec3};
 use moldloft_registry::SurfaceRef;
 use moldloft_spline::{BSplineSurface, KnotVector};
 
-/// The surface whose numbers are those of the plain one and whose derivatives go through the knots.
+/// Values are those of `plain`; derivatives include those of the knots.
 pub(super) struct MovingSurface<T: Real> {
     plain: BSplineSurface<T>,
     formula: Tensor<T>,
 }
 
 impl<T: Real> MovingSurface<T> {
-    /// The surface as models refer to it; control point (i, j) stands at `i * n + j`, knots run from 0 to 1.
+    /// A referenced surface; control point (i, j) has the index `i * n + j`, knots range from 0 to
+    /// 1.
     pub fn referred(
         degrees: [usize; 2],
         knots: [Vec<T>; 2],
@@ -71,7 +72,7 @@ struct Tensor<T> {
 }
 
 impl<T: Real> Tensor<T> {
-    /// The span in charge at `t`: that of the last knot of the domain not above it.
+    /// Knot span that contains `t`: the last one that starts at or below it.
     fn span(&self, d: usize, t: f64) -> usize {
         let (p, knots) = (self.degrees[d], &self.knots[d]);
         let n = knots.len() - p - 1;

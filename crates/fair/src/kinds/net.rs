@@ -29,15 +29,16 @@ impl<T: Real> FromValue<T> for PointRow<T> {
 
 shared_options! {
     {
-        /// Curves that share points, faired together within a tolerance: the stations, waterlines and
+        /// Curves with common points, faired together within a tolerance: stations, waterlines and
         /// buttocks of a hull.
         ///
-        /// Each curve is a list of points; a point object in several lists is one point of all
-        /// these curves. All points move at once, none by more than the tolerance, so that the sum of the
-        /// measure over all curves is the least; each curve then passes through its moved points, so that
-        /// curves still meet where they did. A list that ends with its first point is a closed curve. The
-        /// value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
-        /// Equal coordinates alone join nothing. The limit is on the points: there is no `bound`.
+        /// Each curve is a list of points; a point object in several lists is common to these
+        /// curves (points with equal coordinates are not). All points move together, each at most
+        /// by the tolerance, so that the sum of the measure over all curves is minimal; each curve
+        /// then interpolates its moved points, so that intersections are preserved. A list that
+        /// ends with its first point is a closed curve. The value is the list of the faired curves:
+        /// `net[2]` is the second, `NetCurve` makes it an object. The tolerance bounds the points:
+        /// there is no `bound`.
         #[derive(Kind)]
         #[kind(
             class = List,
@@ -50,21 +51,21 @@ shared_options! {
         pub struct FairNet<T: Real>
     }
     {
-        /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
+        /// Curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
         #[field(min_items = 1)]
         curves: Vec<PointRow<T>>,
-        /// Largest move of each point; 0 leaves all unchanged.
+        /// Largest move of each point, in units of length; 0: unchanged.
         #[field(min = 0)]
         tolerance: T,
-        /// The measure to minimise; see `FairCurve`.
+        /// Measure to minimise; see `FairCurve`.
         #[field(default = "second")]
         measure: Arc<str>,
-        /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
-        /// corners there.
+        /// Intended breaks: these points do not move, nothing is smoothed across them, and the
+        /// curves have corners there.
         #[field(default)]
         breaks: Option<Vec<Point<T>>>,
-        /// Kept ends of open curves: "corners" (the points at which every curve that has them
-        /// ends), "ends" or "none".
+        /// Fixed ends of open curves: "corners" (points at which every curve through them ends),
+        /// "ends" (all) or "none".
         #[field(default = "corners")]
         keep: Arc<str>,
     }
@@ -73,41 +74,43 @@ shared_options! {
         /// Polynomial degree.
         #[field(default = 3, min = 2, max = 9)]
         degree: usize,
-        /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
-        /// re-inserted one by one, `steps` per point. The result then depends on that order and may
-        /// jump where two knots tie.
+        /// "optimum", or "faithful": curve after curve in the order of the list, by removal and
+        /// re-insertion of knots, `steps` per point. The result of "faithful" depends on this order
+        /// and may jump where two knots are equally bad.
         #[field(default = "optimum")]
         mode: Arc<str>,
-        /// Passes of the faithful mode.
+        /// Passes of the mode "faithful".
         #[field(default = 1, min = 1, max = 100)]
         passes: usize,
-        /// How points get their parameters along each curve, as for `FairCurve`; a coordinate is taken where
-        /// it rises or falls along a curve, chords elsewhere. The mode "faithful" takes "index".
+        /// Parametrisation of the points of each curve; see `FairCurve`. A coordinate is used for
+        /// the curves along which it is monotone, chord lengths for the others. The mode "faithful"
+        /// uses "index".
         #[field(default = "chord")]
         spacing: Arc<str>,
     }
     [goal]
     [share]
     {
-        /// Points that stay besides those of `keep`.
+        /// Further points that do not move.
         #[field(default)]
         fixed: Option<Vec<Point<T>>>,
-        /// Tolerances of the points `tolerances_at`, instead of `tolerance`.
+        /// Tolerances of the points in `tolerances_at`, instead of `tolerance`.
         #[field(default)]
         tolerances: Option<Vec<T>>,
-        /// The points of `tolerances`.
+        /// The points that `tolerances` belong to.
         #[field(default)]
         tolerances_at: Option<Vec<Point<T>>>,
-        /// Steps per point of each curve in a pass of the faithful mode.
+        /// Steps per point of each curve and pass in the mode "faithful".
         #[field(default = 3, min = 1, max = 1000)]
         steps: usize,
     }
 }
 
-/// A network with points by identity.
+/// A network whose points are identified by object.
 struct Joined<T: Real> {
     points: Vec<Point<T>>,
-    /// Of each curve: its places in `points`, without the repeated first of a closed one.
+    /// For each curve, indices in `points` (the first point of a closed one not repeated), and
+    /// whether it is closed.
     curves: Vec<(Vec<usize>, bool)>,
 }
 
@@ -136,7 +139,7 @@ impl<T: Real> Joined<T> {
         Self { points, curves }
     }
 
-    /// The places of points of the network; the field that lists them.
+    /// Indices of points in the network; `field` is the argument that lists them.
     fn places(
         &self,
         points: Option<&[Point<T>]>,
@@ -156,7 +159,7 @@ impl<T: Real> Joined<T> {
         points.unwrap_or_default().iter().enumerate().map(place).collect()
     }
 
-    /// The ends that stay.
+    /// Indices of the fixed ends.
     fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
         let mut uses = vec![0usize; self.points.len()];
@@ -329,14 +332,15 @@ impl<T: Real> Build<T> for FairNet<T> {
         };
         let curve = |(k, (own, closed)): (usize, &(Vec<usize>, bool))| {
             let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
-            // Ends that may move are no longer their point objects.
+            // A moved end is not its point object any more.
             let end = |i: Option<&usize>| {
                 i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
             };
             let ends = [end(own.first()), end(own.last())];
             let about = |e: FairError| fault(e, &places).in_item(k).in_field(Self::CURVES);
             if let Some(at) = &ats[k] {
-                // At the parameters of the points given: the moved ones are near them.
+                // The parameters of the given points are used, since the moved points are near
+                // them.
                 let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
                 return Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)));
             }
@@ -360,7 +364,7 @@ impl<T: Real> Build<T> for FairNet<T> {
     }
 }
 
-/// The spline through points at parameters, both of which may carry derivatives.
+/// Interpolating spline; points and parameters may carry derivatives.
 fn through<T: Real>(
     degree: usize,
     points: &[Vec3<T>],
@@ -376,7 +380,7 @@ fn through<T: Real>(
         .map_err(|_| FairError::Singular)
 }
 
-/// One curve of a faired network.
+/// One curve of a faired network, as an object.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -385,9 +389,9 @@ fn through<T: Real>(
                FairNet n({{A, B, C, D, E}}, 0.05); NetCurve c(n, 1);"
 )]
 pub struct NetCurve<T: Real> {
-    /// The network, a `FairNet`.
+    /// A `FairNet`.
     net: Value<T>,
-    /// The number of the curve in the list of the network, from 1.
+    /// Number of the curve in the network's list, from 1.
     #[field(min = 1)]
     index: usize,
 }

@@ -1,35 +1,38 @@
-//! The arguments that several kinds share, each declared once.
+//! Arguments that several kinds share, each declared once.
 //!
-//! `shared_options!` makes the struct of a kind from its own fields and from groups, which stand in
-//! brackets where their fields are to be: an argument has one name, one default and one text wherever it is.
+//! `shared_options!` makes the struct of a kind from its own fields and from groups, named in
+//! brackets: an argument has one name, one default and one text in all kinds.
 
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{CallError, FieldId};
 use std::sync::Arc;
 
-/// A kind whose fields are its own, between braces, and those of groups, between brackets.
+/// A kind with its own fields in braces and groups of shared fields in brackets.
 macro_rules! shared_options {
     (@ {$($head:tt)*} {$($done:tt)*} {$($own:tt)*} $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)* $($own)*} $($rest)*);
     };
     (@ {$($head:tt)*} {$($done:tt)*} [knots] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
-            /// Positive weights of the control points (`as = "control"`, or of a fit with as many points), which make
-            /// it rational and stay as they are. They count as constants: derivatives do not go through them.
+            /// Positive weights of the control points, constant (`as = "control"`, or a fit with as
+            /// many control points as points): the curve is rational. No derivatives with respect
+            /// to them.
             #[field(default)]
             weights: Option<Vec<T>>,
-            /// Knots of the control points (`as = "control"`) or of a fit, whose number gives that of the control
-            /// points: degree + 1 more, non-decreasing; of a closed curve as many, increasing. Constants too.
+            /// Knots of the control points (`as = "control"`) or of a fit, constant. Open: number
+            /// of control points + degree + 1, non-decreasing; closed: as many as control points,
+            /// increasing. For a fit they determine the number of control points.
             #[field(default)]
             knots: Option<Vec<T>>,
         } $($rest)*);
     };
     (@ {$($head:tt)*} {$($done:tt)*} [goal] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
-            /// Which of the results within the tolerance: "near" (no fairer than noise of the tolerance's size
-            /// asks for, and unmoved where there is little to gain), "budget" (the same, moved in any case),
-            /// "fairest", "nearest" (the nearest to the points that measures little more than the fairest),
-            /// "energy" (the nearest that measures at most `share`) or, of curves, "closest" (the nearest of the
+            /// Selects the result within the tolerance: "near" (residuals up to the level of noise
+            /// that fills the tolerance; data with little to gain do not move), "budget" (the same,
+            /// without the exception), "fairest" (minimum of the measure), "nearest" (nearest to
+            /// the points with a measure at most `share` above the minimum), "energy" (nearest with
+            /// a measure of at most `share`) or, for curves, "closest" (nearest with the given
             /// `shape`).
             #[field(default = "near")]
             goal: Arc<str>,
@@ -37,87 +40,98 @@ macro_rules! shared_options {
     };
     (@ {$($head:tt)*} {$($done:tt)*} [share] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
-            /// The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks that noise
-            /// does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or the measure of "energy".
+            /// Parameter of the goal. "near" and "budget": mean squared residual relative to noise
+            /// that fills the tolerance; default 0.5 for plane curves with free motion, 0.8
+            /// otherwise, and for networks that noise does not explain 0.3 ("budget": 0.8).
+            /// "nearest": relative excess of the measure, default 0.1. "energy": the largest
+            /// measure, required.
             #[field(default)]
             share: Option<T>,
         } $($rest)*);
     };
     (@ {$($head:tt)*} {$($done:tt)*} [along] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
-            /// The direction in which points may be left, such as {0, 1, 0} for offsets at fixed stations; any
-            /// direction without it.
+            /// Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+            /// Default: any direction.
             #[field(default)]
             along: Option<Vec3<T>>,
-            /// "across" (points stay in the plane across `along`) or "box" (each coordinate is limited by itself);
-            /// without it points move along `along`, or in any direction.
+            /// "across" (points move in the plane perpendicular to `along`) or "box" (each
+            /// coordinate is bounded separately). Default: along `along`, or in any direction
+            /// without it.
             #[field(default)]
             motion: Option<Arc<str>>,
         } $($rest)*);
     };
     (@ {$($head:tt)*} {$($done:tt)*} [curve] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
-            /// The shape that it has to have, points from 1: "convex=4-10", "concave=1-4", "one-way=1-9"
-            /// (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction), "arc=9-15", "pieces=2" (of
-            /// monotone curvature), "within=0,1:4.6" (the largest value along a direction), "side=0,-1" (the
-            /// points are left only against it). A word alone is about the whole curve. No derivatives.
+            /// Shape conditions, with numbers of points from 1: "convex=4-10", "concave=1-4",
+            /// "one-way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
+            /// "arc=9-15", "pieces=2" (number of pieces with monotone curvature), "within=0,1:4.6"
+            /// (largest coordinate along a direction), "side=0,-1" (points may be left only against
+            /// this direction). A word without numbers applies to the whole curve. No derivatives.
             #[field(default)]
             shape: Option<Vec<Arc<str>>>,
-            /// Tolerances of the points one by one, instead of `tolerance`.
+            /// Tolerances of the individual points, instead of `tolerance`.
             #[field(default)]
             tolerances: Option<Vec<T>>,
-            /// Numbers of points, from 1, through which it passes.
+            /// Numbers, from 1, of points that do not move.
             #[field(default)]
             fixed: Option<Vec<usize>>,
-            /// Numbers of points, from 1, that are wrong: they may be left.
+            /// Numbers, from 1, of faulty points: the curve may leave them.
             #[field(default)]
             release: Option<Vec<usize>>,
-            /// Parameters, from 0 to 1, of `through`.
+            /// Parameters of `through`, from 0 to 1.
             #[field(default)]
             through_at: Option<Vec<T>>,
-            /// Directions that it has at `tangents_at`. No derivatives.
+            /// Tangent directions at `tangents_at`. No derivatives.
             #[field(default)]
             tangents: Option<Vec<Vec3<T>>>,
-            /// Parameters, from 0 to 1, of `tangents`.
+            /// Parameters of `tangents`, from 0 to 1.
             #[field(default)]
             tangents_at: Option<Vec<T>>,
-            /// 1 to allow more inflections and monotone pieces of the curvature than the fairest within the tolerances has.
-            /// With 0 derivatives are known where none had to be taken away.
+            /// 1: allows more inflections and monotone pieces of curvature than the fairest curve
+            /// within the tolerances has. 0: such are removed; derivatives exist if there are none
+            /// to remove.
             #[field(default = 0, min = 0, max = 1)]
             bends: usize,
-            /// Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed curve less than
-            /// 1 apart).
+            /// Parameters of the individual points, increasing, instead of `spacing` (closed:
+            /// within a range of less than 1).
             #[field(default)]
             at: Option<Vec<T>>,
-            /// What the end keeps, if it is something else than the start (`ends`).
+            /// Condition at the end, if different from the start (`ends`).
             #[field(default)]
             last_end: Option<Arc<str>>,
-            /// What the tolerance bounds: "data", the distance of each point (the default of fits); "curve", that of
-            /// the curve from the one before, everywhere (the default of control points); "points", the move of
-            /// each control point. "curve" and "points" have derivatives where parameters do not follow the points
-            /// (`spacing = "index"`).
+            /// Quantity that the tolerance bounds: "data" (distance of each point from the curve;
+            /// default for fits), "curve" (distance of the curve from the initial one, everywhere;
+            /// default for control points) or "points" (move of each control point). "curve" and
+            /// "points" have derivatives if the parameters are constant (`spacing = "index"`).
             #[field(default)]
             bound: Option<Arc<str>>,
-            /// Control points of a fit by least squares, fewer than points; no derivatives.
+            /// Number of control points of a least-squares fit, less than the number of points. No
+            /// derivatives.
             #[field(default, min = 3)]
             count: Option<usize>,
-            /// How far the first knot of a closed curve with `knots` is from itself, once round (1).
+            /// Period of the `knots` of a closed curve. Default: 1.
             #[field(default)]
             period: Option<T>,
-            /// Steps of the modes "faithful", "literal" and "vertex" (one per point), sweeps (10) or cycles of
-            /// levels (2).
+            /// Number of steps in the modes "faithful", "literal" and "vertex" (default: one per
+            /// point), of sweeps (10) or of multilevel cycles (2).
             #[field(default, min = 0, max = 10_000_000)]
             steps: Option<usize>,
-            /// Single steps end when a move is shorter than this share of the tolerance.
+            /// Single steps stop when the next move is shorter than this fraction of the tolerance;
+            /// 0: never.
             #[field(default = 0, min = 0)]
             least_move: T,
-            /// Single steps end when one lowers the measure by less than this share.
+            /// Single steps stop when a step reduces the measure by less than this fraction; 0:
+            /// never.
             #[field(default = 0, min = 0)]
             least_drop: T,
-            /// Single steps end when the certified gap is below this share of the measure.
+            /// Single steps stop when the certified gap is below this fraction of the measure; 0:
+            /// never.
             #[field(default = 0, min = 0)]
             stop_gap: T,
-            /// 1 to end single steps when as many as there are points bring no fewer monotone pieces of curvature.
+            /// 1: single steps stop when n of them, for n points, have not reduced the number of
+            /// monotone pieces of curvature.
             #[field(default = 0, min = 0, max = 1)]
             stop_pieces: usize,
         } $($rest)*);
@@ -131,7 +145,7 @@ macro_rules! shared_options {
 }
 pub(crate) use shared_options;
 
-/// The fields of a kind's arguments, for faults.
+/// Fields of the arguments, for errors.
 #[derive(Clone, Copy)]
 pub(crate) struct CurveFields {
     pub points: FieldId,
@@ -165,7 +179,7 @@ pub(crate) struct CurveFields {
     pub stops: FieldId,
 }
 
-/// The arguments that curves and snakes have in common.
+/// Arguments of both curves and snakes.
 pub(crate) struct CurveOptions<T> {
     pub fields: CurveFields,
     pub tolerance: T,
@@ -197,12 +211,12 @@ pub(crate) struct CurveOptions<T> {
     pub bound: Option<Arc<str>>,
     pub count: Option<usize>,
     pub steps: Option<usize>,
-    /// Least move, least drop, and the gap at which single steps end.
+    /// `least_move`, `least_drop` and `stop_gap`.
     pub stops: [T; 3],
     pub stop_pieces: bool,
 }
 
-/// The options of a kind that was made by `shared_options!` with the groups of curves.
+/// Options of a kind made by `shared_options!` with the groups of curves.
 macro_rules! curve_options {
     ($this:expr, $points:ident) => {
         $crate::kinds::options::CurveOptions {
@@ -273,7 +287,7 @@ macro_rules! curve_options {
 }
 pub(crate) use curve_options;
 
-/// Refuses derivatives by an argument that stays as it is.
+/// Refuses derivatives with respect to a constant argument.
 pub(crate) fn constant<T: Real>(
     what: &'static str,
     field: FieldId,

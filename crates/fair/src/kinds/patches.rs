@@ -1,4 +1,4 @@
-//! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
+//! `FairPatches` and `NetSurf`: surfaces with common edges, faired together.
 
 use super::figures::FairFigures;
 use super::options::shared_options;
@@ -11,21 +11,20 @@ use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, Surf
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
-/// What rounding moves, as a share of the size.
+/// Move by rounding, relative to the size.
 const ROUNDING: f64 = 1e-13;
 
 shared_options! {
     {
-        /// Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
-        /// on across the edges.
+        /// Surfaces with common edges, faired together within a tolerance, with continuous tangent
+        /// planes or curvature across the edges.
         ///
-        /// Each grid of points is a surface; where a side of one has the same points as a side of another (or
-        /// of itself), in either direction, they share a seam. All points of all surfaces move at once, those
-        /// of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
-        /// seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
-        /// or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
-        /// surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
-        /// list of the faired surfaces: `NetSurf` makes one an object.
+        /// Each grid of points is a surface; two sides with the same points, in either direction,
+        /// form a seam (also two sides of one surface). All points move together, so that the sum
+        /// of the measure over all curves of the nets is minimal. `seams` is the continuity across
+        /// seams; the ratio of the parameter speeds on both sides is that of the given surfaces.
+        /// Corners that are not on a seam keep position, tangents and twist. The value is the list
+        /// of the faired surfaces: `NetSurf` makes one an object.
         #[derive(Kind)]
         #[kind(
             class = List,
@@ -42,36 +41,37 @@ shared_options! {
         /// Grids of points, each at least degree + 2 in each direction.
         #[field(min_items = 1)]
         surfaces: Vec<PointGrid<T>>,
-        /// Largest move of control points; 0 leaves all unchanged.
+        /// Largest move of control points, in units of length; 0: unchanged.
         #[field(min = 0)]
         tolerance: T,
-        /// The measure to minimise; see `FairCurve`.
+        /// Measure to minimise; see `FairCurve`.
         #[field(default = "second")]
         measure: Arc<str>,
-        /// Meaning of the points: "fit" or "control".
+        /// Role of the points: "fit" (interpolated, then faired) or "control" (control points).
         #[field(default = "fit")]
         r#as: Arc<str>,
-        /// Polynomial degree, in both directions or along u.
+        /// Polynomial degree along u, and along v without `degree_v`.
         #[field(default = 3, min = 2, max = 9)]
         degree: usize,
         /// Continuity across seams: "position", "tangent" or "curvature".
         #[field(default = "curvature")]
         seams: Arc<str>,
-        /// Kept at rims that are not seams; see `FairSurf`.
+        /// Condition at rims that are not seams; see `FairSurf`.
         #[field(default = "corners")]
         rims: Rims,
-        /// "fairest", or "near": where all lines of all grids are exact (lines, conics, plane cubics, helices)
-        /// these move no farther than continuity across the seams asks for, give or take a factor of eight.
+        /// "fairest" (minimum of the measure), or "near": the same, except that grids whose lines
+        /// are all exact (lines, conics, plane cubics, helices) move only as far as the continuity
+        /// across seams requires, within a factor of 8.
         #[field(default = "near")]
         goal: Arc<str>,
-        /// Polynomial degree along v, if it is another than along u.
+        /// Polynomial degree along v. Default: `degree`.
         #[field(default, min = 2, max = 9)]
         degree_v: Option<usize>,
     }
     [along]
     {
-        /// What the tolerance bounds: "points", the move of each control point, or "curve", that of the surfaces, which
-        /// leaves control points more room.
+        /// Quantity that the tolerance bounds: "points" (move of each control point) or "curve"
+        /// (move of the surfaces, which allows larger moves of control points).
         #[field(default = "points")]
         bound: Arc<str>,
     }
@@ -158,7 +158,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
             sheets.push(sheet);
             given.extend(net);
         }
-        // A rim that is a seam is the seam's business.
+        // Rims that are seams have only the seam's conditions.
         let seams = Seam::found(&sheets, keeps);
         for seam in &seams {
             for k in 0..2 {
@@ -198,7 +198,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 .in_field(Self::SURFACES),
             e => fault(e, &places),
         };
-        // Of exact surfaces the smallest move that lets them run on.
+        // Exact surfaces: the smallest tolerance, in powers of 8, that admits the continuity.
         let size = given.iter().map(|p| p.re().norm()).fold(0.0, f64::max);
         let tries = (0..16).map(|k| ROUNDING * size * f64::powi(8.0, k));
         let smaller = tries.filter(|&t| exact && t < self.tolerance.re());
@@ -221,10 +221,10 @@ impl<T: Real> Build<T> for FairPatches<T> {
     }
 }
 
-/// One surface of several that are faired together.
+/// One surface of a `FairPatches`, as an object.
 ///
-/// Its members are `deviation` (how far its control points moved) and, of all surfaces together, `value`,
-/// `gap` and `active`.
+/// Members: `deviation` (largest move of its control points) and, for all surfaces together,
+/// `value`, `gap` and `active`; see `FairCurve`.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -234,9 +234,9 @@ impl<T: Real> Build<T> for FairPatches<T> {
                FairPatches n({g}, 0.02); NetSurf s(n, 1);"
 )]
 pub struct NetSurf<T: Real> {
-    /// The surfaces, a `FairPatches`.
+    /// A `FairPatches`.
     net: Value<T>,
-    /// The number of the surface in their list, from 1.
+    /// Number of the surface in the list, from 1.
     #[field(min = 1)]
     index: usize,
 }

@@ -1,4 +1,4 @@
-//! The shapes that the kinds make.
+//! Shapes of the kinds.
 
 use crate::Space;
 use moldloft_num::trace::{Key, Trace};
@@ -6,13 +6,13 @@ use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::SurfaceRef;
 use moldloft_spline::{BSplineCurve, SplineError};
 
-/// A spline curve of its own that begins and ends at point objects.
+/// A spline curve that begins and ends at point objects.
 pub(crate) struct AnchoredSpline<C> {
     pub curve: C,
     pub ends: [Option<Key>; 2],
 }
 
-/// The curve of a space and its control points, over [0, 1].
+/// Spline curve over [0, 1].
 pub(crate) fn curve<T: Real>(
     space: &Space,
     points: &[Vec3<T>],
@@ -21,7 +21,7 @@ pub(crate) fn curve<T: Real>(
     BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), None)
 }
 
-/// The rational curve of a space, its control points and their weights.
+/// Rational spline curve over [0, 1].
 pub(crate) fn rational<T: Real>(
     space: &Space,
     points: &[Vec3<T>],
@@ -49,7 +49,7 @@ impl<T: Real, C: Curve<T>> Curve<T> for AnchoredSpline<C> {
     moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
-/// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameters of a surface.
+/// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameter plane of a surface.
 pub(crate) struct SplineOnSurface<T: Real, P> {
     pub surface: SurfaceRef<T>,
     pub path: P,

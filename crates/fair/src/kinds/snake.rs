@@ -1,4 +1,4 @@
-//! `FairSnake`: a fair curve in the parameters of a surface.
+//! `FairSnake`: a fair curve on a surface.
 
 use super::faired::{CurveContext, FairedSpline};
 use super::options::{curve_options, shared_options};
@@ -31,12 +31,11 @@ impl<T: Real> FromValue<T> for SurfacePoint<T> {
 
 shared_options! {
     {
-        /// A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
+        /// A fair curve on a surface near magnets: its path in the parameter plane is faired.
         ///
-        /// The path passes through the magnets' parameters before it is faired; the tolerance is a
-        /// distance in the parameter plane, and so are its members. Its options are those of `FairCurve`, in that plane:
-        /// directions are {u, v, 0}, "x" is u and "y" is v. It joins no other curves, which are in space and not
-        /// in the plane, and keeps no area or volume, which would be those of the plane. See `FairCurve`.
+        /// The tolerance and the members are distances in the parameter plane. The options are
+        /// those of `FairCurve`, applied to the path: directions are {u, v, 0}, "x" is u and "y" is
+        /// v. There are no `joins` and no `keep`, which refer to space.
         #[derive(Kind)]
         #[kind(
             class = Snake,
@@ -48,54 +47,56 @@ shared_options! {
         pub struct FairSnake<T: Real>
     }
     {
-        /// Magnets of one surface, at least degree + 2 of them (closed: 2 degree + 2).
+        /// Magnets on one surface, at least degree + 2 (closed: 2 degree + 2).
         #[field(min_items = 3)]
         magnets: Vec<SurfacePoint<T>>,
-        /// Largest distance from the path through the magnets, in u and v.
+        /// Largest distance of each magnet from the path, in u and v; 0: interpolation.
         #[field(min = 0)]
         tolerance: T,
-        /// The measure to minimise; see `FairCurve`.
+        /// Measure to minimise; see `FairCurve`.
         #[field(default)]
         measure: Option<Arc<str>>,
-        /// Kept at the ends: "position" (the default), "tangent" or "curvature".
+        /// Condition at the ends: "position", "tangent" or "curvature". Default: "position".
         #[field(default)]
         ends: Option<Arc<str>>,
-        /// "optimum", or a mode of single steps; see `FairCurve`.
+        /// "optimum", or a stepwise mode; see `FairCurve`.
         #[field(default = "optimum")]
         mode: Arc<str>,
         /// Polynomial degree of the path.
         #[field(default = 3, min = 2, max = 9)]
         degree: usize,
-        /// How magnets get their parameters along the path, as for `FairCurve`: "chord", "centripetal", "x" (u) or
-        /// "y" (v) where it rises, "index" or "curvature"; "auto" is "chord", of single steps "index".
+        /// Parametrisation of the magnets along the path, as for `FairCurve`: "chord",
+        /// "centripetal", "x" (u) or "y" (v) if monotone, "index" or "curvature". "auto" is
+        /// "chord", for single steps "index".
         #[field(default = "auto")]
         spacing: Arc<str>,
     }
     [goal] [share]
     {
-        /// Numbers of magnets, from 1, that are intended breaks: the path has corners there.
+        /// Numbers of magnets, from 1, that are intended breaks: they do not move, and the path has
+        /// corners there.
         #[field(default)]
         breaks: Option<Vec<usize>>,
     }
     [curve] [along] [knots]
     {
-        /// Magnets of the surface that the path passes through at `through_at`. No derivatives.
+        /// Magnets on the path at `through_at`. No derivatives.
         #[field(default)]
         through: Option<Vec<SurfacePoint<T>>>,
-        /// Meaning of the magnets; see `FairCurve`.
+        /// Role of the magnets; see `FairCurve`.
         #[field(default = "fit")]
         r#as: Arc<str>,
-        /// 1 for a closed path, whose first magnet is not repeated.
+        /// 1: closed path; the first magnet is not repeated.
         #[field(default = 0, min = 0, max = 1)]
         closed: usize,
     }
 }
 
-/// The ways in which magnets get parameters along a path.
+/// Values of `spacing`.
 const SPACINGS: [&str; 7] = ["auto", "chord", "centripetal", "x", "y", "index", "curvature"];
 
 impl<T: Real> FairSnake<T> {
-    /// Refuses magnets of another surface.
+    /// Refuses magnets on another surface.
     fn check_surface(
         &self,
         magnets: &[SurfacePoint<T>],
@@ -123,7 +124,7 @@ impl<T: Real> FairSnake<T> {
         Ok(())
     }
 
-    /// Refuses directions that leave the parameter plane.
+    /// Refuses directions with a z component.
     fn check_plane(&self) -> Result<(), CallError> {
         let tangents = self.tangents.iter().flatten().map(|d| (d, Self::TANGENTS));
         let all = self.along.iter().map(|d| (d, Self::ALONG)).chain(tangents);

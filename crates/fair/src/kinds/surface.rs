@@ -1,4 +1,4 @@
-//! `FairSurf`: the faired surface of a grid of points.
+//! `FairSurf`: a fair surface near a grid of points.
 
 use super::figures::FairFigures;
 use super::moving_surface::MovingSurface;
@@ -20,7 +20,6 @@ use moldloft_registry::{
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
-/// A grid of points.
 pub(super) struct PointGrid<T: Real>(pub Arc<Vectors<T>>);
 
 impl<T: Real> FromValue<T> for PointGrid<T> {
@@ -35,13 +34,13 @@ impl<T: Real> FromValue<T> for PointGrid<T> {
 
 shared_options! {
     {
-        /// A fair B-spline surface within a tolerance of the one through a grid of points.
+        /// A fair B-spline surface within a tolerance of a grid of points.
         ///
-        /// All rows and columns of the net are faired at once: the sum of the measure over both
-        /// directions is the least within the tolerance. The four corners keep position, tangents and
-        /// twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
-        /// constant v, then those of constant u, `passes` times over, three steps per point: its result
-        /// depends on that order and may jump where two knots tie.
+        /// All rows and columns of the control net are faired together: the sum of the measure over
+        /// both directions is minimal within the tolerance. The four corners keep position,
+        /// tangents and twist. Mode "faithful" fairs curve after curve, those of constant v first,
+        /// then those of constant u, in `passes` passes of three steps per point; its result
+        /// depends on this order and may jump where two knots are equally bad.
         #[derive(Kind)]
         #[kind(
             class = Surface,
@@ -53,115 +52,116 @@ shared_options! {
         pub struct FairSurf<T: Real>
     }
     {
-        /// A grid of points, at least degree + 2 in each direction.
+        /// Grid of points, at least degree + 2 in each direction.
         points: PointGrid<T>,
-        /// Largest distance of each point from the surface (`as = "control"`, of the surface from the one
-        /// with these control points); 0 leaves it unchanged.
+        /// Largest distance of each point from the surface (`as = "control"`: of the surface from
+        /// the initial one), in units of length; 0: unchanged.
         #[field(min = 0)]
         tolerance: T,
-        /// The measure to minimise; see `FairCurve`.
+        /// Measure to minimise; see `FairCurve`.
         #[field(default = "second")]
         measure: Arc<str>,
-        /// Meaning of the points: "fit" or "control".
+        /// Role of the points: "fit" (interpolated, then faired) or "control" (control points).
         #[field(default = "fit")]
         r#as: Arc<str>,
-        /// Polynomial degree, in both directions or along u.
+        /// Polynomial degree along u, and along v without `degree_v`.
         #[field(default = 3, min = 2, max = 9)]
         degree: usize,
-        /// Rows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
-        /// nothing is smoothed across them. A surface through its points has a sharp edge there.
+        /// Rows (numbers of points along u, from 1) that are knuckle lines: their points do not
+        /// move, nothing is smoothed across them, and the surface has a sharp edge there.
         #[field(default)]
         breaks_u: Option<Vec<usize>>,
-        /// The same along v.
+        /// Columns that are knuckle lines; see `breaks_u`.
         #[field(default)]
         breaks_v: Option<Vec<usize>>,
-        /// "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for nets too
-        /// large for the optimum. Sweeps have no derivatives.
+        /// "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for
+        /// nets too large for the optimum. Sweeps have no derivatives.
         #[field(default = "optimum")]
         mode: Arc<str>,
-        /// Passes of the faithful mode.
+        /// Passes of the mode "faithful".
         #[field(default = 1, min = 1, max = 100)]
         passes: usize,
-        /// Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
-        /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
+        /// Condition at the rims: "corners" (only these are kept), "position", "tangent" or
+        /// "curvature", or a list of four for v = 0, u = 1, v = 1 and u = 0.
         #[field(default = "corners")]
         rims: Rims,
-        /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
-        /// it rational and stay as they are. They count as constants: derivatives do not go through them.
+        /// Positive weights of the control points (`as = "control"`), constant, a grid of the same
+        /// shape as the points: the surface is rational. No derivatives with respect to them.
         #[field(default)]
         weights: Option<NumberGrid<T>>,
-        /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
-        /// decreasing; constants too.
+        /// Knots along u of the control points (`as = "control"`), constant, non-decreasing: number
+        /// of control points + degree + 1.
         #[field(default)]
         knots_u: Option<Vec<T>>,
-        /// The same along v.
+        /// Knots along v; see `knots_u`.
         #[field(default)]
         knots_v: Option<Vec<T>>,
-        /// How points get their parameters, as for `FairCurve`: the mean over all lines of the grid in
-        /// each direction. The mode "faithful" takes "index", and so do control points.
+        /// Parametrisation, as for `FairCurve`: the mean over all lines of the grid in each
+        /// direction. The mode "faithful" and control points use "index".
         #[field(default = "chord")]
         spacing: Arc<str>,
     }
     [goal]
     [along]
     {
-        /// Polynomial degree along v, if it is another than along u.
+        /// Polynomial degree along v. Default: `degree`.
         #[field(default, min = 2, max = 9)]
         degree_v: Option<usize>,
-        /// 1 for a surface that is closed along u, whose first row of points is not repeated.
+        /// 1: closed along u; the first row of points is not repeated.
         #[field(default = 0, min = 0, max = 1)]
         closed_u: usize,
-        /// The same along v.
+        /// 1: closed along v; the first column of points is not repeated.
         #[field(default = 0, min = 0, max = 1)]
         closed_v: usize,
     }
     [share]
     {
-        /// Tolerances of the points one by one, a grid like these, instead of `tolerance`.
+        /// Tolerances of the individual points, a grid of the same shape, instead of `tolerance`.
         #[field(default)]
         tolerances: Option<NumberGrid<T>>,
-        /// Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the surface passes
-        /// through.
+        /// Numbers, from 1, of points on the surface: (i - 1) n + j in a grid [m, n].
         #[field(default)]
         fixed: Option<Vec<usize>>,
-        /// Points that the surface passes through at `through_u`, `through_v`. No derivatives.
+        /// Points on the surface at `through_u`, `through_v`. No derivatives.
         #[field(default)]
         through: Option<Vec<Point<T>>>,
-        /// Parameters along u, from 0 to 1, of `through`.
+        /// Parameters of `through` along u, from 0 to 1.
         #[field(default)]
         through_u: Option<Vec<T>>,
-        /// Parameters along v of `through`.
+        /// Parameters of `through` along v, from 0 to 1.
         #[field(default)]
         through_v: Option<Vec<T>>,
-        /// Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
+        /// Normal directions of the surface at `normals_u`, `normals_v`. No derivatives.
         #[field(default)]
         normals: Option<Vec<Vec3<T>>>,
-        /// Parameters along u, from 0 to 1, of `normals`.
+        /// Parameters of `normals` along u, from 0 to 1.
         #[field(default)]
         normals_u: Option<Vec<T>>,
-        /// Parameters along v of `normals`.
+        /// Parameters of `normals` along v, from 0 to 1.
         #[field(default)]
         normals_v: Option<Vec<T>>,
-        /// What it keeps of the surface through the points, to first order: "volume" (the displacement of a
-        /// hull) or "area". No derivatives.
+        /// Quantities of the surface through the points that are preserved to first order: "volume"
+        /// (the displacement of a hull) or "area". No derivatives.
         #[field(default)]
         keep: Option<Vec<Arc<str>>>,
-        /// What the tolerance bounds in the optimum: "data", the distance of each point from the surface (the
-        /// default of points on it); "points", the move of each control point; "curve", that of the surface from
-        /// the one through the points, which leaves control points more room.
+        /// Quantity that the tolerance bounds in the optimum: "data" (distance of each point from
+        /// the surface; default for fits), "points" (move of each control point) or "curve"
+        /// (distance of the surface from the initial one, which allows larger moves of control
+        /// points).
         #[field(default)]
         bound: Option<Arc<str>>,
-        /// Local steps per point of each curve in the faithful mode (3), or sweeps (50).
+        /// Steps per point of each curve in the mode "faithful" (default 3), or number of sweeps
+        /// (default 50).
         #[field(default, min = 1, max = 100_000)]
         steps: Option<usize>,
-        /// Which curves come first in a pass of the faithful mode: "vu", those of constant v (the default), or
-        /// "uv".
+        /// Order of the curves in a pass of the mode "faithful": "vu" (those of constant v first;
+        /// default) or "uv".
         #[field(default)]
         order: Option<Arc<str>>,
     }
 }
 
-/// The fields of what only surfaces near their points have.
+/// Fields of options of surfaces near their points.
 const TOLERANCES: FieldId = FairSurf::<f64>::TOLERANCES;
 const THROUGH: FieldId = FairSurf::<f64>::THROUGH;
 const NORMALS: FieldId = FairSurf::<f64>::NORMALS;
@@ -169,12 +169,11 @@ const KEEP: FieldId = FairSurf::<f64>::KEEP;
 const GOAL: FieldId = FairSurf::<f64>::GOAL;
 const SHARE: FieldId = FairSurf::<f64>::SHARE;
 
-/// The fields of weights and knots.
 const WEIGHTS: FieldId = FairSurf::<f64>::WEIGHTS;
 const KNOTS: [FieldId; 2] = [FairSurf::<f64>::KNOTS_U, FairSurf::<f64>::KNOTS_V];
 
 impl<T: Real> FairSurf<T> {
-    /// Weights and knots, where they have a meaning.
+    /// Weights and knots; refused unless `as = "control"`.
     fn own(&self, shape: ArrayShape) -> Result<[GivenKnots; 2], CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
@@ -218,7 +217,6 @@ impl<T: Real> FairSurf<T> {
 }
 
 impl<T: Real> FairSurf<T> {
-    /// The tolerances of the points of a grid.
     fn tolerances_of(&self, shape: ArrayShape, count: usize) -> Result<Vec<T>, CallError> {
         let mut all = vec![self.tolerance; count];
         if let Some(own) = &self.tolerances {
@@ -244,7 +242,6 @@ impl<T: Real> FairSurf<T> {
         Ok(all)
     }
 
-    /// The conditions on a surface near its points.
     fn demands(&self) -> Result<SurfaceDemands, CallError> {
         let through = PlacedValues {
             what: "through",
@@ -262,7 +259,7 @@ impl<T: Real> FairSurf<T> {
         SurfaceDemands::of(through, normals, (keep, KEEP))
     }
 
-    /// How it is faired; `data` says whether points are data at parameters that follow them.
+    /// `data` is true if the points are data whose parameters depend on them.
     fn method(&self, data: bool) -> Result<SurfaceMethod, CallError> {
         MethodOptions {
             mode: (&self.mode, Self::MODE),
@@ -275,7 +272,7 @@ impl<T: Real> FairSurf<T> {
         .method()
     }
 
-    /// The first of what only surfaces near their points have that is given.
+    /// The first given option that only surfaces near their points accept.
     fn near_only(&self) -> Option<(&'static str, FieldId)> {
         let given = [
             (self.tolerances.is_some(), "tolerances", TOLERANCES),
@@ -291,7 +288,7 @@ impl<T: Real> FairSurf<T> {
     }
 }
 
-/// What the rims keep, in the order of the edges of a surface.
+/// Conditions at the rims, in the order v = 0, u = 1, v = 1, u = 0.
 pub(super) struct Rims(pub [EndContinuity; 4]);
 
 impl<T: Real> FromValue<T> for Rims {
@@ -322,11 +319,11 @@ impl<T: Real> FromValue<T> for Rims {
     }
 }
 
-/// A grid of points, as the control points of the spline of `degree` through each of its rows along
-/// the first index; the space, and which rows of control points are breaks.
+/// Control points of the splines through the lines of a grid along its first index: the space, the
+/// points, and the rows that are breaks.
 pub(super) type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
 
-/// Fits all lines of a grid `[m, n]` along its first index.
+/// Interpolates all lines of a grid `[m, n]` along its first index.
 pub(super) fn fitted<T: Real>(
     degree: usize,
     grid: &[Vec3<T>],
@@ -350,14 +347,14 @@ pub(super) fn fitted<T: Real>(
     Ok((space, out, marks))
 }
 
-/// The lines of a grid in both directions, and which of them are closed.
+/// Indices of the lines of a grid in both directions, and whether they are closed.
 pub(super) fn lines([m, n]: [usize; 2], closed: [bool; 2]) -> Vec<(Vec<usize>, bool)> {
     let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), closed[1]));
     let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), closed[0]));
     rows.chain(columns).collect()
 }
 
-/// The grid with its indices exchanged.
+/// The transposed grid.
 pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
     let n = grid.len() / m;
     (0..n).flat_map(|j| (0..m).map(move |i| grid[i * n + j])).collect()
@@ -530,7 +527,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
             };
             let findings = line_findings(&data.points, &lines, &of_breaks);
             let figures = FairFigures::of_surface(&fit, &data.limit.radii, findings.len());
-            // Others see a closed direction as an open one that repeats its first points.
+            // Outside, a closed direction is an open one that repeats its first points.
             let spaces = data.layouts.each_ref().map(|layout| &layout.space);
             let along = |d: usize, net: &[Vec3<T>], count: usize| {
                 let across = net.len() / count;

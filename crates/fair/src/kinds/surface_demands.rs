@@ -1,11 +1,10 @@
-//! What a model asks of a surface near its grid of points besides the tolerance.
+//! Conditions on a surface near its grid of points, besides the tolerance.
 
 use crate::{Condition, FairError, GridData};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, CallError, Class, FieldId, FromValue, Point, Value};
 use std::sync::Arc;
 
-/// A grid of numbers.
 pub(super) struct NumberGrid<T> {
     pub shape: ArrayShape,
     pub items: Vec<T>,
@@ -21,7 +20,6 @@ impl<T: Real> FromValue<T> for NumberGrid<T> {
     }
 }
 
-/// A condition on a surface.
 #[derive(Clone, Copy, Debug)]
 enum SurfaceDemand {
     Through([f64; 2], Vec3<f64>),
@@ -30,13 +28,13 @@ enum SurfaceDemand {
     Volume,
 }
 
-/// All conditions on a surface, and the field of each.
+/// All conditions, with the field and item of each.
 #[derive(Default)]
 pub(super) struct SurfaceDemands {
     all: Vec<(SurfaceDemand, FieldId, usize)>,
 }
 
-/// Values with their parameters along u and v, as the fields have them.
+/// Values and their parameters along u and v, as given in the fields.
 pub(super) struct PlacedValues<'a, T: Real> {
     pub what: &'static str,
     pub values: Vec<Vec3<T>>,
@@ -45,7 +43,7 @@ pub(super) struct PlacedValues<'a, T: Real> {
 }
 
 impl SurfaceDemands {
-    /// Points that the surface passes through, its normals, and what it keeps.
+    /// Conditions from points, normals and preserved quantities.
     pub fn of<T: Real>(
         through: PlacedValues<'_, T>,
         normals: PlacedValues<'_, T>,
@@ -122,7 +120,7 @@ impl SurfaceDemands {
         self.all.is_empty()
     }
 
-    /// The linear conditions on the surface through the data, and which demand each is of.
+    /// Linear conditions on the surface through the data, and the index of the demand behind each.
     pub fn conditions(&self, data: &GridData) -> Result<(Vec<Condition>, Vec<usize>), FairError> {
         let (mut out, mut owners) = (Vec::new(), Vec::new());
         if self.all.is_empty() {
@@ -142,7 +140,7 @@ impl SurfaceDemands {
         Ok((out, owners))
     }
 
-    /// Conditions that contradict each other, at the first of them.
+    /// Error for contradicting conditions, at the first of them.
     pub fn refused(&self, conditions: &[usize], owners: &[usize], miss: f64) -> CallError {
         let message = format!("conditions cannot hold within the tolerance (missed by {miss:.3e})");
         let fault = CallError::new("contradiction", message)
@@ -155,7 +153,6 @@ impl SurfaceDemands {
     }
 }
 
-/// The points of a list of points.
 pub(super) fn places<T: Real>(points: &Option<Vec<Point<T>>>) -> Vec<Vec3<T>> {
     points.iter().flatten().map(|p| p.xyz).collect()
 }

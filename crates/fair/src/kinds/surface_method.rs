@@ -1,40 +1,39 @@
-//! How a surface of a model is faired: near its points, or its net by one of the methods for nets.
+//! Algorithm for a surface: near its points, or one that moves control points.
 
 use super::unknown;
 use crate::Bound;
 use moldloft_registry::{CallError, FieldId};
 use std::sync::Arc;
 
-/// Local steps per point of each curve, as the report of 1991 has them, and sweeps.
+/// Default steps per point of each curve, and default number of sweeps.
 const STEPS: usize = 3;
 const SWEEPS: usize = 50;
 
-/// The way to a fair surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SurfaceMethod {
-    /// The optimum with a bound on the distance of each point from the surface.
+    /// Optimum with a bound on the distance of each point from the surface.
     NearPoints,
-    /// The optimum of the net under a bound.
+    /// Optimum of the control net.
     Joint(Bound),
-    /// Curve after curve by local steps.
+    /// Curve after curve by single steps.
     Passes { passes: usize, steps: usize, along_v_first: bool },
-    /// All points in order.
+    /// Number of sweeps over all points in order.
     Sweeps(usize),
 }
 
-/// The options of a method as they are written, and their fields.
+/// Options of a method as written, and their fields.
 pub(super) struct MethodOptions<'a> {
     pub mode: (&'a str, FieldId),
     pub bound: (&'a Option<Arc<str>>, FieldId),
     pub order: (&'a Option<Arc<str>>, FieldId),
     pub steps: (Option<usize>, FieldId),
     pub passes: usize,
-    /// Whether the points are data, at parameters that follow them.
+    /// True if the points are data whose parameters depend on them.
     pub data: bool,
 }
 
 impl MethodOptions<'_> {
-    /// The method that they ask for; options of another one are refused.
+    /// The selected method; options of another one are refused.
     pub fn method(&self) -> Result<SurfaceMethod, CallError> {
         let (mode, field) = self.mode;
         let other = |option: &str, needed: &str, field: FieldId| {

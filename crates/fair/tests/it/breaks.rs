@@ -24,7 +24,7 @@ fn a_knuckle_is_found_and_kept_to_the_bit() {
     let [Finding::Corner { index, turn }] = found[..] else { panic!("{found:?}") };
     assert_eq!(index, at);
     assert!((turn.y + 1.0).abs() < 0.1, "{turn:?}");
-    // Without a mark it is rounded first; with it, it stays and the noise goes.
+    // Without a mark it is rounded first; with it, it stays and the noise is removed.
     let first = KnotRemovalOptions { log: true, ..KnotRemovalOptions::faithful(1) };
     let smeared = knot_removal(&plain, &first).unwrap();
     assert!((smeared.log[0].index as usize).abs_diff(at) <= 1);

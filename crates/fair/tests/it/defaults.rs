@@ -5,7 +5,7 @@ use crate::truth::Lcg;
 use moldloft_fair::*;
 use moldloft_num::Vec3;
 
-/// Slender shapes, and noses and ship curves: a place for a share of the way, and the noise as a share of the
+/// Slender shapes, noses and ship curves: a point for a parameter, and the noise relative to the
 /// length.
 type Form = (&'static str, fn(f64) -> [f64; 2], f64);
 
@@ -170,7 +170,7 @@ fn one_draw_turns_into_another_without_jumps() {
         let mut worst = 0.0f64;
         for k in 1..=steps {
             let now = sampled(f64::from(k) / f64::from(steps));
-            // Across the curve: what moves along it is a parameter's.
+            // Across the curve; motion along it is a change of parameter.
             let across = |i: usize| {
                 let off = now[i].point - before[i].point;
                 let along = before[i].derivatives[0].normalized().unwrap_or_default();

@@ -94,8 +94,8 @@ fn derivatives_are_those_of_finite_differences() {
                         let wider = (moved(3.0 * h) - moved(-3.0 * h)) * (0.5 / (3.0 * h));
                         let got = exact.map(|x| x.eps[direction]);
                         let off = (got - centred).norm();
-                        // Ranked steps jump where another knot comes first, and along a barely
-                        // bent curve the solver's last digits are worth little.
+                        // Ranked steps jump where the order of knots changes, and along an almost
+                        // straight curve the solver's last digits are inaccurate.
                         let flips = (wider - centred).norm() > 3e-3 * (centred.norm() + 0.1);
                         if flips {
                             continue;

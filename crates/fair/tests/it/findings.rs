@@ -62,15 +62,16 @@ fn wrong_digits_are_found_at_their_place() {
             }
         }
     }
-    // Of five deviations a detector that knows the deviation finds four of five: the score from which
-    // a point is proposed is 4.1 for so many points, and the noise of the point itself adds one.
+    // A detector that knows the deviation finds four of five errors of five deviations: the
+    // threshold of the score is 4.1 for this number of points, and the noise of the point itself
+    // adds one.
     assert!(100 * found[0] >= 55 * planted, "{found:?} of {planted}");
     assert!(100 * found[1] >= 98 * planted, "{found:?} of {planted}");
     assert!(100 * clean >= 98 * planted, "{clean} of {planted} without a false finding");
 }
 
-/// What was found at aerofoils of few points: a nose that these do not resolve is no knuckle and no
-/// wrong digit, and neither is the straight end of a trailing edge.
+/// Aerofoils of few points: a nose that these do not resolve is neither a knuckle nor a wrong
+/// digit; the same holds for the straight end of a trailing edge.
 #[test]
 fn unresolved_noses_are_no_findings() {
     for thickness in [0.02, 0.06, 0.12, 0.2] {
@@ -118,7 +119,7 @@ fn a_knuckle_is_no_wrong_digit() {
 /// reading each: the half-breadth of the sheer at station 8 and its height at station 13.
 #[test]
 fn wrong_readings_of_a_straight_frame() {
-    // A row of eighths with a slip of an inch: what a copied neighbour looks like.
+    // A row of eighths with a slip of an inch, as from a copied neighbour.
     let row: Vec<_> = (0..17)
         .map(|k| {
             let x = f64::from(k);
@@ -220,8 +221,8 @@ fn wrong_digits_of_short_lists() {
     assert!(100 * stray <= 2 * all, "{stray} false ones in {all}");
 }
 
-/// The error that is said to be found is found, a third of it is not, and it is the same where there is
-/// such an error.
+/// An error of the detectable size is found, a third of it is not, and the size is the same with
+/// such an error present.
 #[test]
 fn what_is_detectable_is_found() {
     let (mut asked, mut found, mut early, mut same) = (0, 0, 0, 0);

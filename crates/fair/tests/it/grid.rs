@@ -1,4 +1,4 @@
-//! Grids of data at any spacing: what is exact stays, tolerances hold, derivatives are those of
+//! Grids of data at any spacing: exact data do not move, tolerances hold, derivatives agree with
 //! differences.
 
 use moldloft_fair::*;
@@ -96,7 +96,7 @@ fn noise_goes_and_tolerances_hold() {
     let wigley = |x: f64, z: f64| 0.9 * (1.0 - x * x) * (1.0 - (1.0 - z) * (1.0 - z));
     let round =
         |x: f64, z: f64| 0.9 * (1.0 - x.abs().powi(3)) * (1.0 - 0.55 * (1.0 - z) * (1.0 - z));
-    // Read to 0.01, as in the tables of hulls: how many times nearer to the truth than the data.
+    // Read to 0.01, as in tables of offsets: ratio of the errors of data and surface.
     for (hull, least) in [(&wigley as &dyn Fn(f64, f64) -> f64, 3.0), (&round, 1.0)] {
         let exact = offsets(&xs, &zs, hull);
         let read: Vec<_> =
@@ -209,7 +209,7 @@ fn surfaces_keep_near_data_that_the_measure_does_not_have() {
         }
     }
     assert!(met.iter().all(|&m| m > 2), "{met:?}");
-    // Between these the budget moves with what the fairest takes.
+    // Between these the budget depends on the squares of the fairest.
     let (measure, goal) = (Measure::Variation, Goal::Near(0.8));
     for cases in moving {
         let by = |(points, t): &(Vec<_>, _)| {

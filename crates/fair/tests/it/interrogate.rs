@@ -88,8 +88,8 @@ fn circles_have_one_piece_at_any_places() {
         assert_eq!(count(&|a| Vec3::of(2.0 * a.cos(), 2.0 * a.sin(), 0.0)), 1, "circle {round}");
         assert_eq!(count(&|a| Vec3::of(a.cos(), a.sin(), 0.3 * a)), 1, "helix {round}");
     }
-    // What is no circle has its own pieces: five once round from a place where the curvature is neither
-    // least nor greatest, whatever a cubic of few points does between these.
+    // An oval has pieces of its own: five around from a point where the curvature is neither
+    // minimal nor maximal, whatever a cubic of few points does between these.
     let oval = |wide: f64, n: usize, off: &mut dyn FnMut(usize) -> f64| {
         let points: Vec<_> = (0..=n)
             .map(|k| 0.4 + std::f64::consts::TAU * (k as f64 + off(k)) / n as f64)
@@ -113,8 +113,8 @@ fn circles_have_one_piece_at_any_places() {
             assert!((least..=7).contains(&found), "{wide} {n}, jitter: {found}");
         }
     }
-    // At places at random a long span is felt beyond the knots beside it. Spans that leave out what makes an
-    // oval one show fewer pieces, tips between far points more.
+    // At random spacing a long span has influence beyond the adjacent knots. Spans that skip the
+    // features of an oval show fewer pieces, tips between distant points more.
     for wide in [1.02, 1.1, 1.5] {
         let (n, draws) = (80, rounds / 2);
         let mut more = 0;
@@ -131,8 +131,8 @@ fn circles_have_one_piece_at_any_places() {
     }
 }
 
-/// Runs are counted with hysteresis, inflections where the curve turns over, cusps of the
-/// orthotomic stand there.
+/// Runs are counted with hysteresis, inflections at changes of sign, and cusps of the orthotomic
+/// are at inflections.
 #[test]
 fn counts_and_graphs() {
     assert_eq!(shape::monotone_runs(&[0.0, 1.0, 0.5, 2.0, 1.0], 1e-3), 4);

@@ -1,4 +1,4 @@
-//! Surfaces with common edges: what runs on across these, what is refused.
+//! Surfaces with common edges: continuity across these, and refusals.
 
 use crate::fixtures::*;
 use moldloft_fair::{
@@ -43,7 +43,7 @@ fn sheets(noise: f64, tolerance: f64) -> Vec<PatchNet> {
     vec![of(a, 10), of(b, 7)]
 }
 
-/// Bending of a surface across the seam: the second fundamental form and the metric, at one place.
+/// Bending of a surface across the seam: the second fundamental form and the metric, at one point.
 fn forms(s: &dyn Surface<f64>, u: f64, v: f64) -> (Vec3<f64>, [f64; 3]) {
     let j = s.jet(u, v, Order::Second);
     let n = j.u.cross(j.v).normalized().unwrap();
@@ -113,7 +113,7 @@ fn tangents_and_curvature_run_on_across_a_seam() {
     }
 }
 
-/// The seam may lie along any edge, in either direction; a third sheet joins the second.
+/// The seam may be any edge, in either direction; a third sheet joins the second.
 #[test]
 fn seams_are_found_wherever_they_are() {
     let straight = sheets(4e-3, 2e-2);
@@ -124,7 +124,7 @@ fn seams_are_found_wherever_they_are() {
         (seams, best.certificate.value)
     };
     let (_, wanted) = value(&straight);
-    // The second sheet turned: v runs along the hull backwards, u upwards or downwards.
+    // The second sheet in other orientations: v along the hull backwards, u upwards or downwards.
     for down in [false, true] {
         let mut turned = straight.clone();
         let [nu, nv] = [7, 8];
@@ -170,7 +170,7 @@ fn what_cannot_be_joined_is_refused() {
     rational[0].weights = Some(vec![1.0; 80]);
     assert!(said(&rational, seam).contains("rational"));
     assert!(Network::joined(&rational, &[Seam { keeps: EndContinuity::Position, ..seam }]).is_ok());
-    // A sheet that runs back over the other.
+    // A sheet that folds back over the other.
     let mut back = sheets.clone();
     let points = &sheets[0].points;
     back[1] = sheets[0].clone();

@@ -1,4 +1,4 @@
-//! Curves that run on from others with continuous curvature.
+//! Curves that continue others with continuous curvature.
 
 use crate::fixtures::*;
 use moldloft_fair::rows;
@@ -86,7 +86,7 @@ fn curvature_runs_on_at_both_ends() {
 #[test]
 fn derivatives_run_through_the_join() {
     let [fore, middle, _] = three();
-    // High differences are worth fewer digits, and need longer steps to show.
+    // High differences have fewer digits, and need longer steps.
     for (measure, band, h) in [("second", 1e-5, 1e-6), ("third", 1e-4, 1e-6), ("jumps", 1e-3, 1e-5)]
     {
         let make = |fore: &[Vec3<f64>], middle: &[Vec3<f64>], tolerance: f64| {
@@ -157,7 +157,7 @@ fn what_cannot_be_joined_is_refused() {
     let (id, place, text) = fault(&middle, 1e-7, vec![all]);
     assert_eq!(id, "contradiction", "{text}");
     assert!(place.is_some_and(|p| p.0 == 9) && text.contains("tolerance"));
-    // A neighbour that comes from where the curve goes.
+    // A neighbour in the opposite direction.
     let back: Vec<_> = middle.iter().map(|p| *p + Vec3::of(0.0, 0.0, 0.01 * (p.x - 0.6))).collect();
     let back: Vec<_> = back.iter().map(|p| if *p == back[0] { middle[0] } else { *p }).collect();
     let (id, ..) = fault(&middle, 0.1, vec![joins(vec![neighbour(&back, false)])]);

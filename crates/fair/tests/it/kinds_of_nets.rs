@@ -1,4 +1,4 @@
-//! The kinds of nets and networks: what is shared, what is kept, what is refused.
+//! The kinds of nets and networks: common points, conditions, refusals.
 
 use crate::fixtures::*;
 use moldloft_fair::rows;
@@ -223,7 +223,7 @@ fn rims_keep_what_they_are_asked_to() {
         }
     };
     let before = make(0.0, Value::text("corners"), "optimum");
-    // Edges v = 0, u = 1, v = 1, u = 0 at a place of their own, and the derivative across.
+    // A point on each of the edges v = 0, u = 1, v = 1, u = 0, and the derivative across.
     let sides = |s: &moldloft_registry::SurfaceRef<f64>| {
         [(0.4, 0.0), (1.0, 0.4), (0.4, 1.0), (0.0, 0.4)].map(|(u, v)| {
             let j = s.jet(u, v, Order::Second);

@@ -165,7 +165,7 @@ fn waves(n: usize) -> Vec<Vec3<f64>> {
     (0..n).map(|i| wave(i as f64 / (n - 1) as f64)).collect()
 }
 
-/// How far the curve of data is off a shape, over a length.
+/// Distance of the curve of data from a shape, relative to a length.
 fn far(data: &Data, unit: f64, of: &dyn Fn(f64) -> Vec3<f64>) -> (f64, FairingReport, DataFit) {
     let (made, told) = faired(data);
     assert!(within(&made, &data.limit));
@@ -184,7 +184,7 @@ fn many_data_without_noise_stay() {
 
 #[test]
 fn many_data_with_normal_noise() {
-    // Of a tolerance of two and a half deviations some data are beyond; knots follow them.
+    // At a tolerance of two and a half deviations some data are beyond; knots follow them.
     let mut random = Lcg::new(3);
     let mut normal = || (0..12).map(|_| random.unit()).sum::<f64>() * 1e-3;
     let mut points = waves(2000);
@@ -243,7 +243,7 @@ fn few_or_other_data_have_a_knot_each() {
     assert!(!thin(&points, &limit, EndContinuity::Tangent));
     assert!(!thin(&points[..499], &Limit::ball(499, 1e-3).unwrap(), EndContinuity::Free));
     let along = Limit::new(Motion::Along(Vec3::of(0.0, 1.0, 0.0)), vec![1e-3; 2000]).unwrap();
-    // Stations on a line are parameters; others have none.
+    // Stations on a line are parameters; without these there is no such spline.
     assert!(thin(&points, &along, EndContinuity::Free));
     let mut aside = points.clone();
     aside[900].z += 1e-3;

@@ -267,7 +267,7 @@ fn surfaces_keep_conditions() {
 }
 
 /// Offsets of a hull at half stations and uneven waterlines, read to a centimetre: nearer to the
-/// truth than the data, and without new turns. Index differences go the other way.
+/// truth than the data, and without new turns. Index differences give the opposite.
 #[test]
 fn uneven_stations_and_waterlines() {
     let xs = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0, 9.5, 10.0];
@@ -328,16 +328,16 @@ fn uneven_stations_and_waterlines() {
         assert!(rms(&read) > times * rms(&faired), "{name}: {} {}", rms(&read), rms(&faired));
         assert!(rms(&run(&read, true, Goal::Fairest)) > rms(&read), "{name}");
         assert!(faired.iter().zip(&read).all(|(p, q)| (p.y - q.y).abs() <= 0.005));
-        // What is exact does not move.
+        // Exact data do not move.
         if name == "Wigley" {
             assert_eq!(run(&truth, false, Goal::Near(0.8)), truth);
         }
     }
 }
 
-/// The goal `near` of networks: the fairest where noise explains it, a budget where it does not, and
-/// between these a budget that moves with what the fairest takes. Derivatives by points and
-/// tolerances are those of differences in all three.
+/// The goal `near` of networks: the fairest if noise explains it, a budget if it does not, and
+/// between these a budget that depends on the squares of the fairest. Derivatives by points and
+/// tolerances agree with differences in all three.
 #[test]
 fn the_budget_of_a_network_goes_by_its_fairest() {
     let (m, n) = (8, 6);
@@ -419,9 +419,9 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
     assert!(zones.iter().all(|&z| z > 0) && checked[1..] == [3, 3], "{zones:?} {checked:?}");
 }
 
-/// Derivatives of curves weighed one by one are those of differences, through all rounds of weights:
-/// by points, tolerances and parameters, under a budget of the goal's own and where signs of curvature
-/// are held; where the budget moves with what the fairest takes they are refused.
+/// Derivatives of individually weighted curves agree with differences, through all rounds of
+/// weights: by points, tolerances and parameters, under a budget of the goal's own and with fixed
+/// signs of curvature; where the budget depends on the squares of the fairest they are refused.
 #[test]
 fn derivatives_of_curves_weighed_one_by_one() {
     let (m, n) = (8, 6);
@@ -547,7 +547,7 @@ fn derivatives_of_the_fairest_network_are_right_or_refused() {
                 let own = network(&data, radius);
                 own.toward(Measure::Third, Goal::Fairest, Vec::new(), 1e-13).unwrap().0.points
             };
-            // Of flat optima the last digits are the solver's, and larger steps meet limits.
+            // For flat optima the last digits depend on the solver, and larger steps meet limits.
             let off = |h: f64| {
                 let (low, high) = (at(-h), at(h));
                 let one = |i: usize| {

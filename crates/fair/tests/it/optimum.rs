@@ -14,7 +14,7 @@ fn best(job: &Job, measure: Measure) -> Optimum {
 
 #[test]
 fn the_optimum_row_of_the_table() {
-    // Second differences, squared jumps, jump lengths (and how many are not zero), rms to truth.
+    // Second differences, squared jumps, jump lengths (and the number of non-zero ones), rms error.
     let table: [(Fixture, f64, usize, Option<[f64; 2]>, usize, f64); 5] = [
         (f1a(), 1.30816311e-4, 14, Some([3.2333e-10, 9.830e-5]), 10, 7.26e-5),
         (f1b(), 1.29637452e-4, 12, Some([6.8630e-9, 3.078e-4]), 14, 4.82e-4),
@@ -45,7 +45,7 @@ fn the_optimum_row_of_the_table() {
     }
 }
 
-/// Long ranked steps and the solver are two ways to one place.
+/// Long sequences of ranked steps and the solver have the same result.
 #[test]
 fn steps_converge_to_the_optimum() {
     for f in [f2a(), f2b(), f3()] {
@@ -58,7 +58,7 @@ fn steps_converge_to_the_optimum() {
     }
 }
 
-/// The certificate is a bound: what a better curve shows was left is never more than it said.
+/// The certificate is a bound: no better curve lowers the measure by more.
 #[test]
 fn the_certificate_bounds_the_true_gap() {
     for f in all() {
@@ -208,7 +208,7 @@ fn conditions_hold_and_contradictions_are_named() {
     options.conditions = Condition::point(&job.space, 28.5, target);
     options.conditions.extend(Condition::tangent(&job.space, 10.25, Vec3::of(1.0, 0.1, 0.0)));
     let result = optimum(&job, &options);
-    // The asked tangent is far from the curve's: those conditions are the ones named.
+    // The given tangent is far from the curve's: those conditions are named.
     let Err(FairError::Contradiction { conditions, .. }) = result else { panic!("{result:?}") };
     assert!(conditions.iter().all(|&c| c < 5), "{conditions:?}");
     assert!(!conditions.is_empty());
@@ -221,8 +221,8 @@ fn conditions_hold_and_contradictions_are_named() {
     assert!(result.certificate.value > best(&job, Measure::Second).certificate.value);
 }
 
-/// Two points at one place of the curve contradict each other however near they are, and the
-/// numbers that come of it are never handed out.
+/// Two different points at one parameter of the curve are a contradiction, however close they are,
+/// and give no result.
 #[test]
 fn no_contradiction_passes() {
     for f in [f2a(), f2b(), f3()] {
@@ -404,7 +404,7 @@ fn a_seam_gets_continuous_curvature_at_either_end() {
         let n = f.points.len();
         let (p, inner) =
             if at_end { (f.points[n - 1], f.points[n - 2]) } else { (f.points[0], f.points[1]) };
-        // The neighbour goes on at an angle and with another curvature.
+        // The neighbour continues at an angle and with another curvature.
         let step = p - inner;
         let a1 = p + step * 1.3 + Vec3::of(0.0, 2e-4, 0.0);
         let a2 = a1 + step * 1.2 + Vec3::of(0.0, -3e-4, 1e-4);

@@ -5,7 +5,7 @@ use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{CallError, CurveRef, Scalar, Value};
 use moldloft_testing::Random;
 
-/// An option with numbers of which one may be a parameter.
+/// An option with numbers, one of which may be a parameter.
 #[derive(Clone, Debug)]
 enum Given {
     Text(&'static str),
@@ -17,7 +17,7 @@ enum Given {
 }
 
 impl Given {
-    /// The value, the number `at` of it being what `seed` makes of it.
+    /// The value with its number `at` seeded by `seed`.
     fn value<T: Real>(&self, at: Option<usize>, seed: impl Fn(f64) -> T) -> Value<T> {
         let one = |k: usize, x: f64| if at == Some(k) { seed(x) } else { T::from(x) };
         let vector = |k: usize, p: &Vec3<f64>| {
@@ -49,7 +49,8 @@ struct Case {
     points: Vec<Vec3<f64>>,
     tolerance: f64,
     options: Vec<(&'static str, Given)>,
-    /// The point that moves, and the option of which a number is a parameter, and which number.
+    /// The point that moves, the option with a parameter among its numbers, and the index of that
+    /// number.
     moving: usize,
     seeded: Option<(usize, usize)>,
 }
@@ -207,7 +208,7 @@ fn case(g: &mut Random) -> Case {
     Case { tolerance: 8e-4, moving: 1 + g.below(n - 2), points, options, seeded }
 }
 
-/// What came of all directions of a case.
+/// Counts over all directions of a case.
 #[derive(Debug, Default)]
 struct Count {
     refused: usize,

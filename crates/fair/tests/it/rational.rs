@@ -1,4 +1,4 @@
-//! Rational splines and knots of the user's in the kinds: what they mean, derivatives, refusals.
+//! Rational splines and given knots in the kinds: meaning, derivatives, refusals.
 
 use crate::fixtures::*;
 use moldloft_fair::rows;

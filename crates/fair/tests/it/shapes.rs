@@ -8,7 +8,7 @@ const HALF: f64 = 4.6;
 const BILGE: f64 = 1.4;
 const DEPTH: f64 = 6.2;
 
-/// Flat bottom, bilge and side with noise within a ball, and how many points are on the first two.
+/// Flat bottom, bilge and side with noise within a ball, and the number of points on the first two.
 fn section(count: usize, seed: u64, noise: f64) -> (Vec<Vec3<f64>>, usize, usize) {
     let (flat, arc) = (HALF - BILGE, BILGE * std::f64::consts::FRAC_PI_2);
     let total = flat + arc + DEPTH - BILGE;

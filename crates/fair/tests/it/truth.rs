@@ -21,7 +21,7 @@ impl Lcg {
 pub const SHAPES: [&str; 6] = ["clothoid", "naca0012", "hollow", "helix", "ellipse", "sac"];
 pub const SPACINGS: [&str; 4] = ["even", "half", "jitter", "random"];
 
-/// A clothoid by the trapezoidal rule on a fine grid, linear between its places.
+/// A clothoid by the trapezoidal rule on a fine grid, linear between its points.
 struct Clothoid(Vec<[f64; 2]>);
 
 impl Clothoid {
@@ -268,7 +268,8 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
                 let here = format!("{shape} {kind} seed {seed}");
                 assert!(fit.residuals.iter().all(|&r| r <= a * (1.0 + 1e-12)), "{here}");
                 assert!(i <= inflections, "{here}: {i} inflections");
-                // Random places may leave out what is beside a nose: what was not read cannot be known.
+                // Random points may miss the part beside a nose, which then cannot be
+                // reconstructed.
                 let known = *shape != "naca0012" || kind != "random";
                 assert!(!known || off <= 0.5, "{here}: rms {off} of the noise");
                 more += usize::from(p > pieces + 2);
@@ -278,7 +279,7 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
     }
     all.sort_by(f64::total_cmp);
     let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
-    // Of 960 draws 0.24 and 0.43.
+    // Over 960 draws: 0.24 and 0.43.
     assert!(at(0.5) < 0.27 && at(0.95) < 0.48, "median {}, 95 % {}", at(0.5), at(0.95));
     // More than two pieces beyond the truth are rare.
     assert!(20 * more <= all.len(), "{more} of {}", all.len());
@@ -316,7 +317,7 @@ fn parameters_by_curvature_turn_scale_and_are_the_datas() {
             let turned: Vec<_> = points.iter().map(place).collect();
             assert!(close(&own(&turned, 2e3), &at));
             if closed {
-                // From another point on, and the other way round.
+                // Starting at another point, and in reverse order.
                 let first = 7;
                 let from: Vec<_> =
                     (0..n as usize).map(|k| points[(k + first) % n as usize]).collect();
@@ -332,7 +333,7 @@ fn parameters_by_curvature_turn_scale_and_are_the_datas() {
             }
         }
     }
-    // Exact points, and those that may not move, have what they had.
+    // Exact points, and those that may not move, keep their curve.
     let circle: Vec<_> =
         (0..20).map(|k| 0.2 * f64::from(k)).map(|t| Vec3::of(t.cos(), t.sin(), 0.0)).collect();
     let (data, _) = data_near(&circle, 1e-3);
@@ -428,7 +429,7 @@ fn results_turn_and_scale_with_the_data() {
 
 #[test]
 fn third_derivatives_add_no_bends() {
-    // Two straight runs that a rounding joins, read with noise: a place for false bends.
+    // Two straight lines joined by a rounding, read with noise: prone to false bends.
     let mut g = Lcg::new(11);
     for round in 0..6 {
         let t = stations(&mut g, 40);
@@ -465,7 +466,7 @@ fn data_without_tolerance_and_repeated_data() {
         assert!(fit.residuals[10] <= 1e-7 * a, "{goal:?} {}", fit.residuals[10]);
         assert!((0..points.len()).all(|k| k == 30 || fit.residuals[k] <= a * (1.0 + 1e-9)));
     }
-    // The same point twice is one datum; places too far apart are none.
+    // A repeated point is one datum; points too far apart are not.
     let mut twice = points.clone();
     twice.insert(5, points[5]);
     let one = merged(&twice, &vec![a; twice.len()], false).unwrap();

@@ -6,7 +6,7 @@ use crate::query::separation::solid_within;
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Axis, Real, Vec3};
 
-/// Angles and shares of the size that count as none.
+/// Angles, and lengths relative to the size, below which values are zero.
 const FLAT: f64 = 1e-9;
 
 /// A flat disc across an axis.
@@ -17,7 +17,7 @@ struct Disc<T> {
     radius: T,
 }
 
-/// What a convex body is the hull of.
+/// Points, balls and discs whose hull the convex body is.
 #[derive(Clone, Debug)]
 struct Spanning<T> {
     balls: Vec<HullBall<T>>,
@@ -35,7 +35,7 @@ struct PlaneBound<T> {
 }
 
 impl<T: Real> Spanning<T> {
-    /// Of an intersection of primitives; nothing for an empty one.
+    /// From an intersection of primitives; empty for an empty one.
     fn of(piece: &[Primitive<T>]) -> Result<Self, FieldError> {
         let mut planes = Vec::new();
         let mut round = Vec::new();
@@ -77,7 +77,7 @@ impl<T: Real> Spanning<T> {
         }
     }
 
-    /// Of a cylinder or cone between planes across its axis.
+    /// From a cylinder or cone between planes normal to its axis.
     fn of_revolution(
         axis: &Axis<T>,
         planes: &[PlaneBound<T>],
@@ -128,7 +128,7 @@ impl<T: Real> Spanning<T> {
         out
     }
 
-    /// Without what lies in balls.
+    /// Without the parts inside balls.
     fn reduced(mut self) -> Self {
         self.balls = outermost(&self.balls);
         let covered = |d: &Disc<T>| {
@@ -244,7 +244,7 @@ impl<T: Real> Spanning<T> {
     }
 }
 
-/// Of a cone, refused where it goes through its apex.
+/// Refuses a cone on both sides of its apex.
 fn one_nappe<T: Real>(axis: &Axis<T>, found: Spanning<T>) -> Result<Spanning<T>, FieldError> {
     let heights: Vec<f64> =
         found.discs.iter().map(|d| axis.direction.re().dot((d.centre - axis.point).re())).collect();

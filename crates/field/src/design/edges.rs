@@ -1,7 +1,7 @@
 //! Fillets between bodies, rounded and chamfered edges.
 //!
-//! A convex edge of a body lies between two terms of what is outside of it, a concave one between two terms of the body itself:
-//! on the curve in which a face of each meets one of the other, within the rest of both.
+//! A convex edge of a body is between two terms of its complement, a concave one between two terms
+//! of the body itself: on the intersection curve of a face of each, within the rest of both.
 
 use super::terms::BodyTerms;
 use crate::expr::blend::fillet;
@@ -11,12 +11,12 @@ use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use std::collections::VecDeque;
 
-/// Edges by the names of the two faces that meet in them; none for all.
+/// Edges by the names of their two faces; `None`: all.
 pub type Edges<'a> = Option<&'a [[String; 2]]>;
 
-/// Boxes in which an edge is looked for.
+/// Maximum number of boxes in the search for an edge.
 const MOST_BOXES: usize = 600;
-/// What counts as beside an edge, and how far within its faces its points are, as shares of the box.
+/// Distance of probes beside an edge, and of its points within the faces, relative to the box.
 const BESIDE: f64 = 1e-7;
 /// Faces that meet at a smaller angle are tangent: they have no edge.
 const TANGENT: f64 = 1e-6;
@@ -27,7 +27,7 @@ fn face_name<T: Real>(leaf: &Leaf<T>) -> String {
     named.unwrap_or_else(|| leaf.primitive.form().name().to_owned())
 }
 
-/// Which of the chosen edges were met.
+/// The chosen edges, and for each whether it was found.
 struct EdgeSelection<'a> {
     edges: Edges<'a>,
     met: Vec<bool>,
@@ -66,15 +66,17 @@ fn parallel<T: Real>(a: &Primitive<T>, b: &Primitive<T>) -> bool {
     }
 }
 
-/// Where edges of a body are looked for.
+/// Region in which edges of a body are searched.
 struct EdgeSpace {
     over: Option<Box3>,
-    /// Where an edge opens to: the body for its convex edges, what is outside for its concave ones.
+    /// The set on the open side of an edge: the body for its convex edges, its complement for
+    /// concave ones.
     beside: Set,
 }
 
 impl EdgeSpace {
-    /// Whether two faces meet in an edge within `rest`: on a point of both there is `beside` between them.
+    /// True if two faces meet in an edge within `rest`: at a point of both there is `beside`
+    /// between them.
     fn shows<T: Real>(&self, faces: [&Primitive<T>; 2], rest: &Set<T>) -> bool {
         let Some(over) = &self.over else { return true };
         let faces = faces.map(Primitive::re);
@@ -180,7 +182,8 @@ fn edges_between<T: Real>(
 /// an edge it is cut by the faces beside it.
 ///
 /// # Errors
-/// [`FieldError::NoDistance`]; a weight or width out of range; [`FieldError::NoEdge`] for a chosen edge that is none.
+/// [`FieldError::NoDistance`]; a weight or width out of range; [`FieldError::NoEdge`] for a chosen
+/// edge that does not exist.
 pub fn fillet_sets<T: Real>(
     [a, b]: [&Set<T>; 2],
     widths: [T; 2],
@@ -204,7 +207,7 @@ pub fn fillet_sets<T: Real>(
     Ok(out)
 }
 
-/// Cuts every chosen convex edge of a body down to what `cut` keeps, by the distances from both of its faces.
+/// Intersects the body with `cut` of both distances at every chosen convex edge.
 fn edges_cut<T: Real>(
     set: &Set<T>,
     edges: Edges,

@@ -30,14 +30,14 @@ impl<T: Real> HullBall<T> {
     }
 }
 
-/// The balls that lie in no other.
+/// Balls that are not inside another.
 pub(super) fn outermost<T: Real>(balls: &[HullBall<T>]) -> Vec<HullBall<T>> {
     let plain: Vec<HullBall<f64>> = balls.iter().map(HullBall::re).collect();
     let slack = SAME * size(&plain);
     let hidden = |i: usize| {
         let inside = |j: usize| {
             let apart = plain[i].centre.distance(plain[j].centre) + plain[i].radius;
-            // Of equal ones the first stays.
+            // The first of equal ones is kept.
             let equal = (plain[i].radius - plain[j].radius).abs() <= slack;
             j != i && apart <= plain[j].radius + slack && (j < i || !equal)
         };
@@ -145,7 +145,8 @@ fn is_edge(balls: &[HullBall<f64>], i: usize, j: usize) -> bool {
     let across = (1.0 - rise * rise).max(0.0).sqrt();
     let Some(e1) = u.perpendicular().normalized() else { return false };
     let e2 = u.cross(e1);
-    // Where a normal rise u + across (e1 cos + e2 sin) has another ball in front.
+    // Intervals of the angle for which another ball is in front of the normal rise u + across (e1
+    // cos + e2 sin).
     let mut forbidden: Vec<[f64; 2]> = Vec::new();
     for (m, ball) in balls.iter().enumerate() {
         if m == i || m == j {
@@ -211,7 +212,7 @@ fn frustum<T: Real>(a: &HullBall<T>, b: &HullBall<T>) -> Result<Set<T>, FieldErr
     Ok(Set::new(&side) & low & high)
 }
 
-/// The polyhedron spanned by points, as half-spaces; `None` when they lie in a plane.
+/// The polyhedron spanned by points, as half-spaces; `None` if they are in a plane.
 fn polyhedron<T: Real>(
     points: &[Vec3],
     visible: &[(Vec3<T>, Vec3<T>)],
@@ -292,7 +293,7 @@ pub(super) fn of_balls<T: Real>(balls: &[HullBall<T>]) -> Result<Set<T>, FieldEr
     if all.is_nothing() { Err(flat) } else { Ok(all) }
 }
 
-/// Discs across one axis, of which those at the low end have the same outline as those at the high end.
+/// Discs normal to one axis, with the same outline at both ends.
 pub(super) struct Prism<T> {
     pub(super) axis: Vec3<T>,
     /// A point of the plane of each end.
@@ -327,7 +328,7 @@ impl<T: Real> Prism<T> {
                     let to = plain[m].centre - plain[i].centre;
                     let over = to.dot(n) + plain[m].radius - plain[i].radius;
                     let t = to.dot(u) / length;
-                    // Of discs along one side the outer two have it.
+                    // Of several discs along one side the outer two have it.
                     over < -slack || over <= slack && (-slack..=length + slack).contains(&t)
                 };
                 if (0..plain.len()).all(behind) {

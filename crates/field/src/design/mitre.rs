@@ -1,4 +1,4 @@
-//! Mitres of edges that are none of the body.
+//! Mitres of false edges, which are not on the body's surface.
 //!
 //! A term of a body may have an edge inside of it, or in the middle of one of its faces. Grown with sharp edges the term
 //! reaches further there than the body does, unless other terms cover its tip: then the grown body would have a spike.
@@ -11,17 +11,18 @@ use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use std::collections::VecDeque;
 
-/// Boxes in which points of an edge are looked for, and how many of these are looked at.
+/// Maximum number of boxes in which points of an edge are searched, and of those points.
 const MOST_BOXES: usize = 400;
 const MOST_POINTS: usize = 12;
-/// What counts as beside an edge, as a share of the box.
+/// Distance of probes beside an edge, relative to the box.
 const BESIDE: f64 = 1e-7;
 /// Faces that meet at a smaller angle have no edge.
 const TANGENT: f64 = 1e-6;
-/// How far below a face it is looked beyond another, as a share of the way.
+/// Offset of probes below the other face, relative to that beyond the first.
 const BELOW: f64 = 0.2;
 
-/// The point on an edge inside of the body, or in one of its faces, whose mitre would stand out of what is grown by `distance`.
+/// A point on an edge inside the body, or in one of its faces, whose mitre would protrude from the
+/// body offset by `distance`.
 pub(super) fn false_mitre<T: Real>(
     body: &BodyTerms<T>,
     target: &Set,

@@ -22,7 +22,8 @@ impl<T: Real> Primitive<T> {
     /// The same solid by the distance from its surface, exact outside and inside.
     ///
     /// # Errors
-    /// [`FieldError::NoDistance`] where none is known in closed form: planes, balls, cylinders, cones and tori have one.
+    /// [`FieldError::NoDistance`] without a closed form: planes, balls, cylinders, cones and tori
+    /// have one.
     pub fn distance_form(&self) -> Result<Self, FieldError> {
         let none = || FieldError::NoDistance { kind: self.form().name() };
         let within = solid_within(&self.re()).ok_or_else(none)?;
@@ -99,7 +100,7 @@ impl<T: Real> Set<T> {
         let made = match (inward, body.near_only) {
             (false, _) => made,
             (true, false) => made.complement(),
-            // What is far outside may be missing in what was grown.
+            // Parts far outside may be missing in the offset set.
             (true, true) => made.complement() & self.clone(),
         };
         Ok(match self.attributes() {

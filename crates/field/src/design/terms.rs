@@ -1,9 +1,10 @@
 //! A body as a union of intersections of half-spaces, each as large as the body allows.
 //!
-//! A formula may hold faces that its body does not show: parts face to face, a cutter's own ends, a boss let in. The terms of its
-//! disjunctive form are prime implicants over the combinations of sides that exist in space (Quine 1952): a term without
-//! points is left out, and so is every face of a term without which it still is part of the body. What grows a body, or cuts
-//! its edges, does so term by term.
+//! A formula may contain faces that are not on its body's surface: parts face to face, a cutter's
+//! own ends, a recessed boss. The terms of its disjunctive form are prime implicants over the
+//! combinations of sides that exist in space (Quine 1952): a term without points is left out, and
+//! so is every face of a term that is a part of the body without it. Offsets and cuts of edges are
+//! applied term by term.
 
 use crate::expr::interval::{Interval, octants, sides as sides_of};
 use crate::expr::tape::ExprTape;
@@ -19,30 +20,31 @@ use std::sync::Arc;
 
 /// A set may have this many terms.
 const MOST_TERMS: usize = 512;
-/// Points of the box around a body, and of the space about it, in which terms are looked for first.
+/// Number of points of the box around a body, and of the space about it, in which terms are first
+/// searched.
 const SAMPLES: [usize; 2] = [3072, 1024];
-/// Boxes in which a term is looked for then.
+/// Maximum number of boxes in the following search for a term.
 const MOST_BOXES: usize = 1500;
-/// A point is in a term when it is deeper in it than this share of the box.
+/// A point is in a term if it is deeper in it than this, relative to the box.
 const DEEP: f64 = 1e-9;
 
-/// Intersections of literals; a literal is a surface with the side of it that is solid: 2 k for the negative side of
-/// surface k, 2 k + 1 for its positive one.
+/// Intersections of literals; a literal is the number of a surface and its solid side: 2 k for the
+/// negative side of surface k, 2 k + 1 for the positive one.
 type LiteralTerm = Vec<u32>;
 
 /// The terms of a body.
 pub(super) struct BodyTerms<T: Real> {
-    /// Of every literal the half-space, with the attributes of the leaf that it comes from.
+    /// For every literal the half-space, with the attributes of its leaf.
     literals: Vec<Option<Leaf<T>>>,
     pub(super) terms: Vec<LiteralTerm>,
-    /// True when what is far outside of the box around the body may be missing.
+    /// True if parts far outside the box around the body may be missing.
     pub(super) near_only: bool,
     /// A box around the body.
     pub(super) over: Box3,
 }
 
 impl<T: Real> BodyTerms<T> {
-    /// Of the body, or of what is outside of it.
+    /// Terms of the body or of its complement.
     pub(super) fn of(set: &Set<T>, outside: bool) -> Result<Self, FieldError> {
         let compiled = set.compiled();
         let all = set.traversal();
@@ -107,7 +109,7 @@ impl<T: Real> BodyTerms<T> {
         self.literals[code as usize].as_ref().expect("a literal of a leaf or of its complement")
     }
 
-    /// The union of the terms, each the intersection of what `leaf` makes of its literals.
+    /// The union of the terms, each the intersection of its literals as mapped by `leaf`.
     pub(super) fn set(
         &self,
         leaf: &dyn Fn(&Leaf<T>) -> Result<Set<T>, FieldError>,
@@ -154,7 +156,7 @@ fn bits(flags: impl Iterator<Item = bool>) -> SampleBits {
     out
 }
 
-/// Where terms are looked for.
+/// Region in which terms are searched.
 struct TermSpace {
     over: Box3,
     wide: Box3,
@@ -162,7 +164,7 @@ struct TermSpace {
     target: Set,
     /// The literals as sets.
     literals: Vec<Set>,
-    /// Of every literal the sample points in it, strictly.
+    /// For every literal the sample points strictly inside.
     inside: Vec<SampleBits>,
     /// The sample points strictly outside of the target.
     missed: SampleBits,
@@ -190,7 +192,7 @@ fn about(set: &Set) -> Box3 {
     widened(&Box3::around(points), 1.0)
 }
 
-/// A box with that share of its diagonal more on every side.
+/// A box extended on every side by that fraction of its diagonal.
 fn widened(over: &Box3, share: f64) -> Box3 {
     let more = share * over.diagonal();
     let more = Vec3::of(more, more, more);
@@ -252,7 +254,7 @@ impl TermSpace {
         term.iter().fold(Set::everything(), |s, &code| s & self.literals[code as usize].clone())
     }
 
-    /// Whether a set has points; `false` for what only touches.
+    /// True if a set has interior points.
     fn holds(&self, set: &Set) -> bool {
         if set.is_nothing() || is_void(set) {
             return false;
@@ -268,7 +270,7 @@ impl TermSpace {
         term.is_empty() || self.is_seen(term, None) || self.holds(&self.region(term))
     }
 
-    /// What both unions of terms have in common.
+    /// The intersection of two unions of terms.
     fn product(&self, a: &[LiteralTerm], b: &[LiteralTerm]) -> Vec<LiteralTerm> {
         let mut out = Vec::new();
         for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
@@ -279,7 +281,7 @@ impl TermSpace {
             if contradicts || !self.has_points(&term) {
                 continue;
             }
-            // Without faces that do not cut what the others leave.
+            // Removes faces that do not cut the intersection of the others.
             let mut k = 0;
             while k < term.len() {
                 let mut other = term.clone();

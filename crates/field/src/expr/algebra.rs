@@ -1,5 +1,5 @@
-//! The numbers that a tape can be run on: plain and dual scalars, jets in space, intervals, and
-//! intervals with gradients. One formula, one meaning of each operation.
+//! The numbers that a tape can be evaluated with: plain and dual scalars, jets in space, intervals,
+//! and intervals with gradients. Each operation has one meaning in all of them.
 
 use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
@@ -173,12 +173,12 @@ impl Unary {
 
 /// A number on which formulas can be computed.
 pub(crate) trait Algebra<T: Real>: Copy {
-    /// Where the formula is computed.
+    /// Type of the position.
     type At;
     fn real(x: T) -> Self;
     fn plane(normal: Vec3<T>, offset: T, at: &Self::At) -> Self;
     fn user(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &Self::At) -> Self;
-    /// As [`Algebra::user`] at many places: added to `out`.
+    /// As [`Algebra::user`] at many points: appended to `out`.
     fn users(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &[Self::At], out: &mut Vec<Self>) {
         out.extend(at.iter().map(|p| Self::user(oracle, map, p)));
     }

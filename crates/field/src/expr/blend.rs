@@ -100,7 +100,7 @@ pub const CIRCULAR: f64 = 2.0 / 3.0;
 pub struct SetBlend<T: Real = f64> {
     /// The surface of the blend.
     pub primitive: Primitive<T>,
-    /// Where it is used: the rail's solid side; for transitions beyond both rails.
+    /// Region of validity: the rail's solid side; for transitions the part beyond both rails.
     pub patch: Set<T>,
     /// The bodies with their blend.
     pub set: Set<T>,

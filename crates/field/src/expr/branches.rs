@@ -1,14 +1,16 @@
-//! Jumps of functions that are none of the body: the cut of `atan2` and the steps of `remainder`.
+//! Jumps of functions that are not faces of the body: the cut of `atan2` and the steps of
+//! `remainder`.
 //!
-//! In a box across one jump a leaf is `f1` on one side of it and `f2` on the other, both smooth: the body there is
-//! `(c & f1) | (-c & f2)` with the jump's place `c`. A jump on both sides of which the body is the same is then no face of it.
+//! In a box across one jump a leaf is `f1` on one side of it and `f2` on the other, both smooth:
+//! the body there is `(c & f1) | (-c & f2)` with an expression `c` that is zero at the jump. A jump
+//! with the same body on both sides is then not a face.
 
 use crate::expr::algebra::Unary;
 use crate::expr::interval::Interval;
 use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use std::f64::consts::PI;
 
-/// A jump in a box: the instruction, and what takes its place on either side.
+/// A jump in a box: the instruction, and its replacements on both sides.
 enum FieldJump {
     /// The angle of (x, y) across y = 0, x < 0, from above and from below.
     Cut { y: u32, x: u32 },
@@ -25,7 +27,7 @@ impl ExprTape<f64> {
         self.code.iter().any(jumps)
     }
 
-    /// The first jump inside of a leaf, with its place among the instructions.
+    /// The first jump inside a leaf, with its index among the instructions.
     fn jump(&self, ranges: &[Interval]) -> Option<(usize, FieldJump)> {
         let of = |k: u32| ranges[k as usize];
         self.code.iter().enumerate().find_map(|(k, code)| match *code {
@@ -47,8 +49,8 @@ impl ExprTape<f64> {
         })
     }
 
-    /// The tape with the first jump in a box taken apart, given the range of every instruction there; `None` where there is
-    /// none, or where more than one lies in the box.
+    /// The tape with the first jump in a box replaced by its two sides, given the range of every
+    /// instruction there; `None` without a jump, or if the box contains several.
     pub(crate) fn parted(&self, ranges: &[Interval]) -> Option<Self> {
         let (at, jump) = self.jump(ranges)?;
         let mut code: Vec<ExprInstruction<f64>> = Vec::with_capacity(2 * self.code.len() + 8);
@@ -58,9 +60,9 @@ impl ExprTape<f64> {
             leaf.push(of);
             code.len() as u32 - 1
         };
-        // Where each instruction is on the first side and on the second.
+        // New index of each instruction on the first side and on the second.
         let mut places: Vec<[u32; 2]> = Vec::with_capacity(self.code.len());
-        // What is zero at the jump, and whether it is negative on the first side.
+        // Expression that is zero at the jump, and whether it is negative on the first side.
         let (mut place, mut below) = (0u32, false);
         for (k, instruction) in self.code.iter().enumerate() {
             let own = self.leaf[k];
@@ -99,7 +101,7 @@ impl ExprTape<f64> {
             // A leaf on which the sides differ is joined of both.
             let [first, second] = places[k];
             if own != NO_LEAF && first != second {
-                // The jump's place counts as a face of the leaf; a copy, for what uses it inside.
+                // The jump counts as a face of the leaf; a copy is for uses inside.
                 let face = push(ExprInstruction::PlusReal(place, 0.0), own);
                 let minus = push(ExprInstruction::Unary(Unary::Neg, face), own);
                 let faces = if below { [face, minus] } else { [minus, face] };

@@ -5,7 +5,7 @@ use crate::expr::oracle::Affine;
 use crate::{FieldError, Primitive};
 use moldloft_num::{Axis, Plane, Real, Vec3};
 
-/// What a primitive was made as, with its dimensions; they follow rotations, translations and uniform
+/// Constructor of a primitive, with its dimensions; they follow rotations, translations and uniform
 /// scaling.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form<T> {
@@ -53,7 +53,7 @@ pub enum Form<T> {
         major: T,
         /// Mean radius of the tube.
         minor: T,
-        /// How much thinner and thicker the tube gets.
+        /// Change of the tube's radius.
         change: T,
     },
     /// An expression.

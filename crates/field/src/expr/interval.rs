@@ -21,7 +21,7 @@ fn ulp(x: f64) -> f64 {
     x.abs() * f64::EPSILON + f64::MIN_POSITIVE
 }
 
-/// A product of two ends; 0 times an infinite end is 0, because ends stand for finite numbers.
+/// A product of two ends; 0 times an infinite end is 0, because the values themselves are finite.
 #[inline(always)]
 fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
@@ -55,7 +55,7 @@ impl Interval {
         Self { low: low - ulp(low), high: high + ulp(high) }
     }
 
-    /// True when `x` lies in it.
+    /// True if `x` is in the interval.
     pub fn contains(self, x: f64) -> bool {
         self.low <= x && x <= self.high
     }
@@ -222,7 +222,7 @@ impl Interval {
         Self { low: low - 2.0 * ulp(low), high: high + 2.0 * ulp(high) }
     }
 
-    /// Natural logarithms; numbers that are not above zero have none.
+    /// Natural logarithms of the positive part.
     pub fn ln(self) -> Self {
         if self.high <= 0.0 {
             return Self::ENTIRE;
@@ -232,7 +232,7 @@ impl Interval {
         Self { low: a - 2.0 * ulp(a), high: b + 2.0 * ulp(b) }
     }
 
-    /// Tangents; everything when a pole lies inside.
+    /// Tangents; [`Self::ENTIRE`] if the interval contains a pole.
     pub fn tan(self) -> Self {
         // Poles are counted too often rather than too seldom, as extremes of the cosine are.
         let turn = |x: f64| ((x - FRAC_PI_2) / PI).floor();
@@ -276,7 +276,7 @@ impl Interval {
         }
     }
 
-    /// The reciprocals; everything when zero lies inside.
+    /// Reciprocals; [`Self::ENTIRE`] if the interval contains zero.
     pub fn reciprocal(self) -> Self {
         if self.low > 0.0 || self.high < 0.0 {
             Self::outward(1.0 / self.high, 1.0 / self.low)

@@ -15,7 +15,7 @@ pub trait Oracle<T: Real>: Field<T> {
         [Interval::ENTIRE; 3]
     }
 
-    /// Whether its surface may have an edge of its own in a box, on which no vertex is put.
+    /// True if its surface may have an edge in the box on which no vertex is placed.
     fn creased_in(&self, _over: &Box3) -> bool {
         false
     }
@@ -36,7 +36,8 @@ pub trait Oracle<T: Real>: Field<T> {
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }
 
-/// A plain primitive among numbers with derivatives: it depends on no parameter, but its place may.
+/// A plain primitive among numbers with derivatives: it depends on no parameter, but its position
+/// may.
 pub struct Constant(pub Arc<dyn Oracle<f64>>);
 
 /// True when a point carries no derivatives.
@@ -116,7 +117,7 @@ impl<T: Real> Oracle<T> for Constant {
 pub struct Affine<T> {
     /// Rows of the matrix.
     pub rows: [Vec3<T>; 3],
-    /// What is added after it.
+    /// Translation after it.
     pub shift: Vec3<T>,
 }
 

@@ -33,7 +33,7 @@ pub enum Binary {
     Mod,
 }
 
-/// How a primitive is made.
+/// Operation of a node.
 pub(crate) enum Op<T: Real> {
     Real(T),
     Plane {
@@ -53,7 +53,7 @@ pub(crate) enum Op<T: Real> {
 
 pub(crate) struct PrimitiveNode<T: Real> {
     pub(crate) op: Op<T>,
-    /// What is remembered of it beside what the operation says.
+    /// Form, if known beyond the operation.
     form: OnceLock<Box<Form<T>>>,
     degree: u32,
     /// By which different expressions mostly differ.
@@ -204,7 +204,7 @@ impl<T: Real> Primitive<T> {
         Affine::identity().rows.map(|n| Self::linear(n, T::zero()))
     }
 
-    /// `normal` . X + `offset`, of which the normal need not be a unit vector.
+    /// `normal` . X + `offset`; the normal need not be a unit vector.
     pub fn linear(normal: Vec3<T>, offset: T) -> Self {
         let constant = normal.re() == Vec3::zero() && (0..3).all(|k| normal[k].is_constant());
         if constant { Self::real(offset) } else { Self::from_op(Op::Plane { normal, offset }) }
@@ -348,7 +348,8 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// The quotient. Where the divisor is zero it has a pole; facets that come upon one are refused with the place.
+    /// The quotient. It has a pole at zeros of the divisor; facets that meet one are an error with
+    /// its position.
     ///
     /// # Errors
     /// [`FieldError::Division`] when the divisor is zero everywhere.
@@ -371,7 +372,7 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// What it was made as.
+    /// Constructor with dimensions.
     pub fn form(&self) -> &Form<T> {
         let mut node = self;
         loop {
@@ -426,7 +427,7 @@ impl<T: Real> Primitive<T> {
         !std::ptr::eq(self.of_sheet(), self)
     }
 
-    /// What a sheet is the absolute value of; the primitive itself when it is none.
+    /// The argument of a sheet's absolute value; the primitive itself if it is not a sheet.
     pub fn of_sheet(&self) -> &Self {
         match &self.0.op {
             Op::Unary(Unary::Abs, inner) => inner,
@@ -438,12 +439,11 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// What distinguishes its node from every other one while it lives.
+    /// Address of its node; unique while the node lives.
     pub(crate) fn identity(&self) -> usize {
         Arc::as_ptr(&self.0) as usize
     }
 
-    /// How it is made.
     pub(crate) fn operation(&self) -> &Op<T> {
         &self.0.op
     }
@@ -512,7 +512,7 @@ impl<T: Real> Primitive<T> {
 }
 
 impl Primitive<f64> {
-    /// The same function among numbers with derivatives, on no parameter of which it depends.
+    /// The same function among numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Primitive<S> {
         self.rebuilt(
             &|c| S::from(c),

@@ -9,10 +9,10 @@ use moldloft_num::Vec3;
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
-/// What counts as zero: of the second derivatives, a share of the largest.
+/// Second derivatives below this fraction of the largest are zero.
 const NONE: f64 = 1e-11;
 
-/// Which quadric.
+/// Class of a quadric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuadricClass {
     /// An ellipsoid.
@@ -27,7 +27,7 @@ pub enum QuadricClass {
 /// x^2 + y^2 = 1 or of the cone x^2 + y^2 = z^2 of coordinates along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricAxes {
-    /// Which it is.
+    /// Class.
     pub class: QuadricClass,
     /// Its centre: of a cone its apex, of a cylinder a point of its axis.
     pub centre: Vec3,
@@ -36,8 +36,9 @@ pub struct QuadricAxes {
 }
 
 impl Primitive<f64> {
-    /// The ellipsoid, elliptic cylinder or elliptic cone that this is zero on, if it is a polynomial of degree 2 with such
-    /// a zero set; what is nearer than `near` to a cone in a box of `size` round `about` is one.
+    /// The ellipsoid, elliptic cylinder or elliptic cone that is the zero set, if this is a
+    /// polynomial of degree 2 with such a zero set. A quadric closer than `near` to a cone in a box
+    /// of `size` around `about` counts as a cone.
     pub fn quadric(&self, about: Vec3, size: f64, near: f64) -> Option<QuadricAxes> {
         if self.degree() != 2 || !self.is_polynomial() {
             return None;
@@ -175,7 +176,7 @@ mod tests {
                 assert!(p.value(q.centre + at).abs() < 1e-13 * (1.0 + at.norm_sq()), "{weights:?}");
             }
         }
-        // A paraboloid, and what only looks like one of degree 2.
+        // A paraboloid, and an expression that only resembles degree 2.
         let [x, y, z] = Primitive::<f64>::axes();
         assert!((x.power(2) + y.power(2) - z).quadric(Vec3::zero(), 2.0, 1e-9).is_none());
     }

@@ -62,7 +62,7 @@ impl<T: Real> RemappedOracle<T> {
         (self.map.apply(Vec3::new(x.value, y.value, z.value)), [x.slope, y.slope, z.slope])
     }
 
-    /// The box that the image of a box lies in.
+    /// A box that contains the image of a box.
     fn image_range(&self, over: &Box3) -> Box3 {
         let at = [0, 1, 2].map(|k| self.coordinates[k].re().range(over));
         let at = self.map.re().range(&at);

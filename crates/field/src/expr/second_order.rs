@@ -1,12 +1,12 @@
-//! Ranges of second derivatives: what a Taylor form of second order needs to bound its remainder.
+//! Ranges of second derivatives, which bound the remainder of a Taylor form of second order.
 
 use super::algebra::{Algebra, Unary};
 use super::interval::Interval;
 use super::oracle::{Affine, Oracle};
 use moldloft_num::{Box3, Vec3};
 
-/// The ranges of a value, its slopes and its second derivatives over a box. Where the function has a kink the
-/// second derivatives are everything.
+/// Ranges of value, gradient and second derivatives over a box. With a kink in the box the second
+/// derivatives are unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HessianRange {
     pub value: Interval,
@@ -25,7 +25,7 @@ fn is_zero(x: Interval) -> bool {
     x.low == 0.0 && x.high == 0.0
 }
 
-/// A product of which zero times anything is zero.
+/// A product in which zero times anything is zero.
 fn product(a: Interval, b: Interval) -> Interval {
     if is_zero(a) || is_zero(b) { Interval::ZERO } else { a * b }
 }

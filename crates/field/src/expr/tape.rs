@@ -2,8 +2,9 @@
 //!
 //! `Primitive, Set -> flat list of instructions -> value, gradient, range, bulk values`
 //!
-//! Equal parts become one instruction (value numbering), so sharing costs nothing and equality of
-//! expressions is equality of tapes. [`ExprTape::pruned`] keeps of a set what decides over a box.
+//! Equal parts become one instruction (value numbering), so sharing is free and equality of
+//! expressions is equality of tapes. [`ExprTape::pruned`] keeps the part of a set that decides over
+//! a box.
 
 use crate::expr::algebra::{Algebra, GradientRange, Unary};
 use crate::expr::interval::Interval;
@@ -14,7 +15,8 @@ use smallvec::{SmallVec, smallvec};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Which leaf of a set an instruction is the value of; `NO_LEAF` for inner ones.
+/// For an instruction that is the value of a leaf of a set, the number of the leaf; `NO_LEAF` for
+/// inner ones.
 pub(crate) const NO_LEAF: u32 = u32::MAX;
 
 /// One instruction; operands are positions of earlier ones.
@@ -36,7 +38,7 @@ pub(crate) enum ExprInstruction<T> {
     Atan2(u32, u32),
     Div(u32, u32),
     Mod(u32, u32),
-    /// A minimum of which only the sign and, near zero, the value matter: a union of sets.
+    /// A minimum whose sign and, near zero, value matter only: a union of sets.
     Union(u32, u32),
     /// Likewise a maximum: an intersection of sets.
     Common(u32, u32),
@@ -263,7 +265,7 @@ pub(crate) const CHUNK: usize = 64;
 
 type Chunk = [f64; CHUNK];
 
-/// Reusable room of [`ExprTape::bulk`].
+/// Reusable memory of [`ExprTape::bulk`].
 #[derive(Default)]
 pub(crate) struct Room {
     #[expect(clippy::vec_box, reason = "chunks are exchanged by pointer")]
@@ -271,7 +273,7 @@ pub(crate) struct Room {
     spare: Option<Box<Chunk>>,
 }
 
-/// Reusable room of the interval evaluators.
+/// Reusable memory of the interval evaluators.
 #[derive(Default)]
 pub(crate) struct RangeRoom {
     pub(crate) ranges: Vec<Interval>,
@@ -314,13 +316,13 @@ impl<T: Real> ExprTape<T> {
         Self { code, leaf, register, registers: registers as usize, users }
     }
 
-    /// A tape of other instructions, the last of which is its value.
+    /// A tape of other instructions; the last is its value.
     pub(crate) fn with_code(&self, code: Vec<ExprInstruction<T>>, leaf: Vec<u32>) -> Self {
         Self::with(code, leaf, self.users.clone())
     }
 
-    /// The tape of what `root` needs, where `decide(position, a, b)` may name the operand that a
-    /// minimum or maximum equals.
+    /// The tape reduced to `root`; `decide(position, a, b)` may name the operand that a minimum or
+    /// maximum equals.
     fn reduced(&self, root: u32, decide: impl Fn(usize, u32, u32) -> Option<u32>) -> Self {
         let n = self.code.len();
         let mut alias: Vec<u32> = (0..n as u32).collect();
@@ -365,7 +367,7 @@ impl<T: Real> ExprTape<T> {
             })
     }
 
-    /// Whether a primitive from outside may have an edge of its own in a box.
+    /// True if an external primitive may have an edge of its own in a box.
     pub fn creased_in(&self, over: &Box3) -> bool {
         self.users.iter().any(|(oracle, map)| {
             let corners = (0..8).map(|k| {
@@ -417,12 +419,13 @@ impl<T: Real> ExprTape<T> {
         values[self.code.len() - 1]
     }
 
-    /// True when it asks primitives from outside, which are better asked many at once.
+    /// True if it calls external primitives, which are faster in batches.
     pub(crate) fn has_users(&self) -> bool {
         self.code.iter().any(|c| matches!(c, ExprInstruction::User(_)))
     }
 
-    /// As [`ExprTape::eval`] at many places, instruction by instruction: a column of values for each.
+    /// As [`ExprTape::eval`] at many points, instruction by instruction: a column of values for
+    /// each.
     pub(crate) fn eval_many<A: Algebra<T>>(&self, at: &[A::At]) -> Vec<Vec<A>> {
         let mut columns: Vec<Vec<A>> = Vec::with_capacity(self.code.len());
         for code in &self.code {
@@ -462,8 +465,8 @@ impl<T: Real> ExprTape<T> {
     }
 }
 
-/// The work of [`ExprTape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
-/// not get the wide registers.
+/// State of [`ExprTape::bulk`]. A struct instead of closures, since code in closures that are not
+/// inlined does not use the wide registers.
 struct Bulk<'a> {
     tape: &'a ExprTape<f64>,
     points: &'a [Vec3],
@@ -522,7 +525,7 @@ impl ExprTape<f64> {
         decided.then(|| self.reduced(self.code.len() as u32 - 1, decide))
     }
 
-    /// Which operand of an instruction alone decides, given the ranges.
+    /// The operand that alone decides an instruction, given the ranges.
     fn decided(&self, k: usize, a: u32, b: u32, ranges: &[Interval]) -> Option<u32> {
         let (x, y) = (ranges[a as usize], ranges[b as usize]);
         let (a_smaller, b_smaller) = (x.high < y.low, y.high < x.low);
@@ -544,7 +547,7 @@ impl ExprTape<f64> {
         let count = self.code.len();
         let mut open: SmallVec<[bool; 64]> = smallvec![false; count];
         open[count - 1] = true;
-        // Operands come before what uses them.
+        // Operands precede their uses.
         for k in (0..count).rev() {
             if !open[k] || !ranges[k].contains(0.0) {
                 continue;

@@ -1,13 +1,15 @@
-//! From blocks to triangles: one quadrilateral round every crossed edge.
+//! Triangles from blocks: one quadrilateral around every crossed edge.
 //!
-//! The vertices of the four cells round an edge lie in their cells, so the segment between two of them
-//! passes through the face that the cells share. The tetrahedra of the edge and each such segment are
-//! therefore disjoint from those of every other edge, and triangles inside them cannot meet others
-//! (Ju and Udeshi, Intersection-free contouring on an octree grid, 2006). A diagonal is used only if
-//! its triangles lie inside; otherwise the polygon is a fan about the crossing.
+//! The vertices of the four cells around an edge are in their cells, so the segment between two of
+//! them passes through the common face of the cells. The tetrahedra of the edge and each such
+//! segment are therefore disjoint from those of every other edge, and triangles inside them cannot
+//! intersect others (Ju and Udeshi, Intersection-free contouring on an octree grid, 2006). A
+//! diagonal is used only if its triangles are inside; otherwise the polygon is a fan about the
+//! crossing.
 //!
-//! Where a cell has several vertices for a piece of surface, the polygons round two neighbouring crossings may use
-//! different ones: then they part on the face between the crossings, and the gap there is filled.
+//! If a cell has several vertices for a piece of surface, the polygons of two neighbouring
+//! crossings may use different ones: they then part on the face between the crossings, and the gap
+//! there is filled.
 
 use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
@@ -30,7 +32,7 @@ pub(super) enum VertexKey {
     Face(u64),
 }
 
-/// Stands for a vertex that is none, or none any more.
+/// Marks a missing or removed vertex.
 pub(super) const NO_VERTEX: u32 = u32::MAX;
 
 /// Triangles with the leaf whose surface they approximate.
@@ -44,9 +46,9 @@ pub(super) struct Assembled {
     pub(super) blunt: Vec<(u32, [usize; 3])>,
 }
 
-/// What the numbers of vertices stand for in triangles that were assembled.
+/// Meaning of the vertex numbers in assembled triangles.
 pub(super) struct VertexNames {
-    /// How many vertices of cells there are: they come first.
+    /// Number of vertices of cells; they come first.
     count: u32,
     others: Vec<VertexKey>,
 }
@@ -97,13 +99,13 @@ pub(super) struct Assembly<'a> {
     pub(super) blocks: &'a [(Arc<ExprTape<f64>>, Arc<FacetBlock>)],
     at: FxHashMap<[u32; 3], usize>,
     base: Vec<u32>,
-    /// How many vertices the blocks have.
+    /// Number of vertices of the blocks.
     pub(super) count: u32,
     pub(super) changes: Changes,
 }
 
-/// The four cells round an edge, counter-clockwise seen against the axis: which lie below the edge
-/// along the next axis and the one after it.
+/// The four cells around an edge, counter-clockwise seen against the axis: 1 if the cell is below
+/// the edge along the next axis, and along the one after it.
 const ROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
 impl<'a> Assembly<'a> {
@@ -133,7 +135,7 @@ impl<'a> Assembly<'a> {
         self.base[owner] + vertex as u32
     }
 
-    /// A vertex as it is now: its point, what it lies on, and whether it is outside its cell.
+    /// Current state of a vertex: its point and surfaces, and whether it is outside its cell.
     pub(super) fn corner(&self, owner: usize, vertex: usize) -> Corner<'_> {
         let number = self.number(owner, vertex);
         if let Some((placed, surfaces)) = self.changes.moved.get(&number) {
@@ -343,7 +345,7 @@ impl<'a> Assembly<'a> {
                 unreachable!("the face of two crossings has a cell on either side")
             };
             let there = self.path(other, there, from, to);
-            // Where both cells have several vertices, the lower cell fills the gap.
+            // If both cells have several vertices, the lower one fills the gap.
             if there.len() > 1 && high == 0 {
                 continue;
             }
@@ -376,7 +378,7 @@ impl<'a> Assembly<'a> {
         let (at, axis) = place(edge);
         let ends = [place(edge), place(next)].map(|(at, axis)| self.crossing(near, at, axis));
         let [Some(p), Some(q)] = ends else { unreachable!("edges of a piece are crossed") };
-        // The polygon round the first crossing runs from here to there, or back.
+        // The polygon around the first crossing has this side, or its reverse.
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         let turn = |cell: [usize; 3]| {
             ROUND.iter().position(|below| [at[b] - cell[b], at[c] - cell[c]] == *below)
@@ -419,8 +421,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Where two cells share a face that the same two pieces of surface cross twice, the pieces would
-    /// share an edge of the mesh twice: a vertex on the face keeps the edges apart.
+    /// If the same two pieces of surface cross a common face of two cells twice, the pieces would
+    /// share an edge of the mesh twice: a vertex on the face separates the edges.
     fn pin(
         &self,
         near: usize,

@@ -20,7 +20,7 @@ fn corner_index(c: [usize; 3]) -> usize {
     (c[0] * CORNERS + c[1]) * CORNERS + c[2]
 }
 
-/// Reusable room.
+/// Reusable memory.
 #[derive(Default)]
 pub(super) struct Scratch {
     points: Vec<Vec3>,
@@ -234,21 +234,22 @@ fn touching(
     }
 }
 
-/// How near zero the value at a crossing is, as a share of those at the edge's ends: near enough that it is
-/// a point of both surfaces where two touch.
+/// Value at a crossing, relative to those at the edge's ends: small enough for the point to be on
+/// both surfaces where two touch.
 const NEAR: f64 = 1e-13;
 
 /// An edge on which the set changes sign, and the part of it where that is.
 struct EdgeBracket {
     ends: [Vec3; 2],
-    /// The part, as shares of the edge, and the values at its ends; that of an end that stays is halved.
+    /// The part, as fractions of the edge, and the values at its ends; that of a retained end is
+    /// halved.
     part: [f64; 2],
     values: [f64; 2],
-    /// The end that stayed: -1 for none.
+    /// The end kept in the last step: 0 or 1, -1 for neither.
     stayed: i8,
     /// A value as small as this is zero.
     small: f64,
-    /// The share that is looked at.
+    /// The tested fraction.
     at: f64,
 }
 
@@ -289,8 +290,8 @@ impl EdgeBracket {
     }
 }
 
-/// Where the set changes sign on each edge; all edges are searched at once, because values at many points are
-/// cheaper than at one.
+/// Sign changes of the set on each edge. All edges are searched together, because evaluation is
+/// cheaper in batches.
 fn cross(tape: &ExprTape<f64>, edges: &mut [EdgeBracket], room: &mut Room) -> Vec<Vec3> {
     let mut open: Vec<u32> = (0..edges.len() as u32).collect();
     let (mut points, mut values) = (Vec::new(), Vec::new());

@@ -1,17 +1,17 @@
-//! Which crossings of a cell's edges belong together, as tables.
+//! Tables of the crossings of a cell's edges that belong together.
 //!
-//! Corner k of a cell lies at (k & 1, k >> 1 & 1, k >> 2). Edge 4 a + i + 2 j runs along axis a from
-//! the corner whose coordinates along the next two axes are i and j.
+//! Corner k of a cell is at (k & 1, k >> 1 & 1, k >> 2). Edge 4 a + i + 2 j is along axis a, from
+//! the corner with the coordinates i and j along the next two axes.
 
 use std::sync::OnceLock;
 
 /// No loop: the edge is not crossed.
 pub(super) const NONE: u8 = u8::MAX;
 
-/// What the signs at a cell's corners say.
+/// Case of the signs at a cell's corners.
 #[derive(Clone, Copy)]
 pub(super) struct Case {
-    /// How many pieces of surface the cell has: closed loops of crossings on its boundary.
+    /// Number of pieces of surface in the cell: closed loops of crossings on its boundary.
     pub(super) loops: u8,
     /// The loop of each crossed edge, or [`NONE`].
     pub(super) loop_of: [u8; 12],
@@ -19,7 +19,7 @@ pub(super) struct Case {
     pub(super) ambiguous: [bool; 6],
     /// The crossed edge that follows each crossed edge round its loop, or [`NONE`] …
     pub(super) next: [u8; 12],
-    /// … and the face 2 a + side on which both lie.
+    /// … and the face 2 a + side that contains both.
     pub(super) side: [u8; 12],
 }
 
@@ -41,7 +41,7 @@ pub(super) fn face_edges(axis: usize, side: usize) -> [usize; 4] {
     [edge(b, c, 0), edge(c, b, 1), edge(b, c, 1), edge(c, b, 0)]
 }
 
-/// Bit k says that `edge` lies in face k = 2 axis + side.
+/// Bit k is set if `edge` is on face k = 2 axis + side.
 pub(super) fn faces_of(edge: usize) -> u8 {
     let a = edge / 4;
     let (b, c) = ((a + 1) % 3, (a + 2) % 3);
@@ -66,8 +66,8 @@ fn make(signs: usize, joins: usize) -> Case {
                 [k, l] => join(k, l),
                 [_, _, _, _] => {
                     ambiguous[2 * axis + side] = true;
-                    // Corner k of the face stands between edges k - 1 and k; corner 0 is the one at
-                    // (0, 0). The solid corners are apart, unless the face's middle is solid.
+                    // Corner k of the face is between edges k - 1 and k; corner 0 is the one at (0,
+                    // 0). The solid corners are separate, unless the middle of the face is solid.
                     let corner = side << axis;
                     let joined = joins >> (2 * axis + side) & 1 == 1;
                     if inside(corner) != joined {

@@ -1,5 +1,5 @@
-//! Bodies that only touch: each is made by itself, so that both stay manifold and neither needs fine cells for the
-//! sake of the contact.
+//! Bodies that only touch: each is meshed separately, so that both stay manifold and the contact
+//! needs no fine cells.
 //!
 //! `operands of a union -> pairs that may meet -> share volume | touch | are apart -> bodies`
 //!
@@ -28,21 +28,21 @@ const MOST: usize = 1000;
 const DEPTH: u32 = 5;
 /// … in at most this many parts.
 const PARTS: usize = 20_000;
-/// Of more pairs that may touch than this it is not proved whether they do.
+/// With more pairs that may touch, contact is not proved.
 const PAIRS: usize = 400;
 /// The cells by which it is proved that two sets share no volume.
 const CELLS: usize = 3000;
-/// Places at most at which it is asked how two sets meet.
+/// Maximum number of points at which the contact of two sets is examined.
 const PLACES: usize = 64;
-/// A common point is sought in this many steps, and known to this part of the box.
+/// Maximum number of steps to a common point, and its accuracy relative to the box.
 const STEPS: usize = 100;
 const SAME: f64 = 1e-10;
 /// Points round a common one that are on both surfaces show a shared face if they are not on one line: their
 /// parallelogram is this part of the square of the radius.
 const AROUND: usize = 64;
 const WIDE: f64 = 0.1;
-/// Of sets without a point in common on their surfaces it is not proved that they share no volume unless the bound is
-/// below this part of the box.
+/// Bound, relative to the box, below which sets without a common point on their surfaces are proved
+/// to share no volume.
 const SHARED: f64 = 1e-9;
 /// Triangles that are through others by this part of a cell are on them, to rounding.
 const TOUCH: f64 = 1e-9;
@@ -72,10 +72,10 @@ fn operands(set: &Set, union: bool) -> Vec<Set> {
     out
 }
 
-/// A set as an intersection, one of whose factors is a union: the ways to take it as a union.
+/// A set as an intersection, one of whose factors is a union: a view of it as a union.
 struct UnionView {
     factors: Vec<Set>,
-    /// Which factor is the union.
+    /// Index of the factor that is the union.
     at: usize,
     parts: Vec<Set>,
 }
@@ -94,7 +94,7 @@ impl UnionView {
         unions.map(view).filter(|v| (2..=MOST).contains(&v.parts.len())).collect()
     }
 
-    /// The set with one part of the union, or several, in its place.
+    /// The set with one part of the union, or several, instead of the union.
     fn with(&self, part: Set) -> Set {
         let mut part = Some(part);
         let factor = |(k, f): (usize, &Set)| match k == self.at {
@@ -175,7 +175,7 @@ fn pairs(
     Ok(found.into_iter().collect())
 }
 
-/// The parts of the box in which two sets may have a point in common; none when they are proved to be apart.
+/// Parts of the box in which two sets may have a common point; none if they are proved to be apart.
 fn common_places(both: &Set, over: &Box3) -> Vec<Vec3> {
     let mut ranges = Vec::new();
     let mut front = vec![(sides(over), both.compiled().tape)];
@@ -195,7 +195,7 @@ fn common_places(both: &Set, over: &Box3) -> Vec<Vec3> {
     front.into_iter().map(|(place, _)| Vec3::from(place.map(|s| s.middle()))).collect()
 }
 
-/// A set with what is asked of it at points.
+/// A set with its evaluators at points.
 struct SetSurface {
     tape: Arc<ExprTape<f64>>,
     leaves: Vec<Leaf>,
@@ -216,8 +216,8 @@ impl SetSurface {
     }
 }
 
-/// A point that two surfaces have in common, near a given one: Gauss-Newton steps of least norm on the leaves that
-/// decide. Where the surfaces touch the steps halve the distance.
+/// A common point of two surfaces, near a given one: Gauss-Newton steps of least norm on the
+/// deciding leaves. At a tangential contact each step halves the distance.
 fn common_point(a: &SetSurface, b: &SetSurface, start: Vec3, size: f64) -> Option<Vec3> {
     let mut p = start;
     for _ in 0..STEPS {
@@ -237,10 +237,10 @@ fn common_point(a: &SetSurface, b: &SetSurface, start: Vec3, size: f64) -> Optio
     None
 }
 
-/// Whether there is a point inside of both sets near one that is on their surfaces.
+/// True if there is an interior point of both sets near a point on their surfaces.
 fn overlap(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     let (Some((_, m)), Some((_, n))) = (a.height(p), b.height(p)) else { return false };
-    // Where surfaces nearly touch, what the sets share is a lens whose rim they have in common: across the rim.
+    // Near a tangential contact the intersection is a lens; inward is across its rim.
     let Some(inward) = ((m + n) * -1.0).normalized() else { return false };
     [1e-1, 1e-2, 1e-3, 1e-4, 1e-5].into_iter().any(|reach| {
         let q = p + inward * (reach * size);
@@ -249,7 +249,8 @@ fn overlap(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     })
 }
 
-/// Whether two surfaces that meet at a point have a piece of surface in common there, and not a line or the point only.
+/// True if two surfaces that meet at a point share a piece of surface there, not only a line or the
+/// point.
 fn share_face(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     [2e-2, 1e-3].into_iter().any(|part| {
@@ -272,7 +273,7 @@ fn share_face(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     })
 }
 
-/// Sets that share no volume, and the places where they touch.
+/// Sets without common volume, and their contacts.
 pub(super) struct Parted {
     pub(super) sets: Vec<Set>,
     pub(super) contacts: Vec<Vec3>,
@@ -280,7 +281,8 @@ pub(super) struct Parted {
     tangent: bool,
 }
 
-/// The bodies of a set that touch others in points or lines; `None` when there is one only, or none touch.
+/// The bodies of a set that touch others in points or lines; `None` for a single body, or without
+/// contact.
 pub(super) fn parted(
     set: &Set,
     over: &Box3,
@@ -345,14 +347,14 @@ fn parted_by(view: &UnionView, over: &Box3, budget: &Budget) -> Result<Option<Pa
     Ok(Some(Parted { sets, contacts: contacts.into_iter().map(|c| c.2).collect(), tangent }))
 }
 
-/// Whether the surfaces of two sets have one tangent plane at a point that is on both, or nearly.
+/// True if the surfaces of two sets have nearly the same tangent plane at a common point.
 fn tangent(a: &Set, b: &Set, p: Vec3) -> bool {
     let normal = |set| SetSurface::of(set).height(p).map(|h| h.1);
     let (Some(m), Some(n)) = (normal(a), normal(b)) else { return false };
     m.cross(n).norm() <= TANGENT
 }
 
-/// How far one of two triangles reaches through the plane of the other, at most.
+/// Maximum penetration of one of two triangles through the plane of the other.
 fn depth(mesh: &Mesh, pair: [usize; 2]) -> f64 {
     let [s, t] = pair.map(|face| {
         let corners = mesh.faces()[face];
@@ -368,8 +370,8 @@ fn depth(mesh: &Mesh, pair: [usize; 2]) -> f64 {
     through(s, t).min(through(t, s))
 }
 
-/// Faces of bodies that share an edge cut each other by roundings: their corners on the planes of others go into their
-/// bodies by less than what vertices may be off their surfaces.
+/// Retracts faces of bodies that share an edge and penetrate each other by rounding: corners are
+/// moved into their bodies from planes of others, by less than the accuracy of vertices.
 fn withdrawn(
     mesh: &Mesh,
     pairs: &[[usize; 2]],

@@ -5,8 +5,8 @@ use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
 use smallvec::SmallVec;
 
-/// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
-/// that touch to rounding only do not count. With `flagged`, only pairs of which one is flagged.
+/// Intersecting pairs of faces of a triangle mesh, in order, by the signs of volumes; pairs that
+/// touch within rounding do not count. With `flagged`, only pairs with a flagged one.
 ///
 /// # Example
 /// ```
@@ -48,7 +48,8 @@ pub(super) fn crossings(
     }
     let size = (SIDES_IN_BIN * sum / number).min(longest).max(longest / 32.0);
     let bins = |b: Box3| bins(&b, size).map(hash);
-    // Which bins hold something that was chosen, by some bits of their hashes: most others are known without a look.
+    // Bins with a chosen triangle, by some bits of their hashes: rejects most others without a
+    // look-up.
     let mut filled = vec![false; (8 * number as usize).next_power_of_two().clamp(1 << 12, 1 << 26)];
     let mask = filled.len() as u64 - 1;
     let mut all = Box3::EMPTY;
@@ -78,7 +79,7 @@ pub(super) fn crossings(
         let mut pairs: SmallVec<[[usize; 2]; 4]> = SmallVec::new();
         for (n, (h, f, own)) in here.iter().enumerate() {
             for (i, g, other) in &here[n + 1..] {
-                // What is in several bins is looked at in the first.
+                // A pair in several bins is tested in the first.
                 if h == i
                     && meet(own, other)
                     && (chosen(*f) || chosen(*g))
@@ -121,12 +122,12 @@ pub(super) fn meet(a: &Box3, b: &Box3) -> bool {
     (0..3).all(|k| a.low[k] <= b.high[k] && a.high[k] >= b.low[k])
 }
 
-/// The low corner of what two boxes have in common.
+/// Low corner of the intersection of two boxes.
 pub(super) fn common_low(a: &Box3, b: &Box3) -> Vec3 {
     Vec3::from([0, 1, 2].map(|k| a.low[k].max(b.low[k])))
 }
 
-/// How wide bins are, in sides of triangles.
+/// Width of bins, relative to the sides of triangles.
 const SIDES_IN_BIN: f64 = 1.5;
 
 /// A number for a bin; two bins may have the same, which costs a look and does no harm.
@@ -170,7 +171,7 @@ impl Buckets {
     }
 }
 
-/// How far from its limit a comparison of squares is sure.
+/// Relative difference above which a comparison of squares is certain.
 const SURE: f64 = 1e-9;
 
 /// Six times the volume of a tetrahedron, or zero when rounding may decide its sign.
@@ -225,7 +226,7 @@ pub(super) fn cut_in_planes(
     points: [[Vec3; 3]; 2],
     planes: [TrianglePlane; 2],
 ) -> bool {
-    // An edge can pierce the other triangle only if they share none of its ends.
+    // An edge can pierce the other triangle only without a common vertex.
     let mut sides = [[0.0; 3]; 2];
     for (s, t) in [(0, 1), (1, 0)] {
         for k in 0..3 {

@@ -1,9 +1,10 @@
-//! Where triangles show a surface that another primitive cuts off: an edge or corner that passes between the corners of
-//! cells and has no crossing.
+//! Triangles that show a surface which another primitive cuts off: an edge or corner passes between
+//! the corners of cells without a crossing.
 //!
-//! The middles of triangles and of their sides are put onto the surfaces that they should be on. There the set is zero, or
-//! another primitive decides: then its edge runs through the triangle and is not among the triangles' sides. Where a primitive
-//! may show, by ranges, that no corner there is on, points between are looked at, too.
+//! The centres of triangles and the midpoints of their sides are projected onto their surfaces. The
+//! set is zero there, or another primitive decides: then the edge between both passes through the
+//! triangle. If, by ranges, a primitive that no corner is on may decide, further points are
+//! examined.
 
 use super::assemble::Assembled;
 use super::grid::Grid;
@@ -18,16 +19,17 @@ use moldloft_parallel::prelude::*;
 use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
-/// What is cut off by less than this part of a cell is not.
+/// Cuts smaller than this fraction of a cell are ignored.
 pub(super) const NEAR: f64 = 0.01;
 /// Two values are the same when they differ by no more than this part.
 const SAME: f64 = 1e-9;
-/// So far from triangles their surfaces are looked for, in cells.
+/// Distance from triangles within which their surfaces are searched, in cells.
 const MARGIN: f64 = 0.05;
-/// A point farther than this part of a side from its middle is none of the surface between.
+/// A projected point farther than this fraction of a side from its midpoint is not on the surface
+/// between.
 const AWAY: f64 = 0.5;
 
-/// A place to look at: what it should be on, and how far round it.
+/// A sample: its expected surfaces, and its neighbourhood.
 struct CutOffSample {
     triangle: u32,
     /// A corner or the side after it, the middle, or a point between: 0 to 2, 3 to 5, 6, 7 and more.
@@ -40,7 +42,7 @@ struct CutOffSearch<'a> {
     grid: &'a Grid,
 }
 
-/// Reusable room.
+/// Reusable memory.
 #[derive(Default)]
 struct CutOffRoom {
     points: Vec<Vec3>,
@@ -51,15 +53,15 @@ struct CutOffRoom {
     room: Room,
     registers: Vec<f64>,
     solver: Solver,
-    /// Triangles where a primitive may show that none of their cell's corners is on.
+    /// Triangles in whose cells a primitive may decide that no corner is on.
     hidden: FxHashSet<u32>,
-    /// Triangles by the places of their cells in the block.
+    /// Triangles by the positions of their cells in the block.
     placed: Vec<(u16, u32)>,
     cells: Vec<ShownCell>,
     ranges: Vec<Interval>,
 }
 
-/// A cell with what the corners of its triangles are on.
+/// A cell with the surfaces of its triangles' corners.
 struct ShownCell {
     /// Its place in the block, the bits of the axes interleaved.
     place: u16,
@@ -75,7 +77,7 @@ fn interleaved(local: [usize; 3]) -> u16 {
     (0..bits).flat_map(|b| (0..3).map(move |k| bit(b, k))).sum::<usize>() as u16
 }
 
-/// The cells in which another primitive cuts off what triangles show.
+/// Cells in which another primitive cuts off surfaces of triangles.
 pub(super) fn cut_off(
     made: &Assembled,
     grid: &Grid,
@@ -139,7 +141,7 @@ pub(super) fn folded(
     cells
 }
 
-/// Whether several primitives may decide.
+/// True if several primitives may decide.
 fn several(tape: &ExprTape<f64>) -> bool {
     let mut shown = tape.leaf.iter().filter(|l| **l != NO_LEAF);
     let first = shown.next();
@@ -168,7 +170,7 @@ impl CutOffSearch<'_> {
         cells
     }
 
-    /// Finds the triangles in whose cells a primitive may show that none of the corners is on.
+    /// Finds the triangles in whose cells a primitive may decide that no corner is on.
     fn find_hidden(
         &self,
         tape: &ExprTape<f64>,
@@ -287,7 +289,7 @@ impl CutOffSearch<'_> {
         self.made.triangles[triangle as usize].1.map(|v| self.made.positions[v as usize])
     }
 
-    /// What a side of a triangle lies on.
+    /// Surfaces of a side of a triangle.
     fn on(&self, leaf: u32, [a, b]: [u32; 2]) -> Surfaces {
         let surfaces = &self.made.surfaces;
         let other = |s: &u32| *s != leaf && surfaces[b as usize].contains(s);
@@ -339,7 +341,7 @@ impl CutOffSearch<'_> {
         let other = solver.gradient(self.leaves[winner as usize].primitive.tape(), at);
         let far = |slack: f64| value.abs() > slack * other.slope.norm();
         let mut slack = NEAR * self.grid.step;
-        // Sides that stand for an edge leave it by this much.
+        // Sides that represent an edge deviate from it by this much.
         if sample.part >= 6 && far(slack) {
             for k in 0..3 {
                 let middle = (p[k] + p[(k + 1) % 3]) * 0.5;

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The blocks that the surface may pass through, in a fixed order, with their pruned tapes.
 pub(super) struct Divided {
     pub(super) blocks: Vec<(Arc<ExprTape<f64>>, Arc<FacetBlock>)>,
-    /// How many blocks were computed; the others were taken over.
+    /// Number of blocks computed; the others were reused.
     pub(super) computed: usize,
 }
 
@@ -89,7 +89,7 @@ pub(super) fn divide(
     Ok(Divided { blocks: out, computed: division.computed.into_inner() })
 }
 
-/// The eight halves of a node that lie in the grid, by their low corners.
+/// The halves of a node within the grid, by their low corners.
 fn children(at: [usize; 3], half: usize, blocks: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..8)
         .map(move |c| {
@@ -127,7 +127,7 @@ impl Division<'_> {
         if let Some(old) = self.reuse.and_then(|reuse| reuse.get(at, &tape)) {
             return Ok(Some((tape, old)));
         }
-        // What is refused ends the work on all threads.
+        // An error ends the work on all threads.
         if self.rough.load(Ordering::Relaxed) > MOST_ROUGH {
             return Err(self.too_rough());
         }

@@ -5,7 +5,7 @@ use crate::FieldError;
 use crate::expr::interval::Interval;
 use moldloft_num::{Box3, Vec3};
 
-/// Cubic cells over a box, with a margin so that the box's own faces lie between corners.
+/// Cubic cells over a box, with a margin so that the faces of the box are between grid points.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grid {
     origin: Vec3,
@@ -26,10 +26,10 @@ const MARGINS: [[f64; 3]; PLACES] = [
     [0.141_593, 0.718_282, 0.554_958],
     [0.867_257, 0.577_216, 0.259_921],
 ];
-/// How many places a grid may have.
+/// Maximum number of positions of a grid.
 pub(super) const PLACES: usize = 4;
 
-/// The most cells along an axis: what the keys of edges can hold.
+/// Maximum number of cells along an axis, as the keys of edges can represent.
 const MOST: f64 = (1 << 19) as f64;
 
 /// Minimum distance of corners of cells, in roundings of their coordinates.
@@ -76,12 +76,12 @@ impl Grid {
         [0, 1, 2].map(|k| Interval { low: a[k], high: b[k] })
     }
 
-    /// The block that a point lies in.
+    /// Block that contains a point.
     pub(super) fn block_of(&self, p: Vec3) -> [u32; 3] {
         [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / (self.step * SIDE as f64)).max(0.0) as u32)
     }
 
-    /// The cell that a point lies in.
+    /// Cell that contains a point.
     pub(super) fn cell_of(&self, p: Vec3) -> [usize; 3] {
         [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / self.step).max(0.0) as usize)
     }

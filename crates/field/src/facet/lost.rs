@@ -1,10 +1,11 @@
-//! What facets to an accuracy must not lack: parts of the set of which no triangle is near, and places between bodies that
-//! may be one.
+//! Content that facets to an accuracy must not miss: parts of the set without a triangle nearby,
+//! and possible bridges between bodies.
 //!
-//! Places that stay unresolved are joined to clusters where they touch. A cluster is lost when no vertex is as near as the
-//! accuracy, when the triangles about it belong to several bodies, or when a place of it is larger than the accuracy; all are when
-//! they hold a part of the volume that counts. So are cells whose edges or corners are cut off: of a plate about as thick as a
-//! cell these are most of its cells, and its triangles have holes.
+//! Unresolved regions are joined to clusters where they touch. A cluster is lost if no vertex is
+//! within the accuracy, if the triangles about it belong to several bodies, or if a region of it is
+//! larger than the accuracy; all are lost if their volume is significant. So are cells with cut-off
+//! edges or corners: for a plate about as thick as a cell these are most of its cells, and its
+//! triangles have holes.
 
 use super::{Facets, Unresolved};
 use moldloft_mesh::Mesh;
@@ -12,7 +13,7 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// What all places together may hold, as a part of the body.
+/// Maximum content of all such regions, relative to the body.
 const HELD: f64 = 1e-3;
 
 pub(super) fn side(b: &Box3) -> f64 {
@@ -39,11 +40,11 @@ fn around([i, j, k]: Bin) -> impl Iterator<Item = Bin> {
     (0..27).map(move |n| [i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1])
 }
 
-/// The clusters of places that touch, in the order of their first.
+/// The clusters of touching regions, in the order of their first.
 fn clusters(open: &[Unresolved], step: f64) -> Vec<Vec<usize>> {
     let mut groups = UnionFind::new(open.len());
     let mut bins: FxHashMap<Bin, usize> = FxHashMap::default();
-    // A cell has its places together; cells that touch are neighbours.
+    // The regions of a cell belong together; cells that touch are neighbours.
     for (k, u) in open.iter().enumerate() {
         let own = bin(u.place.centre(), step);
         for b in around(own) {

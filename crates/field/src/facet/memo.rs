@@ -1,4 +1,4 @@
-//! Facets that were made lately: what is asked again is there, and what is like it gives its blocks.
+//! Cache of recent facets: equal requests return them, similar ones reuse their blocks.
 //!
 //! This changes no result: [`crate::refacet`] gives the same bits whatever it takes over.
 
@@ -16,7 +16,7 @@ struct MemoEntry {
     facets: Arc<Facets>,
 }
 
-/// How many facets are kept, and how many cells these have together.
+/// Maximum number of cached facets, and of their cells in total.
 const MOST: usize = 12;
 const MOST_CELLS: usize = 1_500_000;
 

@@ -1,13 +1,13 @@
-//! Facets: the boundary of a set as triangles, each of which knows its primitive.
+//! Facets: the boundary of a set as triangles with their primitives.
 //!
 //! `set & box -> division by ranges -> blocks of cells -> a vertex per piece of surface -> triangles`
 //!
-//! The box is divided where the range of the set contains zero; in every part, primitives that do not
-//! decide are left out. A cell's vertex lies on all the primitives that its piece of surface shows:
-//! one puts it on a face, two on an edge, three on a corner. Where these have no common point, several edges
-//! or corners pass through the cell, and it has several vertices. Each crossed edge of the grid gives a
-//! quadrilateral with the primitive that decides at the crossing, so faces of two primitives meet in
-//! vertices that lie on both.
+//! The box is divided where the range of the set contains zero; in every part, primitives that do
+//! not decide are left out. A cell's vertex is on all the primitives of its piece of surface: one
+//! puts it on a face, two on an edge, three on a corner. If these have no common point, several
+//! edges or corners pass through the cell, and it has several vertices. Each crossed edge of the
+//! grid gives a quadrilateral with the primitive that decides at the crossing, so faces of two
+//! primitives meet in vertices on both.
 
 mod assemble;
 mod block;
@@ -54,8 +54,8 @@ use types::FacetBlock;
 use types::Reuse;
 pub use types::{FacetOptions, Resolution, Unresolved};
 
-/// What refinement holds for each triangle while it works: a copy, the edges beside it, the normals, and the
-/// triangles that it makes.
+/// Memory of refinement for each triangle: a copy, the adjacent edges, the normals, and the new
+/// triangles.
 const REFINEMENT_BYTES: u64 = 400;
 
 /// The boundary of a set within a box.
@@ -65,32 +65,34 @@ pub struct Facets {
     pub mesh: Mesh,
     /// The leaves of the set, followed by the six faces of the box.
     pub leaves: Vec<Leaf>,
-    /// How many of the leaves are the set's own.
+    /// Number of leaves that are the set's own.
     pub own_leaves: usize,
     /// The leaf of each patch.
     pub patch_leaves: Vec<usize>,
-    /// The leaves that each vertex lies on.
+    /// Leaves of each vertex.
     pub surfaces: Vec<SmallVec<[u32; 3]>>,
     /// Cells whose triangles cut others, or may when the facets were to be sharp. Elsewhere no two triangles meet except where they join: by
     /// construction, or where a cell has several vertices or one outside it, by test.
     pub undecided: Vec<Box3>,
-    /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
-    /// cell, or its vertices would have made triangles cut each other. Cells, too, in which another primitive cuts off by as much what
-    /// triangles show at their corners, middles of sides or centres, and those in which triangles fold back upon each other.
+    /// Cells with cut-off edges or corners: no vertex is within a hundredth of a cell of the edge
+    /// or corner, because it is thinner than a cell, or because its vertices would have made
+    /// triangles intersect. Also cells in which another primitive cuts off surfaces of triangles by
+    /// as much at their corners, midpoints of sides or centres, and cells with folded triangles.
     pub blunt: Vec<Box3>,
-    /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
+    /// Cells, or parts of them, that may contain features that their corners do not show. Nothing
+    /// is missed elsewhere.
     pub unresolved: Vec<Unresolved>,
-    /// Where bodies that share no volume touch, and were made by themselves.
+    /// Contacts of bodies without common volume, which were meshed separately.
     pub contacts: Vec<Vec3>,
     /// The point about which moments are taken: the middle of the box.
     pub(crate) about: Vec3,
-    /// How many cells the surface passes through.
+    /// Number of cells that the surface passes through.
     pub cells: usize,
     /// Side of a cell; of a body of planes alone, its shortest edge.
     pub step: f64,
-    /// How many blocks of 8 x 8 x 8 cells hold the surface.
+    /// Number of blocks of 8 x 8 x 8 cells that contain the surface.
     pub blocks: usize,
-    /// How many of them were computed; the others were taken over from the facets before.
+    /// Number of blocks computed; the others were reused from earlier facets.
     pub computed: usize,
     memory: Memory,
 }
@@ -205,7 +207,7 @@ pub(crate) fn facet_within(
             let step = step_of(level).min(shortest(&over).1 * part.min(1.0));
             check(step)?;
             let facets = sharpest(set, &over, step, options, before)?;
-            // Integrals have their own means for what is thin.
+            // Integrals treat thin features separately.
             if options.sharp {
                 return Ok(facets);
             }
@@ -217,7 +219,7 @@ pub(crate) fn facet_within(
             check(step)?;
             thin(step)?;
             let facets = sharpest(set, &over, step, options, before)?;
-            // The cells are as asked; bodies that only touch are parted all the same.
+            // The resolution is as requested; bodies that only touch are separated nevertheless.
             if options.sharp {
                 return Ok(facets);
             }
@@ -275,14 +277,14 @@ pub(crate) fn facet_within(
     }
 }
 
-/// How many cells are taken, unless asked otherwise, for the sake of what is thin; and at most when an accuracy is asked.
+/// Default maximum number of cells spent on thin features, and the maximum with a given accuracy.
 const USUAL_CELLS: f64 = 4e5;
 const MOST_CELLS: f64 = 3e6;
 
-/// What is missed matters to the eye, and is worth finer cells unasked, if it is this part of the body.
+/// Missed content, relative to the body, that is visible and justifies finer cells by default.
 const MATTERS: f64 = 1e-5;
 
-/// How thick that is which a place may hold, at least: it crosses the place on its longest way.
+/// Minimum thickness of the content of a region, since it crosses the region along its diagonal.
 fn thickness(u: &Unresolved) -> f64 {
     u.volume / (3f64.sqrt() * lost::side(&u.place).powi(2))
 }
@@ -314,7 +316,7 @@ impl CompleteFacets {
     }
 }
 
-/// Facets that miss more than this part of their body are none of it.
+/// Facets that miss more than this fraction of their body are an error.
 const REFUSED: f64 = 1e-3;
 
 impl CompleteFacets {
@@ -377,23 +379,24 @@ fn shortest(over: &Box3) -> (usize, f64) {
     (axis, side(axis))
 }
 
-/// From which depth on the cells of a box of that size are no thicker than one.
+/// Minimum depth at which the cells of a box of that size are not thicker than one.
 fn least_depth(size: f64, over: &Box3) -> u32 {
     halvings(size, shortest(over).1)
 }
 
-/// How often a length is halved until it is no longer than another; at most 1000 times.
+/// Number of halvings after which a length is at most `least`; at most 1000.
 fn halvings(length: f64, least: f64) -> u32 {
     (0..1000).find(|&k| length <= least * 2f64.powi(k)).unwrap_or(1000) as u32
 }
 
-/// How many of the leaves of a capped set are the set's own. A face of the set that lies in a face of the box is the set's.
+/// Number of leaves of a capped set that are the set's own. A face of the set in a face of the box
+/// belongs to the set.
 fn own_leaves(capped: &Compiled<f64>) -> usize {
     let own = capped.places.len().saturating_sub(CAPS.len());
     capped.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0)
 }
 
-/// Facets of more cells than this are not made again with the grid in other places.
+/// Facets of more cells than this are not repeated with a shifted grid.
 const FEW_CELLS: usize = 60_000;
 /// The same of those for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
@@ -407,7 +410,7 @@ fn sharpest(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let mut best = at_step(set, over, step, f64::INFINITY, options, before)?;
-    // Integrals do not mind triangles that cut others.
+    // For integrals, intersecting triangles do not matter.
     let cost = |f: &Facets| match options.sharp {
         true => f.blunt.len(),
         false => f.blunt.len() + f.undecided.len() + slivers::count(&f.mesh),
@@ -466,7 +469,7 @@ fn on_grid(
     let mut bends: Vec<[usize; 3]> = bends.into_iter().map(|p| grid.cell_of(p)).collect();
     let amiss = |made: &_| {
         let mut cells = cut_off::cut_off(made, &grid, &leaves, &tapes);
-        // Integrals do not mind.
+        // Not needed for integrals.
         if !options.sharp {
             cells.extend(cut_off::folded(made, &grid, &leaves, &tapes));
         }
@@ -538,7 +541,7 @@ fn on_grid(
     })
 }
 
-/// The cells of doubtful vertices of which a triangle does cut another.
+/// Cells of doubtful vertices with an intersecting triangle.
 fn undecided(grid: &Grid, mesh: &Mesh, doubtful: &[(u32, [usize; 3])]) -> Vec<Box3> {
     let positions = mesh.positions();
     let faces = mesh.faces();
@@ -560,7 +563,7 @@ fn cells(grid: &Grid, mut cells: Vec<[usize; 3]>) -> Vec<Box3> {
     cells.into_iter().map(|c| grid.cell(c)).collect()
 }
 
-/// What a patch says of the leaf it shows.
+/// Attributes of the patch of a leaf.
 pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
     let kind = leaf.primitive.form().name();
     let name = leaf.attributes.name.clone().unwrap_or_else(|| kind.to_owned());
@@ -598,7 +601,7 @@ impl Facets {
         self.centre_distances().into_iter().fold(0.0, f64::max)
     }
 
-    /// The largest distance |f| / |f'| of a vertex from a surface that it lies on.
+    /// Largest distance |f| / |f'| of a vertex from its surfaces.
     pub fn worst_vertex(&self) -> f64 {
         let mut solver = vertex::Solver::default();
         let mut worst = 0.0f64;

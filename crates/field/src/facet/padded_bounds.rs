@@ -1,4 +1,4 @@
-//! Boxes thick enough for what has no thickness.
+//! Boxes with a minimum thickness.
 //!
 //! Sheets, wires and points are found as faces, edges and corners of solids, which must be thicker than the cells of
 //! a grid. Beside a face of the box they may not be; but where a sheet does not reach that face, it cuts nothing off
@@ -10,14 +10,15 @@ use crate::{Primitive, Set};
 use moldloft_num::{Box3, Vec3};
 use std::sync::Arc;
 
-/// What a side should be of the longest, and by what part of that all sides are widened at least: four and two cells
-/// where the longest has sixteen.
+/// Minimum side relative to the longest, and minimum widening relative to the longest: four and two
+/// cells where the longest has sixteen.
 const LEAST: f64 = 0.25;
 const MORE: f64 = 0.125;
 /// Number of boxes with possible content after which a face is left where it is.
 const MOST_BOXES: usize = 4096;
 
-/// The box with its sides widened wherever the points of `set` on all `surfaces` keep away from what is gained.
+/// The box with its sides widened, unless points of `set` on all `surfaces` would be in the added
+/// part.
 pub(crate) fn padded_bounds(over: &Box3, set: &Set, surfaces: &[&Primitive]) -> Box3 {
     let mut over = *over;
     let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Where the vertices of a piece of surface in a cell go: one on all primitives that the piece shows or,
-//! when these have no common point in the cell, several.
+//! Placement of the vertices of a piece of surface in a cell: one on all its primitives or, if
+//! these have no common point in the cell, several.
 
 use super::cell::faces_of;
 use super::split::split;
@@ -14,12 +14,12 @@ use smallvec::SmallVec;
 /// An edge or corner within this fraction of a cell from its vertex counts as hit: such are
 /// those of surfaces that touch along it.
 const MIN_FEATURE: f64 = 0.01;
-/// What shows beside an edge is looked at this part of a cell away from it, …
+/// Distance of probes beside an edge, in cells, …
 const ASIDE: f64 = 1e-4;
 /// … where surfaces meet at an angle of more than this.
 const TOUCH: f64 = 1e-2;
 
-/// What the vertices of a cell are placed with.
+/// Context of the placement in one cell.
 pub(super) struct VertexPlacer<'a> {
     pub(super) tape: &'a ExprTape<f64>,
     pub(super) leaves: &'a [Leaf],
@@ -29,7 +29,7 @@ pub(super) struct VertexPlacer<'a> {
     pub(super) registers: &'a mut Vec<f64>,
 }
 
-/// What a piece of surface comes to.
+/// Vertices of a piece of surface.
 pub(super) enum PieceVertices {
     /// One vertex, on these surfaces; `blunt` if it should be on more, `creased` if one of them has an edge of its own.
     One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool, creased: bool },
@@ -56,7 +56,8 @@ impl VertexPlacer<'_> {
             placed = self.by_sides(&surfaces, edges, placed);
         }
         if placed.residual > self.goal {
-            // The edge or corner that the crossings announce lies in a neighbour, or there are several.
+            // The edge or corner indicated by the crossings is in a neighbour, or there are
+            // several.
             let Self { leaves, cell, goal, .. } = *self;
             let stray = |work: &mut Self, surfaces: &Surfaces| {
                 let found = work.solver.outside_cell(leaves, surfaces, middle, cell, goal);
@@ -195,7 +196,7 @@ impl VertexPlacer<'_> {
         (value.abs() > self.goal * gradient.slope.norm()).then_some(leaf)
     }
 
-    /// The side of the cell, flat, on which both edges lie.
+    /// The face of the cell that contains both edges, as a flat box.
     pub(super) fn shared_side(&self, e: usize, f: usize) -> Option<Box3> {
         let shared = faces_of(e) & faces_of(f);
         if shared == 0 {
@@ -208,7 +209,7 @@ impl VertexPlacer<'_> {
         Some(Box3 { low: low.into(), high: high.into() })
     }
 
-    /// Where two surfaces meet on a side of the cell, between two crossings.
+    /// Intersection of two surfaces on a face of the cell, between two crossings.
     pub(super) fn change(
         &mut self,
         p: &EdgeCrossing,
@@ -222,9 +223,9 @@ impl VertexPlacer<'_> {
         (change.residual <= self.goal).then_some(change)
     }
 
-    /// A better place than `placed`, found by way of the cell's faces. Where two neighbouring
-    /// crossings show different primitives, the surface changes from one to the other on the face
-    /// between them: so there is a point on both, and more are nearby inside.
+    /// A better position than `placed`, from the faces of the cell. Between two neighbouring
+    /// crossings of different primitives the surface changes from one to the other on the face
+    /// between them; the vertex is near such points.
     fn by_sides(
         &mut self,
         surfaces: &[u32],
@@ -273,8 +274,8 @@ impl VertexPlacer<'_> {
         self.shown(found, surfaces)
     }
 
-    /// A point of two or three surfaces if it is on an edge or in a corner of the set: one that does not show there, such as the
-    /// other half of a double cone, has none.
+    /// A point of two or three surfaces if it is on an edge or in a corner of the set; hidden
+    /// points, such as the other half of a double cone, are rejected.
     fn shown(&mut self, found: PlacedVertex, surfaces: &[u32]) -> PlacedVertex {
         let asked = (2..=3).contains(&surfaces.len()) && !self.tape.has_users();
         if !asked || found.residual > self.goal {

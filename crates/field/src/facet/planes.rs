@@ -3,9 +3,10 @@
 //! `formula -> the part of every plane on which the body ends, by splitting polygons -> edges by intervals on lines -> loops ->
 //! triangles`
 //!
-//! On a polygon of one plane the formula keeps what still decides there. Where both sides of the plane are known the polygon is
-//! face or none; else it is split by the plane that is nearest to its own in the formula. A corner is the point of three planes,
-//! the same bits from all of its faces. What is closer together than rounding tells apart is left to cells.
+//! On a polygon of one plane the formula is reduced to what decides there. If both sides of the
+//! plane are known, the polygon is a face or not; otherwise it is split by the plane nearest to its
+//! own in the formula. A corner is the point of three planes, with the same bits from all of its
+//! faces. Bodies with distances near rounding are left to cells.
 
 use super::types::FacetOptions;
 use super::{Facets, Grid, Memory, capped, info, own_leaves};
@@ -20,13 +21,14 @@ use smallvec::SmallVec;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What counts as on a plane, as a share of the box.
+/// Distance from a plane, relative to the box, of points on it.
 const ON: f64 = 1e-11;
 /// Distance relative to the box below which two planes cannot be distinguished over a polygon.
 const NEAR: f64 = 1e-8;
-/// Corners within this share of the box are one.
+/// Distance of corners, relative to the box, within which they coincide.
 const ONE_POINT: f64 = 1e-10;
-/// How far beside each triangle it is looked whether it is the body's, as a share of the box.
+/// Distance of the probes beside each triangle that check whether it is a face of the body,
+/// relative to the box.
 const BESIDE: f64 = 2e-9;
 /// Bodies of more planes than this are left to cells.
 const MOST_PLANES: usize = 20_000;
@@ -193,7 +195,7 @@ fn has(formula: &PlaneFormula, own: u32) -> bool {
     }
 }
 
-/// What a formula is on one side of plane `own`; surface where other planes decide.
+/// State of a formula on one side of plane `own`; surface if other planes decide.
 fn state(formula: &PlaneFormula, own: u32, front: bool) -> Membership {
     match formula {
         PlaneFormula::Side(k, flipped) if *k == own => match front == *flipped {
@@ -223,7 +225,8 @@ fn nearest_plane(formula: &PlaneFormula, own: u32) -> Option<u32> {
 
 /// A face of the body: its plane, whether the solid is behind it, and its edges as numbers of corners.
 type PlaneFaces = BTreeMap<(u32, bool), Vec<[usize; 2]>>;
-/// Where edges begin and end on the line of a face with another plane: the place, +1 or -1, and the corner.
+/// Starts and ends of edges on the line of a face with another plane: position, +1 or -1, and
+/// corner.
 type LineEnds = BTreeMap<(u32, bool, u32), Vec<(f64, i32, Vec3)>>;
 
 /// The ends of all pieces of face on the lines of intersection of planes; `None` if some cannot be
@@ -316,7 +319,7 @@ impl CornerIndex {
     }
 }
 
-/// The edges of all faces, broken at every corner that lies on them.
+/// Edges of all faces, split at every corner on them.
 fn faces_of(ends: LineEnds, size: f64) -> (Vec<Vec3>, PlaneFaces) {
     let mut index =
         CornerIndex { cell: ONE_POINT * size, points: Vec::new(), bins: FxHashMap::default() };
@@ -375,7 +378,8 @@ fn faces_of(ends: LineEnds, size: f64) -> (Vec<Vec3>, PlaneFaces) {
     (points, faces)
 }
 
-/// The closed lines of a face's edges; where several meet in a corner, the one that turns inward most goes on.
+/// Closed loops of a face's edges; at a corner with several edges, the one that turns inward most
+/// continues.
 fn loops_of(edges: &[[usize; 2]], flat: &dyn Fn(usize) -> [f64; 2]) -> Option<Vec<Vec<usize>>> {
     let mut next: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for [a, b] in edges {
@@ -449,7 +453,8 @@ fn triangles_of(
     let (outer, holes): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| area(l, &flat) > 0.0);
     let mut groups: Vec<Vec<Vec<usize>>> = outer.into_iter().map(|l| vec![l]).collect();
     for hole in holes {
-        // A point just inside of the solid beside the hole would do as well; a corner may lie on a loop round it.
+        // A point just inside the solid beside the hole is as good; a corner may be on a
+        // surrounding loop.
         let [[a, b], [c, d]] = [flat(hole[0]), flat(hole[1])];
         let middle = [0.5 * (a + c), 0.5 * (b + d)];
         let round = (0..groups.len()).filter(|g| holds(&groups[*g][0], &flat, middle));
@@ -481,7 +486,8 @@ fn triangles_of(
     Some(out)
 }
 
-/// Whether every edge has one triangle on each side, and all triangles at a corner hang together.
+/// True if every edge has one triangle on each side, and the triangles at each corner are
+/// connected.
 fn is_manifold(triangles: &[(u32, [usize; 3])], corners: usize) -> bool {
     let mut sides: FxHashMap<[usize; 2], usize> = FxHashMap::default();
     let mut round = vec![0usize; corners];
@@ -518,7 +524,7 @@ fn is_manifold(triangles: &[(u32, [usize; 3])], corners: usize) -> bool {
     })
 }
 
-/// Whether the body is solid behind every triangle and air before it.
+/// True if the body is solid behind every triangle and air in front of it.
 fn are_faces(set: &Set, triangles: &[(u32, [usize; 3])], points: &[Vec3], size: f64) -> bool {
     let mut beside = Vec::with_capacity(2 * triangles.len());
     for (_, c) in triangles {
@@ -550,8 +556,8 @@ fn independent(on: &[u32], normal: impl Fn(u32) -> Vec3) -> SmallVec<[u32; 3]> {
     out
 }
 
-/// The facets of a set of planes alone within a box; `None` for other sets, and for what touches along edges or lies so near
-/// together that rounding decides.
+/// The facets of a set of planes within a box; `None` for other sets, for contacts along edges, and
+/// for distances at which rounding decides.
 pub(super) fn facets(
     set: &Set,
     over: &Box3,
@@ -624,7 +630,7 @@ fn finished(
         Form::Plane(p) => p.normal,
         _ => Vec3::zero(),
     };
-    // Corners of no triangle are none of the mesh.
+    // Unused corners are left out.
     let mut number = vec![0u32; points.len()];
     let (mut positions, mut surfaces) = (Vec::new(), Vec::new());
     for (k, own) in on.iter().enumerate().filter(|(_, own)| !own.is_empty()) {

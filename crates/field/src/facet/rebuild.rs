@@ -1,11 +1,13 @@
 //! Reconstruction of regions with cut edges: the edges of the body are followed through them, and
 //! the faces between are filled with triangles.
 //!
-//! Cells show an edge by crossings beside it. Where two edges leave a corner at a small angle, or faces meet at one, some
-//! cells show one of two edges only, however small they are. The triangles about such cells are taken out, as far as those beside them are
-//! right. What shows along the rim of the hole says where edges enter it; each is followed to where it leaves, or to a corner with more of them
-//! ([`super::trace`]). Rim and edges part the hole into faces, each on one surface, which are filled in a plane. The new triangles are
-//! taken when they close the hole, face their surfaces and cut no others.
+//! Cells represent an edge by crossings beside it. If two edges leave a corner at a small angle, or
+//! faces meet at one, some cells show only one of two edges, at any size of cells. The triangles
+//! around such cells are removed, as far as the adjacent ones are right. The surfaces along the rim
+//! of the hole determine where edges enter; each is traced to its exit or to a corner with further
+//! edges ([`super::trace`]). Rim and edges divide the hole into faces, each on one surface, which
+//! are triangulated in a plane. The new triangles are accepted if they close the hole, face their
+//! surfaces and intersect no others.
 
 use super::assemble::{Assembled, NO_VERTEX};
 use super::crossing::crossings;
@@ -21,13 +23,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Distance in cells below which cells are rebuilt together.
 const NEAR: usize = 2;
-/// How many cells about them are taken out, and how far points of an edge are apart there, as a part of a cell.
+/// Rings of cells removed around them, and distance of points of an edge there, in cells.
 const TRIES: [(usize, f64); 5] = [(1, 0.4), (2, 0.4), (1, 0.1), (3, 0.2), (5, 0.1)];
 /// More cells and regions are left as they are, and regions of more triangles: the cells are too coarse for the body.
 const MOST_CELLS: usize = 600;
 const MOST_REGIONS: usize = 100;
 const MOST_TRIANGLES: usize = 6000;
-/// How often a region grows to have a rim that is right.
+/// Maximum number of times a region grows until its rim is right.
 const GROWTHS: usize = 40;
 /// Inner vertices are this part of a cell away from edges.
 const INNER: f64 = 0.25;
@@ -144,7 +146,7 @@ impl Rebuilder<'_> {
         let margin = Vec3::of(1.0, 1.0, 1.0) * self.grid.step;
         let b = Box3::around(all);
         tracer.within = Box3 { low: b.low - margin, high: b.high + margin };
-        // Where edges enter.
+        // Entries of edges.
         let enters: FxHashMap<u32, u32> = rim.iter().map(|s| (s.to, s.leaf)).collect();
         let mut number: Vec<u32> = Vec::new();
         for side in rim.iter().filter(|s| enters[&s.from] != s.leaf) {
@@ -154,7 +156,7 @@ impl Rebuilder<'_> {
         if !tracer.follow() {
             return None;
         }
-        // Edges that do not come to the rim.
+        // Edges that do not reach the rim.
         let mut inner: Vec<u32> = region.iter().flat_map(corners).collect();
         inner.sort_unstable();
         inner.dedup();
@@ -217,7 +219,7 @@ impl Rebuilder<'_> {
             .collect()
     }
 
-    /// The sides round a region, which grows until what shows along them is right.
+    /// The sides around a region, which grows until the surfaces along them are consistent.
     fn rim(&self, region: &mut Vec<u32>, tracer: &mut Tracer) -> Option<Vec<FaceSide>> {
         let mut inside: FxHashSet<u32> = region.iter().copied().collect();
         for _ in 0..GROWTHS {
@@ -340,7 +342,7 @@ impl Rebuilder<'_> {
                 at = match next[..] {
                     [one] => one,
                     _ => {
-                        // The first one clockwise from the way back.
+                        // The first one clockwise from the reverse direction.
                         let p = self.at(to);
                         let n = tracer.normal(leaf, p)?;
                         let back = self.at(from) - p;
@@ -446,7 +448,7 @@ impl Rebuilder<'_> {
         holes_left.is_empty().then_some(())
     }
 
-    /// Whether triangles have all sides of the rings, each once, and meet along all others.
+    /// True if the triangles contain all sides of the rings, each once, and meet along all others.
     fn covers(
         &self,
         found: &[[usize; 3]],
@@ -472,7 +474,7 @@ impl Rebuilder<'_> {
         (all && closed).then_some(())
     }
 
-    /// Puts new triangles in the place of a region if they fit.
+    /// Replaces a region by new triangles if they fit.
     fn take(
         &mut self,
         region: &[u32],
@@ -549,7 +551,7 @@ impl Rebuilder<'_> {
     }
 }
 
-/// Whether a point lies in a ring.
+/// True if a point is inside a ring.
 fn contains(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for k in 0..ring.len() {

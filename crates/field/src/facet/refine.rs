@@ -1,10 +1,11 @@
-//! Bends that the cells are too coarse for: edges along which the normal turns far are divided, and
-//! diagonals beside them turned to lie along the surface.
+//! Refinement for curvature that the cells do not resolve: edges along which the normal turns far
+//! are divided, and adjacent diagonals are flipped along the surface.
 //!
-//! This is svLis's rule (divide where the gradient is not narrow) on the finished triangles, so that a
-//! sharp bend costs a few more of them and not a finer grid. A new vertex lies on the same primitives as
-//! the edge that it divides. What the surface does between the ends of an edge is identified by the normals there:
-//! a chord e whose ends have normals n and m leaves an arc's middle by |e . (m - n)| / 8.
+//! This is svLis's rule (divide where the gradient is not narrow) applied to the finished
+//! triangles, so that a sharp bend costs a few more of them instead of a finer grid. A new vertex
+//! is on the same primitives as the divided edge. The surface between the ends of an edge is
+//! estimated from the normals there: a chord e with the normals n and m at its ends is off the
+//! middle of an arc by |e . (m - n)| / 8.
 
 use super::assemble::Assembled;
 use super::crossing::{bin_of, bins, crossings};
@@ -26,7 +27,7 @@ use std::sync::Arc;
 pub(super) struct RefinementRule {
     /// The least cosine between the normals at its ends.
     pub(super) turn: f64,
-    /// How far its middle may be from the surface.
+    /// Maximum distance of its middle from the surface.
     pub(super) accuracy: f64,
     /// Edges up to this long are left as they are.
     pub(super) shortest: f64,
@@ -36,9 +37,9 @@ pub(super) struct RefinementRule {
     pub(super) slack: f64,
 }
 
-/// How often edges are divided: each time the distance of their middles is quartered.
+/// Number of passes; each divides the distance of the edges' midpoints by four.
 const PASSES: usize = 6;
-/// How often all is done again with what came to cut other triangles left alone.
+/// Number of repetitions, with vertices of intersecting triangles locked.
 const TRIES: usize = 3;
 /// A new vertex is at most this part of its edge away from it, or the part that a corner between the normals at
 /// its ends is, …
@@ -47,7 +48,7 @@ const AWAY: f64 = 0.35;
 const FARTHEST: f64 = 1.2;
 /// The least cosine between a triangle and the mean of the surface's normals at its corners.
 const FACING: f64 = 0.2;
-/// The least height of a triangle made by turning a diagonal, as a share of its longest side.
+/// Minimum height of a triangle after a flip, relative to its longest side.
 const THIN: f64 = 0.05;
 /// An edge between whose ends the normal still turns by more than this cosine says nothing of the surface there.
 const SHARPEST: f64 = -0.2;
@@ -70,7 +71,7 @@ impl<'a> Tapes<'a> {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    /// Those of some blocks that hold surface.
+    /// Tapes of some blocks with surface.
     pub(super) fn those(
         &self,
         which: impl Fn(&ExprTape<f64>) -> bool,
@@ -87,7 +88,7 @@ type Corner = [u32; 3];
 /// Unit normals, one for each of a vertex's surfaces.
 pub(super) type Normals = SmallVec<[Vec3; 1]>;
 
-/// The unit normals of its surfaces at each vertex; zero where there is none.
+/// Unit normals of its surfaces at each vertex; zero if undefined.
 pub(super) fn normals(
     positions: &[Vec3],
     surfaces: &[SmallVec<[u32; 3]>],
@@ -124,7 +125,8 @@ struct Refiner<'a> {
     edges: FxHashMap<(u32, u32), SmallVec<[u32; 2]>>,
     /// Vertices beside which nothing is changed.
     locked: Vec<bool>,
-    /// The part of the surface that a vertex is in: what is done in one does not bear on others. [`NO_PART`] where nothing is changed.
+    /// The connected part that a vertex is in; parts are independent of each other. [`NO_PART`] for
+    /// unchanged vertices.
     parts: Vec<u32>,
     changed: Vec<u32>,
     solver: Solver,
@@ -142,7 +144,7 @@ impl Refiner<'_> {
         (n != Vec3::zero()).then_some(n)
     }
 
-    /// How far the middle of an edge is from the surface when it has to be divided.
+    /// Distance of the middle of an edge from the surface, if it has to be divided.
     fn wanting(&self, leaf: u32, a: u32, b: u32) -> Option<f64> {
         let (n, m) = (self.normal(a, leaf)?, self.normal(b, leaf)?);
         let chord = self.at(b) - self.at(a);
@@ -172,8 +174,8 @@ impl Refiner<'_> {
         if size == 0.0 { -1.0 } else { n.dot(mean) / size }
     }
 
-    /// How deep a corner between the normals at the ends of an edge is, as a share of its length, and a little
-    /// more: tan(phi / 2) / 2 for a turn by phi.
+    /// Depth of a corner between the normals at the ends of an edge, relative to its length, and a
+    /// margin: tan(phi / 2) / 2 for a turn by phi.
     fn depth(&self, leaf: u32, a: u32, b: u32) -> f64 {
         let (Some(n), Some(m)) = (self.normal(a, leaf), self.normal(b, leaf)) else { return 0.0 };
         let cos = n.dot(m);
@@ -235,7 +237,7 @@ impl Refiner<'_> {
         }
     }
 
-    /// The edge's triangles, that in which it runs from `a` to `b` first, with their tips.
+    /// The edge's triangles, first the one with the direction from `a` to `b`, with their tips.
     fn beside(&self, (a, b): (u32, u32)) -> Option<[(u32, u32); 2]> {
         let pair = self.edges.get(&(a, b))?;
         let [s, t] = pair[..] else { return None };
@@ -282,7 +284,7 @@ impl Refiner<'_> {
             return false;
         }
         let point = placed.point;
-        // Another primitive may cut the place off.
+        // Another primitive may cut off the point.
         let slope = self.solver.gradient(self.leaves[on[0] as usize].primitive.tape(), point).slope;
         if self.solver.value(self.tapes.at(point), point).abs()
             > 10.0 * self.rule.goal * slope.norm()
@@ -391,14 +393,14 @@ impl Refiner<'_> {
             for edge in self.wanted(&front) {
                 self.divide(edge);
             }
-            // Whether a diagonal is turned depends on its two triangles: those that did not change need no second look.
+            // A flip depends only on its two triangles: unchanged pairs need no second test.
             let mut from = start;
             for _ in 0..4 {
                 // A triangle is named as often as it was changed.
                 let mut changed = self.changed[from..].to_vec();
                 changed.sort_unstable();
                 changed.dedup();
-                // Edges, and what the triangles have grown to.
+                // Memory of edges and of the new triangles.
                 budget.poll()?;
                 budget.grow((24 * changed.len() + 16 * self.triangles.len()) as u64)?;
                 from = self.changed.len();
@@ -486,7 +488,7 @@ pub(super) fn refine(
     Ok(cut_off)
 }
 
-/// Points in bins as wide as the reach in which they are looked for.
+/// Points in bins as wide as the search radius.
 struct PointsByPlace {
     reach: f64,
     bins: FxHashMap<[i64; 3], Vec<Vec3>>,
@@ -531,7 +533,7 @@ impl Refiner<'_> {
         corners.into_iter().map(|v| self.parts[v as usize]).find(|&p| p != NO_PART)
     }
 
-    /// Makes some parts what they were: with those triangles, and that many vertices.
+    /// Restores parts to the given triangles and number of vertices.
     fn revert(&mut self, parts: &FxHashSet<u32>, old: &[(u32, Corner)], count: usize) {
         let gone = |v: usize| v >= count && parts.contains(&self.parts[v]);
         let gone: Vec<bool> = (0..self.positions.len()).map(gone).collect();
@@ -561,8 +563,9 @@ impl Refiner<'_> {
     }
 }
 
-/// All passes. Where changed triangles cut others, that part of the surface is done again with what is about them left alone, and
-/// left as it was if that does not help. `kept` are vertices beside which nothing may change.
+/// All passes. If changed triangles intersect others, that part of the surface is repeated with
+/// their surroundings locked, and restored if that does not help. Nothing changes beside `kept`
+/// vertices.
 fn attempt(
     work: &mut Refiner,
     near: &[u32],
@@ -588,7 +591,7 @@ fn attempt(
         if cut.is_empty() {
             break;
         }
-        // What was changed there, or beside it, stays next time.
+        // Changed vertices there, and their neighbours, are locked in the next attempt.
         let cut: Vec<Corner> = cut.into_iter().flatten().map(corner).collect();
         // About two cells.
         let reach = 10.0 * work.rule.shortest;

@@ -1,9 +1,10 @@
 //! Triangles without crossings: vertices that make triangles cut others go where they do no harm.
 //!
-//! First vertices are joined otherwise ([`unfold`]). Then the polygons about them become fans about the crossings of the grid, which are on the surface. Then
-//! vertices outside their cells, on an edge that passes beside, go back into them, onto one surface; pieces of
-//! surface with several vertices get one; in cells with several pieces of surface, vertices go near their
-//! crossings. What remains is reported as undecided.
+//! First, vertices are joined differently ([`unfold`]). Then the polygons around them become fans
+//! about the crossings of the grid, which are on the surface. Then vertices outside their cells, on
+//! an edge that passes beside, return to the cell, onto one surface; pieces of surface with several
+//! vertices get one; in cells with several pieces of surface, vertices move to their crossings. The
+//! rest is reported as undecided.
 
 use super::assemble::{Assembled, Assembly, NO_VERTEX};
 use super::cell::start_corner;
@@ -20,13 +21,13 @@ use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How often vertices are moved.
+/// Maximum number of rounds of moves.
 const ROUNDS: usize = 16;
 /// Number of methods to relocate a vertex: polygons about it become fans, then it moves nearer to
 /// its crossings.
 const WAYS: u8 = 5;
 
-/// Pairs of triangles that cut each other, of which one has a doubtful vertex.
+/// Intersecting pairs of triangles, one of which has a doubtful vertex.
 pub(super) fn crossing(
     positions: &[Vec3],
     count: usize,
@@ -73,9 +74,9 @@ pub(super) fn assembled(
     let mut assembly = Assembly::new(grid, leaves, blocks);
     let mut ways: BTreeMap<u32, u8> = BTreeMap::new();
     let (mut made, mut names) = assembly.triangles();
-    // After the first round only triangles near what moved, and pairs that were left, are looked at again.
+    // After the first round only triangles near moved vertices, and remaining pairs, are tested.
     let mut changed: Option<FxHashSet<u32>> = None;
-    // What is joined otherwise is so in the triangles at hand only, and done again in others.
+    // Different joinings exist in the current triangles only, and are repeated in new ones.
     let mut unfoldings = Vec::new();
     for _ in 0..if sharp { 0 } else { ROUNDS } {
         let corners = |f: usize| made.triangles[f].1;
@@ -98,7 +99,7 @@ pub(super) fn assembled(
         let mut near: FxHashSet<u32> = cut.filter(|v| *v < assembly.count).collect();
         let doubtful =
             |v: &u32| *v < assembly.count && made.doubtful.binary_search_by_key(v, |d| d.0).is_ok();
-        // Of each pair the vertex that is farthest from its crossings: the others need not move.
+        // From each pair the vertex that is farthest from its crossings: the others need not move.
         let mut chosen: Vec<u32> = Vec::new();
         for pair in pairs {
             let all = pair.into_iter().flat_map(corners).filter(doubtful);
@@ -140,7 +141,7 @@ pub(super) fn assembled(
     made
 }
 
-/// Where a vertex goes.
+/// New position of a vertex.
 struct VertexMove {
     vertex: u32,
     /// True when it was one of several of its piece of surface.
@@ -165,7 +166,7 @@ impl Assembly<'_> {
         Some(ring)
     }
 
-    /// How far a vertex is from the box around its crossings.
+    /// Distance of a vertex from the box around its crossings.
     fn away(&self, vertex: u32, at: Vec3) -> f64 {
         let Some(ring) = self.ring(vertex) else { return 0.0 };
         let around = Box3::around(ring.iter().map(|e| e.1.point));
@@ -175,8 +176,9 @@ impl Assembly<'_> {
             .sqrt()
     }
 
-    /// Where a vertex goes that gives way: onto a surface in its cell as near as can be, elsewhere there, onto one between its crossings, to a
-    /// crossing. A piece of surface with several vertices keeps the first.
+    /// New position of a vertex by method `way`: nearest point on a surface in its cell, elsewhere
+    /// there, on a surface between its crossings, at a crossing. A piece of surface with several
+    /// vertices keeps the first.
     fn way(&self, vertex: u32, way: u8, solver: &mut Solver) -> Option<VertexMove> {
         let (owner, k) = self.owner(vertex);
         let (tape, block) = &self.blocks[owner];
@@ -229,7 +231,7 @@ impl Assembled {
         for (_, t) in &mut self.triangles {
             *t = t.map(|v| number[v as usize]);
         }
-        // What stood for a cut edge and was drawn onto another vertex still does.
+        // A vertex that represented a cut edge does so after the merge.
         for (v, _) in self.blunt.iter_mut().filter(|b| b.0 != NO_VERTEX) {
             *v = number[*v as usize];
         }

@@ -1,9 +1,10 @@
 //! Edges that a vertex cuts off, put back into the triangles round it.
 //!
-//! Round a vertex that does not lie on all the surfaces that its triangles show, those of a surface it is not on are a sector of
-//! the ring. They leave the vertex: the edge of the body then runs from the first vertex of the sector to the last one, where both are
-//! on the surfaces beside it, or over a new vertex on the edge or in the corner of these surfaces. That is done where no more triangles cut others
-//! or fold over than before.
+//! Around a vertex that is not on all the surfaces of its triangles, those of a missing surface are
+//! a sector of the ring. They are detached from the vertex: the edge of the body is then between
+//! the first and the last vertex of the sector, if both are on the adjacent surfaces, or over a new
+//! vertex on the edge or in the corner of these surfaces. This is done only if the number of
+//! intersecting and folded triangles does not increase.
 
 use super::assemble::{Assembled, NO_VERTEX};
 use super::grid::Grid;
@@ -14,11 +15,12 @@ use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
-/// How often all vertices are looked at.
+/// Maximum number of passes over all vertices.
 const ROUNDS: usize = 4;
-/// How far from the vertex a new one may be, in cells.
+/// Maximum distance of a new vertex, in cells.
 const AWAY: f64 = 1.5;
-/// How far the edge may be from the middle of a side that stands for it, as a part of its length.
+/// Maximum distance of the edge from the middle of the side that represents it, relative to the
+/// length.
 const BEND: f64 = 0.35;
 /// An edge or corner nearer than this part of a cell is not cut off.
 const NEAR: f64 = 0.01;
@@ -73,7 +75,7 @@ pub(super) fn sharpen(made: &mut Assembled, grid: &Grid, leaves: &[Leaf], tapes:
 }
 
 impl Sharpener<'_, '_> {
-    /// The sectors about a vertex in the order of its ring; none when it has no ring.
+    /// Sectors around a vertex in the order of its ring; `None` without a ring.
     fn sectors(&self, v: u32) -> Option<Vec<Sector>> {
         let folds = &self.folds;
         let all = folds.round.get(&v)?;
@@ -139,7 +141,7 @@ impl Sharpener<'_, '_> {
         None
     }
 
-    /// Lets one sector leave a vertex; false when none can.
+    /// Detaches one sector from a vertex; false if none can be.
     fn vertex(&mut self, v: u32) -> bool {
         if self.wanting(v).is_none() {
             return false;
@@ -179,7 +181,7 @@ impl Sharpener<'_, '_> {
         if placed.residual > goal {
             return None;
         }
-        // Another primitive may cut the place off.
+        // Another primitive may cut off the point.
         let point = placed.point;
         let tape = self.folds.leaves[on[0] as usize].primitive.tape();
         let slope = self.folds.solver.gradient(tape, point).slope.norm();
@@ -187,7 +189,7 @@ impl Sharpener<'_, '_> {
         (value.abs() <= 10.0 * goal * slope).then_some(point)
     }
 
-    /// The edge runs from the first vertex of the sector to its last.
+    /// The edge connects the first vertex of the sector with its last.
     fn along(&mut self, v: u32, sector: &Sector, beside: u32) -> bool {
         let (p, q) = (sector.rim[0], sector.rim[sector.rim.len() - 1]);
         let [a, b] = [p, q].map(|x| self.folds.at(x));
@@ -223,7 +225,7 @@ impl Sharpener<'_, '_> {
         self.take(best)
     }
 
-    /// The edge runs over a new vertex.
+    /// The edge has a new vertex.
     fn over(&mut self, v: u32, sector: &Sector, beside: [u32; 2]) -> bool {
         let mut on = Surfaces::from_slice(&[beside[0], beside[1], sector.leaf]);
         on.sort_unstable();

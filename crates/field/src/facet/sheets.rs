@@ -22,7 +22,7 @@ pub struct Sheet {
     pub mesh: Mesh,
     /// The number of its leaf among [`Set::leaves`].
     pub leaf: usize,
-    /// What its vertices lie on.
+    /// Leaves of its vertices.
     pub on: LeafIncidence,
     /// The number of its primitive among the leaves of `on`.
     pub own: usize,
@@ -31,16 +31,16 @@ pub struct Sheet {
 /// A point where three sheets meet.
 #[derive(Clone, Debug)]
 pub struct TriplePoint {
-    /// Where it is.
+    /// Position.
     pub point: Vec3,
     /// The numbers of its three leaves.
     pub leaves: [usize; 3],
-    /// What it lies on.
+    /// Leaves of the point.
     pub on: LeafIncidence,
 }
 
 impl Sheet {
-    /// Its triangles with what they and their corners are on.
+    /// Its triangles with their leaves and those of their corners.
     pub(crate) fn flat(&self) -> TriangleView<'_> {
         TriangleView {
             positions: self.mesh.positions(),
@@ -67,7 +67,7 @@ pub struct Mixed {
     pub leaves: Vec<Leaf>,
 }
 
-/// The set without its sheets, wires and points; the set itself when it has none.
+/// The set without its sheets, wires and points; the set itself if it has none.
 pub fn solid_part(set: &Set) -> Set {
     match set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
         true => with_sheets(set, &[]),
@@ -171,7 +171,7 @@ fn thin_leaves(leaves: &[Leaf]) -> Vec<usize> {
     (0..leaves.len()).filter(|&k| plain(&leaves[k].primitive)).collect()
 }
 
-/// The facets of the solid {f <= 0} & `here`, and what the sheet of f is called.
+/// The facets of the solid {f <= 0} & `here`, and the attributes of the sheet of f.
 fn behind(
     here: &Set,
     leaf: &Leaf,
@@ -188,18 +188,19 @@ fn behind(
     Ok(Some((facets, crate::facet::info(&sheet))))
 }
 
-/// A solid of which some faces are a sheet.
+/// A solid with some faces that form a sheet.
 #[derive(Clone, Debug)]
 pub struct BehindSheet {
     /// The closed facets of the solid.
     pub facets: Facets,
     /// For each of its patches, whether that is the sheet.
     pub shown: Vec<bool>,
-    /// What the sheet is called.
+    /// Attributes of the sheet.
     pub info: PatchInfo,
 }
 
-/// For each sheet of a set, a solid of which it is the faces on one surface: by the others its border is known.
+/// For each sheet of a set, a solid whose faces on one surface are the sheet; its other faces
+/// determine the border.
 ///
 /// # Errors
 /// As [`facet`].
@@ -224,7 +225,7 @@ pub fn behind_sheets(
     Ok(found)
 }
 
-/// What some vertices of facets lie on.
+/// Leaves of some vertices of facets.
 fn lying_on(facets: &Facets, vertices: &[u32]) -> LeafIncidence {
     let surfaces = vertices.iter().map(|&v| facets.surfaces[v as usize].clone()).collect();
     LeafIncidence { leaves: facets.leaves.clone(), surfaces }
@@ -266,7 +267,7 @@ fn patch_of(
     Ok(Some((mesh, lying_on(facets, &used), leaf as usize)))
 }
 
-/// The vertices that lie on three primitives.
+/// Vertices on three primitives.
 fn corners(facets: &Facets, three: [&Primitive; 3]) -> Vec<u32> {
     let found = three.map(|f| number(facets, f));
     let [Some(a), Some(b), Some(c)] = found else { return Vec::new() };

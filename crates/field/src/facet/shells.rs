@@ -1,4 +1,4 @@
-//! The connected parts of facets: how many bodies there are, and where they touch.
+//! Connected parts of facets: number of bodies, and their contacts.
 
 use super::Facets;
 use super::assemble::Assembled;
@@ -13,7 +13,7 @@ const FLAT: f64 = 1e-9;
 /// Removes shells that enclose nothing: a corner of the grid just within a sharp edge, whose neighbours all are outside, has a shell of
 /// its own, whose vertices all go to the edge and the faces beside it, where the other triangles are already.
 pub(super) fn remove_flat(made: &mut Assembled, step: f64) {
-    // By construction there is none elsewhere.
+    // Excluded elsewhere by construction.
     if made.doubtful.is_empty() {
         return;
     }
@@ -75,13 +75,13 @@ impl Facets {
         shells
     }
 
-    /// How many bodies there are: connected solids, those that only touch counted apart.
+    /// Number of connected solids; bodies that only touch count separately.
     pub fn bodies(&self) -> usize {
         self.shells().iter().filter(|s| s.volume > 0.0).count()
     }
 
-    /// Where bodies only touch: positions at which two of their shells have a vertex each, ascending by x, y,
-    /// z. Each shell keeps its own vertex there, so that both stay manifold.
+    /// Contacts: positions at which two shells have a vertex each, ascending by x, y, z. Each shell
+    /// keeps its own vertex there, so that both stay manifold.
     pub fn touching(&self) -> Vec<Vec3> {
         let shells = self.shells();
         if shells.len() < 2 {
@@ -94,7 +94,7 @@ impl Facets {
                 self.mesh.faces()[t as usize].iter().for_each(|&v| shell[v as usize] = k);
             }
         }
-        // Bins much wider than what counts as the same place, so that most points are far from their sides.
+        // Bins are much wider than the tolerance, so that most points are far from their sides.
         let near = 1e-7 * self.step;
         let bin = |p: Vec3, reach: f64| {
             let side = 1e-2 * self.step;
@@ -116,7 +116,7 @@ impl Facets {
             .flatten()
             .map(|&w| w as usize)
         };
-        // The first of the vertices at a place stands for it.
+        // The first of the coincident vertices represents all.
         let meets = |v: usize| {
             let here = || others(v).filter(|&w| positions[v].distance(positions[w]) <= near);
             here().all(|w| v <= w) && here().any(|w| shell[v] != shell[w])

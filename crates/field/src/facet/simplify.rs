@@ -15,11 +15,11 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// The least height of a triangle as a share of its longest side.
+/// Minimum height of a triangle, relative to its longest side.
 const THIN: f64 = 0.04;
 /// The least cosine of the angle by which a triangle turns.
 const TURN: f64 = 0.8;
-/// How often vertices beside triangles that cut others are locked, and all is done again.
+/// Number of repetitions, with vertices beside intersecting triangles locked.
 const TRIES: usize = 4;
 
 /// A vertex that may go into another, at the error that this makes.
@@ -163,7 +163,7 @@ impl Simplifier<'_> {
         })
     }
 
-    /// The cheapest way for a vertex to go.
+    /// The collapse of a vertex with the least error.
     fn candidate(&self, v: u32) -> Option<EdgeCollapse> {
         if self.stars[v as usize].is_empty() {
             return None;
@@ -206,7 +206,7 @@ impl Simplifier<'_> {
             if self.stamps[c.from as usize] != c.stamp {
                 continue;
             }
-            // What changed around the goal may forbid it now.
+            // Changes around the target may forbid the collapse.
             if self.error(c.from, c.into) != Some(c.error) {
                 self.stamps[c.from as usize] += 1;
                 heap.extend(self.candidate(c.from));
@@ -245,7 +245,8 @@ impl Facets {
             if crossings.len() <= before {
                 return Ok(simple);
             }
-            // What was moved into these corners, or beside them, stays next time.
+            // Vertices merged into these corners, and their neighbours, are locked in the next
+            // attempt.
             let mut near = vec![false; positions.len()];
             for face in crossings.into_iter().flatten() {
                 simple.mesh.faces()[face]

@@ -1,8 +1,8 @@
-//! Triangles without area: three vertices in a row on a straight edge, or two in one place.
+//! Triangles without area: three vertices on a straight edge, or two coincident ones.
 //!
-//! The polygon round an edge of the grid may have three of its vertices on one edge of the body. The triangle between
-//! these holds nothing, and its longest side is turned towards the triangle beyond; two vertices in one place become one.
-//! Neither changes the surface by more than rounding.
+//! The polygon around an edge of the grid may have three of its vertices on one edge of the body.
+//! The triangle between these has no area, and its longest side is flipped with the triangle
+//! beyond; coincident vertices are merged. Neither changes the surface by more than rounding.
 
 use super::assemble::Assembled;
 use moldloft_mesh::Mesh;
@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// A triangle is a sliver when its height is this part of its longest side: to rounding it is a line. Others have 1e-4
 /// and more.
 const FLAT: f64 = 1e-9;
-/// Two vertices are in one place when they are this part of the triangle's longest side apart.
+/// Distance of two vertices, relative to the triangle's longest side, within which they coincide.
 const ONE: f64 = 1e-8;
 /// Maximum number of rounds; an edge flip rarely makes other triangles flat.
 const ROUNDS: usize = 6;
@@ -31,7 +31,7 @@ struct Surroundings<'a> {
     left: FxHashMap<(u32, u32), usize>,
     /// The triangles of each corner of a sliver.
     round: FxHashMap<u32, Vec<usize>>,
-    /// What has been changed in this round: its surroundings are not known any more.
+    /// Changed in this round: its neighbourhood is outdated.
     stale: FxHashSet<u32>,
     gone: FxHashSet<usize>,
 }
@@ -74,8 +74,9 @@ impl Surroundings<'_> {
         true
     }
 
-    /// Moves a corner of a sliver onto another of its corners and leaves out what is between, where all other triangles
-    /// keep their sides: `same` says that both are one point, else `from` lies on a straight edge that goes on.
+    /// Merges a corner of a sliver into another of its corners and removes the triangles between,
+    /// if all other triangles keep their sides. `same`: both are one point; otherwise `from` is on
+    /// a straight edge that continues.
     fn merge(&mut self, from: u32, to: u32, same: bool) -> bool {
         let (Some(own), Some(others)) = (self.round.get(&from), self.round.get(&to)) else {
             return false;
@@ -122,8 +123,8 @@ impl Surroundings<'_> {
 }
 
 impl Surroundings<'_> {
-    /// A vertex of three triangles, two of which lie on each other between it and two vertices in one place, is drawn onto
-    /// one of these: then they can become one.
+    /// A vertex of three triangles, two of which coincide between it and two vertices at one point,
+    /// is merged into one of these, so that they can be merged too.
     fn flap(&mut self, from: u32, to: u32) -> bool {
         let Some(own) = self.round.get(&from).filter(|all| all.len() == 3) else { return false };
         let gone: Vec<usize> =
@@ -147,7 +148,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// How many triangles of a mesh have no area.
+/// Number of triangles of a mesh without area.
 pub(super) fn count(mesh: &Mesh) -> usize {
     let at =
         |f: &&[u32; 4]| height([f[0], f[1], f[2]].map(|v| mesh.positions()[v as usize])) <= FLAT;
@@ -195,7 +196,7 @@ pub(super) fn remove(made: &mut Assembled) {
             let sides = [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3]));
             let longest = (0..3).fold(0, |a, k| if sides[k] > sides[a] { k } else { a });
             let shortest = (0..3).fold(0, |a, k| if sides[k] < sides[a] { k } else { a });
-            // From the end of the longest side over the corner between to its start.
+            // From the end of the longest side via the corner between to its start.
             let row = [t[(longest + 1) % 3], t[(longest + 2) % 3], t[longest]];
             let done = if sides[shortest] <= ONE * sides[longest] {
                 let (a, b) = (t[shortest], t[(shortest + 1) % 3]);

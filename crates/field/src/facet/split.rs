@@ -1,10 +1,12 @@
 //! Several vertices for a piece of surface in a cell through which several edges or corners pass.
 //!
-//! The crossings round the piece show its primitives in turn. A cut from one run of crossings of the same
-//! primitive to another parts the ring in two, each with a vertex on all the primitives of its part; both have
-//! those of the cut, so that the edge between the two vertices lies on what was cut. With runs A B A C there
-//! are two edges: cut through both runs of A, their vertices lie on A and B and on A and C. With A B C D there are two
-//! corners; the cut through A and C, or B and D, has them. Parts are cut again while they have no common point.
+//! The crossings around the piece show its primitives in turn. A cut from one run of crossings of a
+//! primitive to another run of the same primitive divides the ring in two, each with a vertex on
+//! all the primitives of its part; both have the primitives of the cut, so that the edge between
+//! the two vertices is on the cut primitive. With runs A B A C there are two edges: with a cut
+//! through both runs of A, their vertices are on A and B and on A and C. With A B C D there are two
+//! corners; the cut through A and C, or B and D, has them. Parts are divided again while they have
+//! no common point.
 
 use super::place_vertices::VertexPlacer;
 use super::types::{EdgeCrossing, Ring, Split};
@@ -16,12 +18,13 @@ use smallvec::SmallVec;
 const MOST_RUNS: usize = 8;
 const MOST_SEARCHES: usize = 60;
 
-/// Neighbouring crossings of one primitive; none of a primitive that shows between two edges only.
+/// Neighbouring crossings of one primitive; empty for a primitive that shows between two edges
+/// only.
 struct CrossingRun {
     leaf: u32,
-    /// Places in the ring.
+    /// Indices in the ring.
     places: std::ops::Range<usize>,
-    /// Where it changes into the next.
+    /// Its change into the next.
     change: Option<Vec3>,
 }
 
@@ -198,7 +201,7 @@ impl Splitting<'_, '_, '_> {
                 used[vertices[nearest] as usize] = true;
             }
         }
-        // A vertex at the end of the tree that no crossing has would hang in the air.
+        // A vertex at the end of the tree without a crossing would be unconnected.
         let inner = |v: usize| {
             let branches =
                 (0..part.parent.len()).filter(|&k| k != v && part.parent[k] as usize == v).count();
@@ -212,7 +215,7 @@ impl Splitting<'_, '_, '_> {
     }
 }
 
-/// Two parts of a ring as one, which are joined along the cut from one run to another.
+/// Two parts of a ring merged along the cut from one run to another.
 fn joined(mut a: RingPart, mut b: RingPart, [i, j]: [usize; 2]) -> RingPart {
     let shift = a.vertices.len() as u8;
     for (_, vertices) in &mut b.of_run {
@@ -233,7 +236,7 @@ fn joined(mut a: RingPart, mut b: RingPart, [i, j]: [usize; 2]) -> RingPart {
             vertices.extend(last.iter().copied());
         }
     }
-    // The tree of b hangs from the vertex of a that is beside it, by b's vertex there.
+    // The tree of b is connected to the vertex of a beside it by b's vertex there.
     let beside = a.of_run.iter().find(|r| r.0 == i).and_then(|r| {
         let k = r.1.iter().position(|v| *v == touching)?;
         r.1.get(k + 1).copied()

@@ -1,7 +1,8 @@
 //! Edges of a set, followed from point to point: each on two surfaces, from corner to corner.
 //!
-//! Whether the line of two surfaces is an edge of the set, and which way it bends, is seen beside it: in which of the four
-//! sectors between the surfaces there is solid. Where that changes another surface passes, and there is a corner.
+//! The line of two surfaces is an edge of the set, convex or concave, by the solid in the four
+//! sectors between the surfaces beside it. A change of these marks a corner, where another surface
+//! passes.
 
 use super::refine::Tapes;
 use super::vertex::{Solver, Surfaces};
@@ -10,11 +11,11 @@ use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
-/// Sectors are looked at this part of a cell away from the line, …
+/// Distance from the line at which sectors are tested, in cells, …
 const ASIDE: f64 = 1e-5;
 /// … where surfaces meet at an angle of more than this.
 const TOUCH: f64 = 1e-2;
-/// Lines that leave a corner are looked at this part of a cell away from it.
+/// Distance from a corner at which its lines are tested, in cells.
 const BEGIN: f64 = 1e-3;
 /// Corners of the same surfaces nearer than this part of a cell are one.
 const ONE: f64 = 1e-6;
@@ -24,7 +25,7 @@ const BENT: f64 = 0.96;
 const MOST_POINTS: usize = 400;
 const MOST_EDGES: usize = 300;
 
-/// How the solid lies between two surfaces: where both have it, or where one has.
+/// Solid sectors between two surfaces: where both are solid, or where one is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum EdgeBend {
     Convex,
@@ -55,7 +56,7 @@ pub(super) struct TraceNode {
 pub(super) struct TracedEdge {
     pub(super) ends: [usize; 2],
     pub(super) points: Vec<Vec3>,
-    /// What shows on the left of it, seen from outside, and on the right.
+    /// Surfaces on the left and on the right, seen from outside.
     pub(super) sides: [u32; 2],
 }
 
@@ -65,7 +66,7 @@ pub(super) struct Tracer<'a> {
     pub(super) goal: f64,
     /// Side of a cell.
     pub(super) cell: f64,
-    /// How far points are apart.
+    /// Distance of points.
     pub(super) step: f64,
     /// Edges do not leave this.
     pub(super) within: Box3,
@@ -94,7 +95,7 @@ impl<'a> Tracer<'a> {
         (size > 0.0 && size.is_finite()).then(|| slope / size)
     }
 
-    /// Whether a point is on some surfaces.
+    /// True if a point is on all the surfaces.
     pub(super) fn on(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
         surfaces.iter().all(|&s| {
             let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
@@ -122,7 +123,7 @@ impl<'a> Tracer<'a> {
         (size > TOUCH).then(|| line / size)
     }
 
-    /// How the solid lies about the line of two surfaces, if that is an edge.
+    /// Convexity of the line of two surfaces, if it is an edge.
     fn bend(&mut self, p: Vec3, [a, b]: [u32; 2]) -> Option<EdgeBend> {
         let (n, m) = (self.normal(a, p)?, self.normal(b, p)?);
         let c = n.dot(m);
@@ -151,7 +152,8 @@ impl<'a> Tracer<'a> {
         Some(self.nodes.len() - 1)
     }
 
-    /// A point amid an edge, from which it is followed both ways, unless it is on one that is known.
+    /// A point inside an edge, from which it is followed in both directions, unless it is on a
+    /// known one.
     pub(super) fn amid(&mut self, point: Vec3, pair: [u32; 2]) {
         let known = |e: &TracedEdge| {
             let own = [e.sides[0].min(e.sides[1]), e.sides[0].max(e.sides[1])];
@@ -286,7 +288,7 @@ impl<'a> Tracer<'a> {
         Some(node)
     }
 
-    /// The corner between a point of an edge and one where it is none any more.
+    /// The corner between a point of an edge and one beyond its end.
     fn corner(&mut self, p: Vec3, stop: Vec3, ray: &EdgeRay) -> Option<usize> {
         let (mut low, mut high) = (p, stop);
         for _ in 0..40 {
@@ -344,7 +346,7 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// How far a point is from a side.
+/// Distance of a point from a side.
 pub(super) fn from_side(p: Vec3, a: Vec3, b: Vec3) -> f64 {
     let along = b - a;
     let size = along.norm_sq();

@@ -1,5 +1,5 @@
-//! What the division hands on: options, crossings, vertices of cells and the blocks that hold them. Data and
-//! look-ups only, so that the steps that make and read them know these types and not each other.
+//! Data passed between the steps: options, crossings, vertices of cells and blocks. Data and
+//! look-ups only, so that the steps depend on these types and not on each other.
 
 use super::cell::{Case, NONE, case};
 use super::vertex::{PlacedVertex, Surfaces};
@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// How fine facets are.
+/// Resolution of facets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
     /// Cells of side (longest side of the box) / 2^depth.
@@ -23,17 +23,17 @@ pub enum Resolution {
     Accuracy(f64),
 }
 
-/// How facets are made.
+/// Options of facets.
 #[derive(Clone, Debug)]
 pub struct FacetOptions {
-    /// How fine they are.
+    /// Resolution.
     pub resolution: Resolution,
     /// The most cells that the surface may pass through.
     pub limit: f64,
-    /// Vertices stay on edges and corners even where triangles then cut others: integrals over the body do not
-    /// mind, and lose most by edges that are cut off.
+    /// Keeps vertices on edges and corners even if triangles then intersect: integrals over the
+    /// body are not affected by that, but lose accuracy by cut-off edges.
     pub sharp: bool,
-    /// What the work may use.
+    /// Limits of memory and time.
     pub budget: Arc<Budget>,
 }
 
@@ -46,18 +46,17 @@ impl FacetOptions {
 
 /// Cells along a side.
 pub(super) const SIDE: usize = 8;
-/// Where the surface crosses an edge of the grid.
+/// A crossing of the surface and an edge of the grid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgeCrossing {
     /// Lattice position of the edge's start, within the block.
     pub(super) at: [u8; 3],
     /// Axis of the edge.
     pub(super) axis: u8,
-    /// True when the edge runs from solid to air.
+    /// True if the edge points from solid to air.
     pub(super) outward: bool,
     /// The leaf that decides there.
     pub(super) leaf: u32,
-    /// Where.
     pub(super) point: Vec3,
 }
 
@@ -82,7 +81,8 @@ pub(super) struct CellVertex {
 pub struct Unresolved {
     /// A cell, or a part of one.
     pub place: Box3,
-    /// How much solid it may hold where the facets have air, or air where they have solid; proved.
+    /// Proved bound of the solid that it may contain where the facets have air, or of the air where
+    /// they have solid.
     pub volume: f64,
     /// True when there is some for sure: a wall or gap thinner than the cell.
     pub missed: bool,
@@ -92,7 +92,7 @@ pub struct Unresolved {
     pub(super) solid: bool,
 }
 
-/// What a block contributes.
+/// Facets of one block.
 #[derive(Clone, Debug)]
 pub(super) struct FacetBlock {
     /// Position in blocks.
@@ -108,9 +108,9 @@ pub(super) struct FacetBlock {
     pub(super) splits: Vec<Several>,
     /// Crossings of the edges that start in the block, its far faces excepted.
     pub(super) crossings: Vec<EdgeCrossing>,
-    /// How many cells the surface passes through.
+    /// Number of cells that the surface passes through.
     pub(super) active: usize,
-    /// What the corners of its cells do not show.
+    /// Regions not determined by the corners of cells.
     pub(super) unresolved: Vec<Unresolved>,
 }
 
@@ -121,7 +121,7 @@ pub(super) struct Several {
     pub(super) cell: [u8; 3],
     /// … and which of its pieces.
     pub(super) number: u8,
-    /// Where its vertices but the first are.
+    /// Index of its second vertex.
     pub(super) more: u32,
     pub(super) split: Split,
 }
@@ -129,7 +129,7 @@ pub(super) struct Several {
 /// The crossings of a piece of surface, with their edges.
 pub(super) type Ring<'c> = SmallVec<[(usize, &'c EdgeCrossing); 12]>;
 
-/// The vertices of a piece of surface and how they hang together.
+/// The vertices of a piece of surface and their connections.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
     pub(super) vertices: SmallVec<[(PlacedVertex, Surfaces); 2]>,
@@ -154,7 +154,7 @@ impl Split {
             way
         };
         let (mut here, mut there) = (up(from), up(to));
-        // Both ways end at the first vertex; the last that they share is where they part.
+        // Both paths end at the first vertex; the last common vertex is where they part.
         let mut meeting = 0;
         while let (Some(&a), Some(&b)) = (here.last(), there.last()) {
             if a != b {
@@ -211,7 +211,7 @@ impl FacetBlock {
         self.first[cell_index(cell)] as usize + self.case(cell).loop_of[edge] as usize
     }
 
-    /// The piece of surface that a vertex stands for, by its number in the cell.
+    /// The piece of surface that a vertex represents, by its number in the cell.
     pub(super) fn piece(&self, vertex: usize) -> u8 {
         let cell = self.vertices[vertex].cell;
         let number = vertex - self.first[cell_index(cell.map(|x| x as usize))] as usize;
@@ -271,11 +271,11 @@ pub(crate) struct TriangleView<'a> {
     /// Numbers of leaves, ascending ranges of faces.
     pub patches: Vec<(u32, std::ops::Range<usize>)>,
     pub leaves: &'a [Leaf],
-    /// What each vertex lies on.
+    /// Leaves of each vertex.
     pub surfaces: &'a [SmallVec<[u32; 3]>],
 }
 
-/// On which leaves each of some points lies.
+/// Leaves of each of some points.
 #[derive(Clone, Debug, Default)]
 pub struct LeafIncidence {
     /// The leaves.

@@ -1,8 +1,8 @@
 //! Triangles that cut each other, joined otherwise: their vertices are where they should be, most often.
 //!
-//! A vertex on an edge that passes beside its cell lies between those of other cells, and the polygons round it fold over. Turned
-//! diagonals and vertices that are drawn together along an edge of the body unfold them: the edge stays where it is. What does
-//! not get better by either is left to those who move vertices.
+//! A vertex on an edge that passes beside its cell is between those of other cells, and the
+//! polygons around it fold. Flipped diagonals and vertices merged along an edge of the body unfold
+//! them: the edge does not move. Remaining folds are left to the steps that move vertices.
 
 use super::assemble::{Assembled, VertexKey, VertexNames};
 use super::crossing::{TrianglePlane, bin_of, bins, common_low, cut, cut_in_planes, meet};
@@ -17,18 +17,18 @@ use smallvec::SmallVec;
 const FACING: f64 = 0.2;
 /// The least height of a new triangle as a part of its longest side, unless those before it were thinner.
 const THIN: f64 = 1e-3;
-/// How often a pair is looked at.
+/// Maximum number of changes for a pair.
 const STEPS: usize = 6;
-/// How often all pairs are.
+/// Maximum number of passes over all pairs.
 const ROUNDS: usize = 4;
-/// So many rings round what cuts are known.
+/// Number of rings around intersections that are tested.
 pub(super) const RINGS: usize = 3;
-/// The same where it is known what is done.
+/// The same for repeated changes.
 const KNOWN_RINGS: usize = 1;
 
 pub(super) type Corners = [u32; 3];
 
-/// What becomes of some triangles.
+/// A change of some triangles.
 pub(super) struct Change {
     /// New corners, with the surface, of triangles, …
     pub(super) made: SmallVec<[(usize, u32, Corners); 8]>,
@@ -66,21 +66,21 @@ pub(super) struct FoldedRegion<'a> {
     pub(super) leaves: &'a [Leaf],
     pub(super) solver: Solver,
     normals: FxHashMap<(u32, u32), Vec3>,
-    /// The triangles of each vertex near what cuts.
+    /// Triangles of each vertex near the intersections.
     pub(super) round: FxHashMap<u32, Vec<usize>>,
-    /// Triangles by place; none where what is done is known.
+    /// Triangles by position; `None` for repeated changes.
     bins: FxHashMap<[i64; 3], Vec<(usize, Box3)>>,
     size: f64,
-    /// What some triangles cut, as far as it is known.
+    /// Intersections of some triangles, as far as computed.
     cuts: FxHashMap<usize, Vec<usize>>,
     gone: FxHashSet<usize>,
     /// Vertices of changed triangles, with the number of the last change.
     touched: FxHashMap<u32, usize>,
-    /// How many changes there were.
+    /// Number of changes.
     changes: usize,
 }
 
-/// How triangles about an edge are joined otherwise.
+/// Kinds of changes around an edge.
 #[derive(Clone, Copy, Debug)]
 enum Joining {
     /// By the other diagonal.
@@ -97,8 +97,9 @@ pub(super) struct Unfolding {
     of: SmallVec<[[VertexKey; 3]; 8]>,
 }
 
-/// Joins the vertices of these pairs of triangles otherwise where less is cut then. If that is anywhere: the vertices of the pairs
-/// and of all triangles that changed. What was done is added to `done`.
+/// Joins the vertices of these pairs of triangles differently if that reduces the intersections.
+/// Returns the vertices of the pairs and of all changed triangles, or `None` without a change.
+/// Changes are appended to `done`.
 pub(super) fn unfold(
     made: &mut Assembled,
     names: &VertexNames,
@@ -109,7 +110,7 @@ pub(super) fn unfold(
 ) -> Option<FxHashSet<u32>> {
     let of_pairs: Vec<u32> = pairs.iter().flatten().flat_map(|&t| made.triangles[t].1).collect();
     let mut folds = FoldedRegion::about(made, leaves, &of_pairs, RINGS);
-    // A pair beside which nothing changed since it was looked at is left.
+    // A pair is skipped if nothing beside it changed since its last test.
     let mut looked: Vec<Option<usize>> = vec![None; pairs.len()];
     for _ in 0..ROUNDS {
         let before = folds.changes;
@@ -128,8 +129,8 @@ pub(super) fn unfold(
     Some(touched)
 }
 
-/// Repeats the changes made before the triangles were assembled again if none of their vertices
-/// moved, and keeps only those. Returns the vertices of the others.
+/// Repeats earlier changes after a new assembly, if none of their vertices moved, and keeps only
+/// those. Returns the vertices of the others.
 pub(super) fn unfold_again(
     made: &mut Assembled,
     names: &VertexNames,
@@ -166,7 +167,7 @@ pub(super) fn unfold_again(
 }
 
 impl<'a> FoldedRegion<'a> {
-    /// What is within some rings round some vertices.
+    /// The region within some rings around some vertices.
     pub(super) fn about(
         made: &'a mut Assembled,
         leaves: &'a [Leaf],
@@ -216,8 +217,8 @@ impl<'a> FoldedRegion<'a> {
         folds
     }
 
-    /// Leaves out the triangles that went, and says of which vertices nothing is known any more, if anything changed: by
-    /// construction nothing is known of new triangles.
+    /// Removes the deleted triangles, and returns the vertices with outdated data, if anything
+    /// changed; new triangles have none by construction.
     pub(super) fn done(self, grid: &Grid) -> Option<FxHashSet<u32>> {
         let Self { made, gone, touched, .. } = self;
         if touched.is_empty() {
@@ -254,7 +255,7 @@ impl<'a> FoldedRegion<'a> {
         }
     }
 
-    /// Takes out a triangle that changes or goes.
+    /// Removes a changed or deleted triangle from the bins.
     fn unfile(&mut self, t: usize) {
         let b = Box3::around(self.points(self.made.triangles[t].1));
         for bin in bins(&b, self.size) {
@@ -290,7 +291,8 @@ impl<'a> FoldedRegion<'a> {
         if size == 0.0 { -1.0 } else { n.dot(mean) / size }
     }
 
-    /// How much is wrong with some triangles among all others but their own: cuts and folds. Counted no further than `most`.
+    /// Number of faults (intersections with all other triangles, and folds) of some triangles;
+    /// counted up to `most`.
     fn wrong(
         &mut self,
         all: &[(u32, Corners)],
@@ -326,7 +328,7 @@ impl<'a> FoldedRegion<'a> {
         let mut found = Vec::new();
         for bin in bins(reach, self.size) {
             for (t, around) in self.bins.get(&bin).into_iter().flatten() {
-                // Those of several bins are found in the first.
+                // Pairs of several bins are counted in the first.
                 let first = || bin_of(common_low(reach, around), self.size) == bin;
                 if meet(reach, around) && first() && !but(*t) {
                     found.push((*t, self.placed(self.made.triangles[*t].1)));
@@ -348,7 +350,8 @@ impl<'a> FoldedRegion<'a> {
         &self.cuts[&t]
     }
 
-    /// How much is wrong with some of the triangles: cuts, with each other counted once, and folds.
+    /// Number of faults of some of the triangles: intersections, with each other counted once, and
+    /// folds.
     fn wrong_now(&mut self, own: &[usize]) -> isize {
         let mut count = 0;
         for (k, &t) in own.iter().enumerate() {
@@ -359,20 +362,20 @@ impl<'a> FoldedRegion<'a> {
         count
     }
 
-    /// By how much less is wrong after a change, if by more than `least`.
+    /// Reduction of the number of faults by a change, if more than `least`.
     pub(super) fn gain(&mut self, change: &Change, least: isize) -> Option<isize> {
         let before = self.wrong_before(change);
         self.gain_from(before, change, least)
     }
 
-    /// How much is wrong with the triangles that a change changes.
+    /// Number of faults of the triangles that a change modifies.
     fn wrong_before(&mut self, change: &Change) -> isize {
         let count = self.made.triangles.len();
         let own: SmallVec<[usize; 8]> = change.own().filter(|t| *t < count).collect();
         self.wrong_now(&own)
     }
 
-    /// As [`FoldedRegion::gain`], with what is wrong before.
+    /// As [`FoldedRegion::gain`], with the number of faults before.
     fn gain_from(&mut self, before: isize, change: &Change, least: isize) -> Option<isize> {
         if before <= least {
             return None;
@@ -385,12 +388,12 @@ impl<'a> FoldedRegion<'a> {
         (gain > least).then_some(gain)
     }
 
-    /// Leaves what was known of a vertex that is none after all.
+    /// Removes the data of a discarded vertex.
     pub(super) fn forget(&mut self, v: u32) {
         self.normals.retain(|k, _| k.0 != v);
     }
 
-    /// The triangle in which an edge runs from `a` to `b`, and its third corner.
+    /// The triangle with the directed edge from `a` to `b`, and its third corner.
     pub(super) fn beside(&self, a: u32, b: u32) -> Option<(usize, u32)> {
         let mut found = None;
         for &t in self.round.get(&a)? {
@@ -445,7 +448,7 @@ impl<'a> FoldedRegion<'a> {
         Some(Change { made, gone: SmallVec::new() })
     }
 
-    /// A vertex drawn onto another that lies on all of its surfaces.
+    /// Merge of a vertex into another that is on all of its surfaces.
     fn drawn(&mut self, from: u32, to: u32) -> Option<Change> {
         let all = |v: &u32| self.on(to, *v);
         if !self.made.surfaces[from as usize].iter().all(all) {
@@ -474,7 +477,7 @@ impl<'a> FoldedRegion<'a> {
         Some(Change { made, gone })
     }
 
-    /// What becomes of the triangles about an edge, if it can be done.
+    /// The change around an edge, if possible.
     fn change(&mut self, how: Joining, a: u32, b: u32) -> Option<Change> {
         match how {
             Joining::Turned => self.turned(a, b),
@@ -540,7 +543,7 @@ impl<'a> FoldedRegion<'a> {
         }
     }
 
-    /// What triangles near one that changes cut is not known any more.
+    /// Intersections of triangles near a modified one are outdated.
     fn forget_cuts(&mut self, corners: Corners) {
         let reach = Box3::around(self.points(corners));
         for bin in bins(&reach, self.size) {
@@ -552,7 +555,8 @@ impl<'a> FoldedRegion<'a> {
         }
     }
 
-    /// Changes what is about a pair of triangles as long as less is wrong then and they cut each other.
+    /// Changes the neighbourhood of a pair of triangles while that reduces faults and the pair
+    /// intersects.
     fn cure(&mut self, pair: [usize; 2], names: &VertexNames, done: &mut Vec<Unfolding>) {
         for _ in 0..STEPS {
             if pair.iter().any(|t| self.gone.contains(t)) {
@@ -567,7 +571,7 @@ impl<'a> FoldedRegion<'a> {
                 for k in 0..3 {
                     let (a, b) = (t[k], t[(k + 1) % 3]);
                     edges.push((a.min(b), a.max(b)));
-                    // Those of the triangle beyond.
+                    // Sides of the triangle beyond.
                     if let Some((_, c)) = self.beside(b, a) {
                         edges.extend([(a.min(c), a.max(c)), (b.min(c), b.max(c))]);
                     }
@@ -584,7 +588,8 @@ impl<'a> FoldedRegion<'a> {
                     all.push((self.wrong_before(&change), change, how, [a, b]));
                 }
             }
-            // Where most is wrong, most can be gained: the others need no look then.
+            // The pairs with most faults first: once the gain cannot be exceeded the others are
+            // skipped.
             all.sort_by_key(|x| std::cmp::Reverse(x.0));
             let mut best: Option<(isize, usize)> = None;
             for (k, (before, change, ..)) in all.iter().enumerate() {

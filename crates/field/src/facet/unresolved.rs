@@ -1,8 +1,10 @@
-//! Cells that may hold what their corners do not show: a plate, a rod or a gap thinner than the cell.
+//! Cells that may contain features that their corners do not show: a plate, a rod or a gap thinner
+//! than the cell.
 //!
-//! Where the corners of a cell agree and the range of the set contains zero, the cell is proved one way or the other:
-//! by the values at its corners and second derivatives, else by the planes of its leaves and what is left of them,
-//! in parts of it if need be. What is found to be missed, and what stays open, is listed with the volume that it may hold.
+//! If the corners of a cell agree and the range of the set contains zero, the state of the cell is
+//! proved: by the values at its corners and second derivatives, otherwise by the planes of its
+//! leaves and their remainders, in parts of the cell if necessary. Certain and possible misses are
+//! listed with the volume that they may have.
 
 use super::block::CORNERS;
 use super::types::{SIDE, Unresolved};
@@ -17,16 +19,16 @@ use std::sync::Arc;
 
 /// A cell is halved this often to prove it.
 const DEPTH: u32 = 4;
-/// The most parts of cells of a block that are looked at.
+/// Maximum number of parts of cells examined per block.
 const MOST: usize = 3000;
 /// Jumps of one cell that are taken apart.
 const MOST_JUMPS: usize = 3;
-/// What is missed for sure is at least this part of a cell.
+/// Minimum volume of a certain miss, in cells.
 const SEEN: f64 = 1e-9;
-/// What is full or empty to rounding.
+/// Relative volume below which a cell is empty, by rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Whether a set has unions and intersections between its leaves.
+/// Whether the set has unions, and intersections, between its leaves.
 fn joins(tape: &ExprTape<f64>) -> (bool, bool) {
     let (mut unions, mut common) = (false, false);
     for code in &tape.code {
@@ -36,8 +38,8 @@ fn joins(tape: &ExprTape<f64>) -> (bool, bool) {
     (unions, common)
 }
 
-/// How far a leaf may be below or above what its values at the corners of a cell say, by second derivatives over the
-/// whole block: the error of multilinear interpolation.
+/// Maximum deviation of a leaf from the interpolated values at the corners of a cell, from second
+/// derivatives over the whole block: the error of multilinear interpolation.
 fn interpolation_error(
     tape: &ExprTape<f64>,
     sides: &[Interval; 3],
@@ -95,7 +97,8 @@ impl Quiet<'_> {
         let whole = self.sides([0; 3], SIDE);
         let mut open = Vec::new();
         let mut work = UnresolvedSearch { room, left: MOST, open: &mut open };
-        // Of a union that is air at all corners every operand is; of an intersection that is solid likewise.
+        // A union that is air at all corners has only such operands; likewise an intersection that
+        // is solid.
         let error = match unions && common {
             true => f64::INFINITY,
             false => interpolation_error(self.tape, &whole, self.step, &mut work.room.forms),
@@ -134,7 +137,7 @@ impl Quiet<'_> {
 
 struct UnresolvedSearch<'a> {
     room: &'a mut TaylorRoom,
-    /// How many more parts may be looked at.
+    /// Number of parts that may still be examined.
     left: usize,
     open: &'a mut Vec<Unresolved>,
 }
@@ -153,7 +156,7 @@ impl UnresolvedSearch<'_> {
         }
         let mut tape = tape.pruned(&self.room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
         if tape.has_jumps() {
-            // What jumps without being a face is looked at on both sides.
+            // Jumps that are not faces are examined on both sides.
             for _ in 0..MOST_JUMPS {
                 tape.range(sides, &mut self.room.ranges.ranges);
                 let Some(parted) = tape.parted(&self.room.ranges.ranges) else { break };
@@ -164,12 +167,12 @@ impl UnresolvedSearch<'_> {
         let parts =
             Combination::of(&tape).map(|c| taylor::bounds(&tape, &c, sides, true, self.room));
         let (least, most) = parts.as_ref().map_or((0.0, full), |p| (p.least[0], p.most[0]));
-        // What there may be, and what there is for sure, of the other kind.
+        // Possible, and certain, volume of the other kind.
         let (may, sure) = if solid { (full - least, full - most) } else { (most, least) };
         if may <= ROUNDING * full {
             return;
         }
-        // A point in the middle of what there is, or may be.
+        // Centre of the certain, or possible, volume.
         let centre = Vec3::from(sides.map(|s| s.middle()));
         let witness = |certain: bool| {
             let Some(p) = &parts else { return centre };
@@ -246,7 +249,8 @@ pub(super) fn gathered(open: &[Unresolved], step: f64) -> Vec<Unresolved> {
     all
 }
 
-/// What is within this part of a cell of the surface, or on the side of it where it should be, is not missed.
+/// Features within this fraction of a cell of the surface, or on the side of it where they belong,
+/// are not missed.
 const NEAR: f64 = 0.15;
 
 /// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
@@ -323,7 +327,8 @@ pub(super) fn not_shown(
             let away = u.witness - nearest(u.witness, [a, b, c]);
             let far = away.norm();
             let side = (b - a).cross(c - a).dot(away);
-            // Of triangles that share the nearest point that which is faced most squarely says the side.
+            // Of triangles with the same nearest point the one with the most frontal view
+            // determines the side.
             let size = (b - a).cross(c - a).norm() * far;
             let square = if size > 0.0 { side / size } else { 0.0 };
             let tied = far <= best.0 * (1.0 + 1e-9);

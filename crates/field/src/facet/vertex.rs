@@ -1,5 +1,5 @@
-//! Where the vertex of a piece of surface in a cell goes: onto all the primitives that the piece
-//! shows, and into the cell.
+//! Placement of the vertex of a piece of surface: on all the primitives of the piece, and in the
+//! cell.
 
 use crate::expr::algebra::ValueGradient;
 use crate::expr::tape::ExprTape;
@@ -8,10 +8,10 @@ use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Numbers of the leaves that a vertex lies on, ascending.
+/// Numbers of the leaves of a vertex, ascending.
 pub(crate) type Surfaces = SmallVec<[u32; 3]>;
 
-/// Reusable room.
+/// Reusable memory.
 #[derive(Default)]
 pub(crate) struct Solver {
     values: Vec<ValueGradient<f64>>,
@@ -22,14 +22,14 @@ pub(crate) struct Solver {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedVertex {
     pub(crate) point: Vec3,
-    /// The largest distance |f| / |f'| from a surface that it should lie on.
+    /// Largest distance |f| / |f'| from its surfaces.
     pub(crate) residual: f64,
-    /// True when it lies outside its cell.
+    /// True if it is outside its cell.
     pub(crate) strayed: bool,
 }
 
-/// The most steps of a search. Where surfaces touch, contact is a double root and every step halves
-/// the distance, so that 30 of them gain 1e-9 of it and 1e-18 in the function.
+/// Maximum number of steps of a search. At a contact, a double root, every step halves the
+/// distance, so that 30 of them gain 1e-9 of it and 1e-18 in the function.
 const STEPS: usize = 30;
 
 impl Solver {
@@ -59,7 +59,8 @@ impl Solver {
         if first.residual <= goal {
             return first;
         }
-        // At the cell's boundary the free step may run along it in vain: there, search within it.
+        // At the cell's boundary the free step may be along it without progress: then the search
+        // continues within it.
         let second = self.search(&tapes, start, cell, goal, true);
         if second.residual < first.residual { second } else { first }
     }
@@ -170,8 +171,9 @@ fn least_norm(rows: &[(Vec3, f64)]) -> Vec3 {
     let top = values.into_iter().fold(0.0, f64::max);
     let mut step = Vec3::zero();
     for k in 0..3 {
-        // Directions that no surface determines to rounding are left alone. Where two touch, their normals differ by the
-        // way to the contact, which is halved by each step, and the value here by its square.
+        // Directions not determined by any surface are skipped. At a contact the difference of the
+        // normals is proportional to the distance, which is halved by each step, and the value here
+        // to its square.
         if values[k] > 1e-13 * top {
             step += vectors[k] * (vectors[k].dot(b) / values[k]);
         }

@@ -1,8 +1,9 @@
-//! Wires: the edges between two sheets as polylines that run along the curve of both, forward.
+//! Wires: the edges between two sheets as polylines along their common curve, in one direction.
 //!
-//! Cells place their vertices by themselves. Two that share a side may place theirs beyond one another, and a vertex
-//! of a cell with more surfaces than it can part is on none of them. Faces between take no harm; a line would go back
-//! and forth, and be too long.
+//! Cells place their vertices independently: those of two neighbours may be in reversed order along
+//! an edge, and a vertex of a cell with more surfaces than it can separate is on none of them. That
+//! does not matter for faces; a line through such vertices would go back and forth, and be too
+//! long.
 
 use crate::Primitive;
 use crate::facet::Facets;
@@ -21,7 +22,7 @@ pub struct FacetWire {
     pub closed: bool,
     /// The numbers of its two leaves.
     pub leaves: [usize; 2],
-    /// What its vertices lie on.
+    /// Leaves of its vertices.
     pub on: LeafIncidence,
 }
 
@@ -36,7 +37,7 @@ impl FacetWire {
     }
 }
 
-/// How far a vertex is looked for, in cells.
+/// Maximum distance of a vertex, in cells.
 const REACH: f64 = 2.0;
 
 /// The wires between the faces of two primitives, which are `leaves` of the set, in the order of their lowest vertex.
@@ -67,7 +68,7 @@ pub(super) fn wires_of(
             f.normalized().unwrap_or_default().cross(g.normalized().unwrap_or_default())
         };
         let places = forward(places, closed, 1e-9 * facets.step, &tangent);
-        // A sliver with all corners on the curve has a border of its own, which goes there and back.
+        // A sliver with all corners on the curve has a border of its own, in both directions.
         if places.len() < if closed { 3 } else { 2 } {
             continue;
         }
@@ -78,7 +79,7 @@ pub(super) fn wires_of(
     found
 }
 
-/// A vertex of a wire, and what it lies on.
+/// A vertex of a wire, with its leaves.
 struct WirePoint {
     at: Vec3,
     surfaces: Surfaces,
@@ -94,7 +95,8 @@ fn on_curve(solver: &mut Solver, facets: &Facets, own: &[u32], at: Vec3) -> Opti
     (placed.residual <= goal).then_some(placed.point)
 }
 
-/// The points without those that lie behind one before them, along the curve. Ends and corners stay.
+/// The points in increasing order along the curve; points behind an earlier one are removed, except
+/// ends and corners.
 fn forward(
     places: Vec<WirePoint>,
     closed: bool,
@@ -106,7 +108,7 @@ fn forward(
         (q - p).dot(tangent(p) + tangent(q))
     };
     let sum: f64 = places.windows(2).map(|pair| along(&pair[0], &pair[1])).sum();
-    // Where surfaces touch there is no direction.
+    // At a contact of surfaces the direction is undefined.
     let behind = |p: &WirePoint, q: &WirePoint| {
         p.at.distance(q.at) <= near || along(p, q) * sum.signum() < 0.0
     };

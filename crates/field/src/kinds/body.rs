@@ -42,7 +42,8 @@ pub struct SetBody<T: Real> {
     /// Maximum distance of triangle centres from the surface, estimated by refinement.
     #[field(default)]
     accuracy: Option<T>,
-    /// Largest distance from the surface when triangles are merged; none are merged by default.
+    /// Largest distance from the surface when triangles are merged, in units of length. Default: no
+    /// merging.
     #[field(default)]
     simplify: Option<T>,
 }

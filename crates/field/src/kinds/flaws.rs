@@ -9,7 +9,7 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
     counted_of(places.len(), places, facets)
 }
 
-/// As [`counted`], for `n` cells of which only some positions are given.
+/// As [`counted`], for `n` cells with only some positions known.
 fn counted_of(n: usize, places: &[Vec3], facets: &Facets) -> String {
     let p = places[0];
     let Facets { cells, step, .. } = facets;

@@ -513,7 +513,8 @@ impl<T: Real> Build<T> for FirstHit<T> {
         let ray = foot::ray(start, direction, length);
         let hit = plain.first_hit(&ray).ok_or_else(none)?;
         let leaves = set.leaves();
-        // With derivatives, equal primitives may count twice: the one at this place of the plain set.
+        // With derivatives, equal primitives may occur twice: the one with this index in the plain
+        // set.
         let wanted = &plain.leaves()[hit.leaf].primitive;
         let leaf = leaves.iter().find(|l| l.primitive.re().same(wanted));
         let t = leaf.map(|l| foot::along(l.primitive.of_sheet(), start, direction, hit.t));
@@ -559,7 +560,8 @@ impl<T: Real> Build<T> for Distance<T> {
         if found.distance == 0.0 {
             return Ok(Value::Number(T::zero()));
         }
-        // Each foot moves as its own surface does; what it slides along changes the distance by nothing.
+        // Each foot moves with its own surface; its slide along the surface does not change the
+        // distance.
         let near = 1e-9 * over.diagonal();
         let x = foot::nearest(a, Vec3::lifted(found.second), found.first, near);
         let y = foot::nearest(b, Vec3::lifted(found.first), found.second, near);

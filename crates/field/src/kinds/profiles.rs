@@ -86,7 +86,7 @@ impl<T: Real> Build<T> for Extruded<T> {
         let aside = by - normal * height;
         let constant = aside.to_array().iter().all(|x| x.is_constant());
         if !constant || aside.re().norm() > 1e-12 * by.re().norm() {
-            // Each point goes aside as its height is to that of the vector.
+            // The sideways move of a point is proportional to its height.
             let w = aside / height;
             let row = |k: usize| Affine::identity().rows[k] + normal * w[k];
             let rows = [row(0), row(1), row(2)];

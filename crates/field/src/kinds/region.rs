@@ -1,4 +1,4 @@
-//! The box over which a set is looked at.
+//! The box in which a set is evaluated.
 
 use super::read::fault;
 use crate::Set;

@@ -47,7 +47,7 @@ impl<T: Real> Movable<T> {
 pub struct Translated<T: Real> {
     /// The field or set to move.
     shape: Movable<T>,
-    /// By how much.
+    /// Translation vector.
     by: Point<T>,
 }
 

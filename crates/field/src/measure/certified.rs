@@ -1,9 +1,9 @@
 //! Certified integrals over a set: bounds that are proved, refined only where they are open.
 //!
-//! The box is divided into cells. In a cell that is all solid or all air nothing is open; in others the leaves'
-//! Taylor forms bound the solid part from both sides (`taylor`), however thin it is and however many sheets of
-//! surface it has. The cells with the widest bounds are divided first, until the bounds are as narrow as asked or
-//! as many cells are used as allowed; nothing is ever left out.
+//! The box is divided into cells. Cells of solid or air only are certain; in others the leaves'
+//! Taylor forms bound the solid part from both sides (`taylor`), regardless of its thickness and of
+//! the number of sheets. The cells with the widest bounds are divided first, until the requested
+//! width or the maximum number of cells is reached; nothing is left out.
 
 use super::moments::{Moments, POWERS};
 use super::taylor::{self, Combination, TaylorRoom, frame};
@@ -18,7 +18,7 @@ use moldloft_num::{Box3, Real, Vec3};
 use moldloft_parallel::prelude::*;
 use std::sync::Arc;
 
-/// How much work integrals may be.
+/// Limits of the work on integrals.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// The width of the volume's bracket that is good enough.
@@ -47,7 +47,7 @@ pub struct Certified {
     pub bracket: Moments<Interval>,
     /// Within it.
     pub best: Moments<f64>,
-    /// How many cells were looked at.
+    /// Number of cells examined.
     pub cells: usize,
     /// Cells whose contribution is still open, the widest first: each with the volume that is.
     pub open: Vec<(Box3, f64)>,
@@ -56,7 +56,7 @@ pub struct Certified {
     leaves: Vec<Leaf>,
 }
 
-/// A cell of which only part is solid.
+/// A partly solid cell.
 struct Open {
     sides: [Interval; 3],
     tape: Arc<ExprTape<f64>>,
@@ -75,7 +75,7 @@ enum CellOutcome {
 
 /// Below this depth all cells are divided as deep.
 const ALL: u32 = 40;
-/// Integrals are known to this part of what a whole cell has: some hundred roundings.
+/// Relative rounding of integrals: some hundred roundings of a whole cell.
 const ROUNDING: f64 = 1e-13;
 /// Cells with at least this part of the widest bracket are divided together.
 const TOGETHER: f64 = 0.25;
@@ -109,7 +109,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// What a cell contributes.
+    /// Contribution of a cell.
     fn examined(
         &self,
         tape: &Arc<ExprTape<f64>>,
@@ -127,7 +127,8 @@ impl Work<'_> {
         }
         let tape = tape.pruned(&room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
         let all = whole(&local);
-        // Cells that are divided whatever their bounds need none, but for bodies of planes, which they end.
+        // Cells that are divided in any case need no bounds, except for bodies of planes, for which
+        // they are final.
         let divided = self.last.is_some_and(|last| depth < last);
         let planes = || {
             let of = |code: &ExprInstruction<f64>| {
@@ -349,7 +350,7 @@ impl Certified {
         Moments { about: self.sealed.about, terms }
     }
 
-    /// What one cell contributes, about the middle of the box.
+    /// Contribution of one cell, about the middle of the box.
     fn part<T: Real>(
         &self,
         cell: &Open,
@@ -369,7 +370,7 @@ impl Certified {
             return cell.bracket.map(|x| T::from(x.low + share * (x.high - x.low)));
         };
         let m = taylor::best(combination, &cell.sides, primitive);
-        // A first order that leaves the bracket is none: the nearest end is better.
+        // A first-order value outside the bracket is invalid: the nearest end is better.
         let volume = T::from(m[0].re().clamp(cell.bracket[0].low, cell.bracket[0].high));
         let m0 = if volume.re() == m[0].re() { m[0] } else { volume };
         let d = centre - self.sealed.about;

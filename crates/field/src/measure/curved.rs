@@ -1,17 +1,17 @@
 //! Facets as quadratic triangles, by which integrals over bodies and surfaces are of high order.
 //!
-//! Every side of a triangle gets a middle on the surface, on both surfaces where two primitives meet. A
-//! quadratic patch through the six points is within O(h^3) of the surface. What is left is a layer: at a point
-//! of the patch, with N = f' / |f'|, the surface is t = -f / |f'| away along N. With dA the area vector of the
-//! patch and the theorem of divergence applied to the layer,
+//! Every side of a triangle gets a midpoint on the surface, on both surfaces along an edge. A
+//! quadratic patch through the six points is within O(h^3) of the surface. The rest is a layer: at
+//! a point of the patch, with N = f' / |f'|, the surface is at the distance t = -f / |f'| along N.
+//! With dA the area vector of the patch and the divergence theorem for the layer,
 //!
 //! - the integral of a monomial g of degree d over the body is that of g x . dA / (3 + d), plus g t N . dA;
 //! - the area of the surface, the flux of N through it, is that of N . dA (1 + t div N).
 //!
-//! Both leave out what is of second order in t, thus of sixth in h. Along an edge the quadratic curve
-//! crosses the true one between its nodes, so that what lies between them cancels like the error of
-//! Simpson's rule. Everything is made of the six points by formulas, so that numbers with derivatives give the
-//! derivatives: those of moving edges are those of their middles.
+//! Both neglect terms of second order in t, thus of sixth in h. Along an edge the quadratic curve
+//! crosses the true one between its nodes, so that the area between them cancels like the error of
+//! Simpson's rule. All is a formula of the six points, so that numbers with derivatives give the
+//! derivatives: those of moving edges are those of their midpoints.
 
 use super::moments::{Moments, POWERS};
 use super::moved::moved;
@@ -25,11 +25,12 @@ use moldloft_parallel::prelude::*;
 
 use crate::facet::vertex::{Solver, Surfaces};
 
-/// How far a middle may be from that of the chord, as a share of its length; beyond, the side stays straight.
+/// Maximum distance of a midpoint from that of the chord, relative to the length; beyond, the side
+/// stays straight.
 const AWAY: f64 = 0.3;
 /// A layer whose curvature changes its area by more than this is not a thin layer of a smooth surface.
 const THIN: f64 = 0.2;
-/// How many triangles are summed at once, so that the order of sums does not depend on threads.
+/// Number of triangles summed together, so that the order of summation does not depend on threads.
 const CHUNK: usize = 512;
 
 /// The rule of seven points of degree five on a triangle (Radon 1948): the first coordinate of each orbit's
@@ -46,7 +47,7 @@ pub(crate) struct Curved<'a> {
     faces: &'a [[u32; 4]],
     /// The leaf of each face.
     leaves: Vec<u32>,
-    /// The middles, and what they lie on: nothing where the side is straight.
+    /// The midpoints, and their leaves: empty for straight sides.
     middles: Vec<Vec3>,
     on: Vec<Surfaces>,
     /// The ends of each side.
@@ -77,7 +78,7 @@ fn middle(
 }
 
 impl<'a> Curved<'a> {
-    /// Of triangles, closed or open.
+    /// From triangles, closed or open.
     pub fn new(flat: &TriangleView<'a>) -> Self {
         let TriangleView { positions, faces, .. } = *flat;
         let mut leaves = vec![0; faces.len()];
@@ -109,7 +110,7 @@ impl<'a> Curved<'a> {
                 let mut on: Surfaces = group.iter().map(|g| leaves[g.2 as usize / 3]).collect();
                 on.sort_unstable();
                 on.dedup();
-                // At the boundary of a sheet, the other surface is one that both ends lie on.
+                // At the boundary of a sheet, the other surface is one that contains both ends.
                 let other = |k: &u32| !on.contains(k) && flat.surfaces[b as usize].contains(k);
                 let others: Surfaces = match group.len() {
                     1 => flat.surfaces[a as usize].iter().copied().filter(other).collect(),
@@ -152,8 +153,8 @@ impl<'a> Curved<'a> {
         middles
     }
 
-    /// Sums what `each` makes of the leaf, its jet (where it has a primitive), the point and the area vector at all
-    /// points of the rule.
+    /// Sum of `each` of the leaf, its jet (if it has a primitive), the point and the area vector
+    /// over all points of the rule.
     fn sum<T: Real, A: Algebra<T, At = Vec3<T>> + Send, const N: usize>(
         &self,
         positions: &[Vec3<T>],
@@ -166,7 +167,8 @@ impl<'a> Curved<'a> {
             .par_chunks(CHUNK)
             .map_init(Vec::new, |room, chunk| {
                 let mut total = [T::zero(); N];
-                // Faces of one leaf follow each other: primitives from outside are asked once for all.
+                // Faces of one leaf are consecutive: external primitives are evaluated once for
+                // all.
                 for run in
                     chunk.chunk_by(|a, b| self.leaves[*a as usize] == self.leaves[*b as usize])
                 {
@@ -278,7 +280,7 @@ impl<'a> Curved<'a> {
         area
     }
 
-    /// The mean side of a triangle: layers thicker than that are none.
+    /// Mean side of the triangles; layers thicker than that are rejected.
     fn size(&self) -> f64 {
         let all = self
             .ends

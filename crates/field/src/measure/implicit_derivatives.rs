@@ -1,4 +1,4 @@
-//! How facets move when parameters change: their vertices and moments as numbers with derivatives.
+//! Motion of facets with parameters: vertices and moments as numbers with derivatives.
 
 use super::curved::Curved;
 use super::moved::moved;
@@ -23,20 +23,20 @@ pub struct Lifter<T: Real> {
 }
 
 impl<T: Real> Lifter<T> {
-    /// Of a set, within a box whose corners move as given.
+    /// For a set, within a box whose corners have derivatives.
     pub fn new(set: &Set<T>, corners: Option<[Vec3<T>; 2]>) -> Self {
         Self::of(set, &set.re(), corners)
     }
 
-    /// As [`Lifter::new`], given the set in plain numbers of which facets were made. Primitives from outside
-    /// are identified by their identity, so they must be those.
+    /// As [`Lifter::new`], given the plain set from which facets were made. External primitives are
+    /// identified by identity, so they must be the same.
     pub fn of(set: &Set<T>, plain: &Set<f64>, corners: Option<[Vec3<T>; 2]>) -> Self {
         let pairs = plain.traversal().into_iter().zip(set.traversal()).collect();
         Self { pairs, corners }
     }
 
-    /// The primitive of a leaf with derivatives: one of the set, its complement or what it is a sheet
-    /// of, or a face of the box.
+    /// The primitive of a leaf with derivatives: one of the set, its complement or the argument of
+    /// its sheet, or a face of the box.
     pub(crate) fn primitive(&self, leaf: &Leaf) -> Option<Primitive<T>> {
         let wanted = &leaf.primitive;
         for (plain, lifted) in &self.pairs {
@@ -69,7 +69,7 @@ impl<T: Real> Lifter<T> {
         Ok(moved(facets.mesh.positions(), &facets.surfaces, &primitives))
     }
 
-    /// Points that lie on surfaces of the set.
+    /// Points on surfaces of the set, with derivatives.
     ///
     /// # Errors
     /// Surfaces that are not the set's.
@@ -82,7 +82,7 @@ impl<T: Real> Lifter<T> {
         Ok(moved(points, &on.surfaces, &primitives))
     }
 
-    /// The primitives of the leaves that points lie on.
+    /// The primitives of the points' leaves.
     ///
     /// # Errors
     /// Surfaces that are not the set's.

@@ -1,9 +1,10 @@
 //! Volume, centroid and inertia: certified brackets, and best values within them.
 //!
-//! Best values are those of curved facets, which have the most digits where they show the whole set. Where a part is
-//! thinner than their cells, or their volume leaves the bracket, the certified cells have the better ones. Where edges
-//! are blunt, as in the cusp between a cylinder and a plane that it touches, facets may agree with each other on a
-//! wrong value: there a narrower bracket decides, and what stays uncertain is said.
+//! Best values are those of curved facets, which have the most digits if they show the whole set.
+//! If a part is thinner than their cells, or their volume is outside the bracket, the certified
+//! cells are better. With blunt edges, as in the cusp between a cylinder and a tangent plane,
+//! facets may agree with each other on a wrong value: then a narrower bracket decides, and the
+//! uncertainty is reported.
 
 use super::certified::{Certified, Effort, certified};
 use super::curved::Curved;
@@ -25,14 +26,15 @@ const DEEPEST: u32 = 12;
 const MOST_CELLS: usize = 30_000_000;
 /// Cells of the bracket that every best value is checked by.
 const CHECK: usize = 3000;
-/// Cells of best values where facets have none.
+/// Number of cells for best values without facets.
 const THIN: usize = 120_000;
-/// The coarsest and finest levels of facets for best values, and how many cells these have at most.
+/// Coarsest and finest level of facets for best values, and their maximum number of cells.
 const LEVELS: [u32; 2] = [5, 9];
 const MOST_FACET_CELLS: usize = 400_000;
-/// The finest level for what is thin along a line only, such as a rod: its cells stay few.
+/// Finest level for parts that are thin along a line only, such as a rod: the number of cells stays
+/// small.
 const FINEST: u32 = 15;
-/// The part of the box's volume to which two best values agree unless asked otherwise.
+/// Default agreement of two best values, relative to the box's volume.
 const USUAL: f64 = 1e-8;
 
 /// Certified brackets of the moments of a set within a box, from boxes halved `depth` times along each axis at
@@ -64,18 +66,18 @@ fn effort(depth: u32) -> Result<Effort, FieldError> {
     Ok(Effort { accuracy: 0.0, cells: MOST_CELLS, depth })
 }
 
-/// How integrals are made.
+/// Options of integrals.
 #[derive(Clone, Default)]
 pub struct IntegralOptions {
     /// Boxes of the bracket are halved this often at most; by default a few thousand are enough.
     pub depth: Option<u32>,
-    /// How far the volume may be from its best value, proved.
+    /// Maximum proved distance of the volume from its best value.
     pub accuracy: Option<f64>,
-    /// The most cells by which that accuracy is sought; by default 400 000.
+    /// Maximum number of cells for that accuracy; default 400 000.
     pub cells: Option<usize>,
-    /// How well the volumes of two levels of facets agree; by default to 1e-8 of the box's volume.
+    /// Agreement of the volumes of two levels of facets; default: 1e-8 of the box's volume.
     pub agreement: Option<f64>,
-    /// What the work may use.
+    /// Limits of memory and time.
     pub budget: Arc<Budget>,
 }
 
@@ -100,8 +102,8 @@ pub struct BracketedMass<T: Real = f64> {
     pub best: Moments<T>,
     /// Proved: the right volume is no further from the best one.
     pub uncertain: f64,
-    /// By how much the best volumes of two levels of facets differ, with what these may lack: an estimate of the error, no
-    /// bound. 0 where they agree as well as was asked.
+    /// Difference of the best volumes of two levels of facets, with their possible misses: an
+    /// estimate of the error, no bound; 0 if they agree as well as requested.
     pub estimate: f64,
 }
 
@@ -112,8 +114,8 @@ impl<T: Real> BracketedMass<T> {
         Self { bracket, best, uncertain, estimate: estimate.min(uncertain) }
     }
 
-    /// What there is to say of a volume, and of all that follows from it, that is not known as well as asked: without an accuracy, to
-    /// six digits.
+    /// Warning for a volume, and values derived from it, with less than the requested accuracy
+    /// (default: six digits).
     pub fn doubt(&self, accuracy: Option<f64>) -> Option<Remark> {
         let enough = accuracy.unwrap_or(1e-6 * self.best.volume().re().abs());
         (self.estimate > enough).then(|| Remark {
@@ -189,7 +191,7 @@ pub fn mass_of<T: Real>(
     if let Some(Faceted { moments, settled: true, .. }) = faceted {
         return Ok(BracketedMass::of(bracket, within(moments, &bracket), 0.0));
     }
-    // What facets do not show, or not as well as was asked.
+    // Parts that facets do not show, or not as well as requested.
     let thin = match checked.cells >= THIN {
         true => checked,
         false => certified(&solid, over, &Effort::of_cells(THIN), budget)?,
@@ -230,9 +232,9 @@ fn within<T: Real>(mut best: Moments<T>, bracket: &Moments<Interval>) -> Moments
 /// Moments by facets.
 struct Faceted<T: Real> {
     moments: Moments<T>,
-    /// How far the volumes of the last two levels are apart, and what the last may lack.
+    /// Difference of the volumes of the last two levels, and the possible misses of the last.
     change: f64,
-    /// True when these agree as well as was asked, and no edge is blunt.
+    /// True if these agree as well as requested, and no edge is blunt.
     settled: bool,
 }
 
@@ -260,7 +262,7 @@ fn by_facets<T: Real>(
             ..FacetOptions::new(Resolution::Level(level))
         };
         let facets = match memo.facet(solid, over, &options) {
-            // What the levels before show is what there is.
+            // The coarser levels are the result.
             Err(FieldError::TooFine { .. }) if before.is_some() => break,
             Err(FieldError::TooFine { .. }) => return Ok(None),
             made => made?,
@@ -275,7 +277,7 @@ fn by_facets<T: Real>(
         before = Some((facets, volume));
         complete = missed == 0;
         if missed > 0 && last {
-            // What they do not show is known to hold no more than this.
+            // Proved bound of the missed volume.
             change += held;
             break;
         }

@@ -9,7 +9,7 @@ use moldloft_num::{Real, Vec3};
 pub struct Moments<N> {
     /// The point about which they are; it depends on nothing.
     pub about: Vec3,
-    /// Those of 1; x, y, z; xx, yy, zz; xy, yz, zx.
+    /// Integrals of 1; x, y, z; xx, yy, zz; xy, yz, zx.
     pub terms: [N; 10],
 }
 
@@ -53,7 +53,7 @@ impl<T: Real> Moments<T> {
 }
 
 impl Moments<f64> {
-    /// These, those that lie outside of a bracket moved to its end.
+    /// These, limited to a bracket.
     pub(crate) fn clamped(&self, bracket: &Moments<Interval>) -> Self {
         let mut out = *self;
         for (x, range) in out.terms.iter_mut().zip(&bracket.terms) {
@@ -64,7 +64,7 @@ impl Moments<f64> {
 }
 
 impl Moments<Interval> {
-    /// Those of nothing.
+    /// Moments of the empty set.
     pub(super) fn zero(about: Vec3) -> Self {
         Self { about, terms: [Interval::ZERO; 10] }
     }
@@ -120,7 +120,7 @@ impl Moments<Interval> {
         [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
     }
 
-    /// True when all of `m`, about the same point, lies inside.
+    /// True if all of `m`, about the same point, are inside.
     pub fn contains(&self, m: &Moments<f64>) -> bool {
         self.terms.iter().zip(&m.terms).all(|(range, x)| range.contains(*x))
     }

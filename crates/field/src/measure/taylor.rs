@@ -1,4 +1,4 @@
-//! What a set is in a small box: a combination of leaves, each a plane and a proved remainder.
+//! A set in a small box: a combination of leaves, each a plane with a proved remainder.
 //!
 //! Within the box every leaf is f(c) + f'(c) . d plus a remainder whose range second derivatives bound. The set is
 //! monotone in its leaves, so that with the remainders at their upper ends it is less, and at their lower ends
@@ -16,7 +16,7 @@ use smallvec::SmallVec;
 /// More leaves than this are not parted.
 pub(crate) const MOST_LEAVES: usize = 6;
 
-/// How leaves are combined.
+/// Combination of leaves.
 #[derive(Clone, Copy, Debug)]
 enum CombinationNode {
     /// A leaf, or its complement.
@@ -25,7 +25,7 @@ enum CombinationNode {
     And(u8, u8),
 }
 
-/// What an instruction is the negative of, if it is one.
+/// The operand of a negation, and whether it is one.
 fn unsigned(tape: &ExprTape<f64>, at: u32) -> (u32, bool) {
     match tape.code[at as usize] {
         ExprInstruction::Unary(Unary::Neg, inner) => (inner, true),
@@ -33,7 +33,7 @@ fn unsigned(tape: &ExprTape<f64>, at: u32) -> (u32, bool) {
     }
 }
 
-/// Whether two leaves are one function, or one the other's negative.
+/// Some(negated) if two leaves are one function, or one is the negative of the other.
 fn alike(tape: &ExprTape<f64>, a: u32, b: u32) -> Option<bool> {
     let ((p, m), (q, n)) = (unsigned(tape, a), unsigned(tape, b));
     if p == q {
@@ -55,11 +55,11 @@ pub(crate) struct Combination {
     pub leaves: SmallVec<[(u32, u32); 6]>,
 }
 
-/// Whether a point is solid as far as the leaves are known: -1 solid, 1 air, 0 unknown.
+/// State of each leaf at a point: -1 solid, 1 air, 0 unknown.
 type Signs = [i8; MOST_LEAVES];
 
 impl Combination {
-    /// That of a tape; `None` when it has no leaf or too many.
+    /// The combination of a tape; `None` without a leaf, or with too many.
     pub fn of(tape: &ExprTape<f64>) -> Option<Self> {
         let mut number = vec![u8::MAX; tape.code.len()];
         let mut out = Self { nodes: SmallVec::new(), leaves: SmallVec::new() };
@@ -147,7 +147,7 @@ impl Combination {
     }
 }
 
-/// A leaf in a box: its value and gradient in the middle, and the range of what is left.
+/// A leaf in a box: value and gradient at the centre, and the range of the remainder.
 #[derive(Clone, Copy, Debug)]
 struct TaylorModel {
     value: Interval,
@@ -155,7 +155,7 @@ struct TaylorModel {
     rest: Interval,
 }
 
-/// The part of a box that is solid, of which bounds are proved.
+/// Proved bounds of the solid part of a box.
 pub(crate) struct MomentBounds {
     /// At least …
     pub least: [f64; 10],
@@ -163,8 +163,8 @@ pub(crate) struct MomentBounds {
     pub most: [f64; 10],
 }
 
-/// By what part of a cell's extent planes are moved against rounding, and by what part of the volume integrals are
-/// widened: some hundred roundings.
+/// Shift of planes relative to a cell's extent, and widening of integrals relative to the volume,
+/// against rounding: some hundred roundings.
 const ROUNDING: f64 = 1e-13;
 
 /// The middle of a box and its half sides, rounded so that they reach its ends.
@@ -174,7 +174,7 @@ pub(crate) fn frame(sides: &[Interval; 3]) -> (Vec3, Vec3) {
     (c.into(), half.into())
 }
 
-/// Reusable room.
+/// Reusable memory.
 #[derive(Default)]
 pub(crate) struct TaylorRoom {
     pub ranges: RangeRoom,
@@ -182,8 +182,8 @@ pub(crate) struct TaylorRoom {
     centre: Vec<GradientRange>,
 }
 
-/// Bounds of the integrals over the solid part of a box, about its middle; of what is solid at most the volume only,
-/// unless its other `moments` are asked for.
+/// Bounds of the integrals over the solid part of a box, about its centre; the upper bound of the
+/// volume only, unless `moments` are requested.
 pub(crate) fn bounds(
     tape: &ExprTape<f64>,
     combination: &Combination,
@@ -199,7 +199,7 @@ pub(crate) fn bounds(
         let (range, plain) = (&room.forms[at as usize], &room.centre[at as usize]);
         let value = plain.value;
         let slope = Vec3::from(plain.slope.map(Interval::middle));
-        // By second derivatives, and what the gradient in the middle may differ from the one that is taken.
+        // Second derivatives, and the difference of the gradient at the centre from the one used.
         let mut second = Interval::ZERO;
         for k in 0..3 {
             let more = 0.5 * plain.slope[k].width() * reach[k];
@@ -262,8 +262,8 @@ pub(crate) fn bounds(
     MomentBounds { least: integrate(true), most: integrate(false) }
 }
 
-/// The best guess of the integrals over the solid part of a box, about its middle: that of the leaves' planes at the
-/// middle, and to first order of what their second derivatives move the faces by.
+/// Best estimate of the integrals over the solid part of a box, about its centre: from the leaves'
+/// planes at the centre, and to first order from the shift of the faces by second derivatives.
 pub(crate) fn best<T: Real>(
     combination: &Combination,
     sides: &[Interval; 3],

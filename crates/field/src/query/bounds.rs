@@ -8,13 +8,14 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// How far sets are looked for along each axis: the nearer, and where it holds nothing or no end, the farther.
+/// Half sides of the searched space: the smaller, and the larger if that is empty or the set
+/// reaches its end.
 const WORLDS: [f64; 2] = [(1u64 << 20) as f64, (1u64 << 60) as f64];
 /// The most boxes to look at for one side.
 const MOST: usize = 100_000;
 
 struct ReachBox {
-    /// How far it reaches in the direction asked for.
+    /// Upper bound of the coordinate in the searched direction.
     reach: f64,
     depth: u32,
     sides: [Interval; 3],
@@ -43,8 +44,8 @@ impl Ord for ReachBox {
     }
 }
 
-/// A box that is proved to contain a set, each side within `accuracy` of what ranges can tell; `None`
-/// for a set that is proved empty.
+/// A box that is proved to contain a set, each side within `accuracy` of the best provable by
+/// ranges; `None` for a set that is proved empty.
 ///
 /// # Errors
 /// [`FieldError::Unbounded`] when the set reaches 2^60 from the origin, or that cannot be excluded;
@@ -90,7 +91,7 @@ fn within(
     Ok(Some(Box3 { low: Vec3::from(low), high: Vec3::from(high) }))
 }
 
-/// How far the set reaches along an axis, from above; `None` when it is empty.
+/// Upper bound of a coordinate of the set; `None` if it is empty.
 fn farthest(
     tape: &Arc<ExprTape<f64>>,
     axis: usize,

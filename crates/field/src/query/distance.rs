@@ -1,4 +1,4 @@
-//! How far two sets are apart.
+//! Distance of two sets.
 
 use super::foot;
 use super::separation::{Gauge, proved as separation, suggested};
@@ -38,7 +38,7 @@ struct DistanceBox {
     slope: Option<Sides>,
 }
 
-/// The part of a box in which a primitive with these slopes can be zero; `None` when there is none.
+/// The part of a box in which a primitive with these slopes can be zero; `None` if empty.
 fn contracted(
     tape: &ExprTape<f64>,
     mut sides: Sides,
@@ -66,8 +66,8 @@ fn contracted(
     Some(sides)
 }
 
-/// True when no nearest pair of points can be in two boxes apart: inside a solid, or where the way
-/// between them is nowhere along the gradient, outward.
+/// True if no nearest pair of points can be in two separate boxes: inside a solid, or if the
+/// direction between them is nowhere along the gradient, outward.
 fn can_prune(pair: &[Arc<DistanceBox>; 2]) -> bool {
     (0..2).any(|k| {
         let (own, other) = (&pair[k], &pair[1 - k]);
@@ -122,7 +122,7 @@ impl Ord for Pair {
 const MOST: usize = 40_000;
 /// Boxes are halved this often at most.
 const DEPTH: u32 = 60;
-/// How often the nearest points are sought by turns at the end.
+/// Number of alternating projections at the end.
 const TURNS: usize = 100;
 
 /// The distance of two boxes, rounded down, and the points of them that are that near.
@@ -145,9 +145,10 @@ fn apart(a: &Sides, b: &Sides) -> (f64, [Vec3; 2]) {
 
 /// The distance of two sets within a box, to `accuracy`; `None` when one of them has no point in it.
 ///
-/// Pairs of boxes are visited by their distance, those proved to be air left out, until none is nearer than
-/// the best pair of points by more than `accuracy`, or 40 000 pairs were seen: `at_least` is what is proved. Parallel
-/// faces, concentric balls, coaxial cylinders and the like are proved at once (`separation`).
+/// Pairs of boxes are visited by their distance, without those proved to be air, until no other is
+/// nearer than the best pair of points by more than `accuracy`, or 40 000 pairs were visited:
+/// `at_least` is the proved bound. Parallel faces, concentric balls, coaxial cylinders and the like
+/// are solved directly (`separation`).
 ///
 /// # Errors
 /// A box without volume; an accuracy that is not above zero.

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// A box that may hold the surface, by its distance from the point that asks.
+/// A box that may contain the surface, by its distance from the point.
 struct Candidate {
     distance: f64,
     sides: [Interval; 3],
@@ -58,10 +58,11 @@ const DEPTH: u32 = 24;
 /// The most boxes to look at.
 const MOST: usize = 100_000;
 
-/// The point of a set's surface in a box that is nearest to `p`, or `None` when there is none.
+/// The point of a set's surface in a box that is nearest to `p`; `None` without a surface.
 ///
-/// Boxes are visited by their distance, those proved all solid or all air left out, until none is
-/// nearer than the best point found by more than `accuracy`, or 100 000 were seen: `at_least` is what is proved.
+/// Boxes are visited by their distance, without those proved all solid or all air, until no other
+/// is nearer than the best point by more than `accuracy`, or 100 000 were visited: `at_least` is
+/// the proved bound.
 ///
 /// # Errors
 /// A box without volume, an accuracy that is not above zero.
@@ -95,14 +96,16 @@ pub fn nearest(
     let distance = reach(&start, p);
     heap.push(Candidate { distance, sides: start, depth: 0, tape: compiled.tape.clone() });
     let mut seen = 0;
-    // From a centre of symmetry every point is nearest: boxes would not prove that in a lifetime, distances do.
+    // From a centre of symmetry every point is nearest: boxes could not prove that in reasonable
+    // time, distances do.
     let proved = super::separation::from_point(set, p);
     while let Some(Candidate { distance, sides, depth, tape }) = heap.pop() {
         let distance = distance.max(proved);
         if let Some((point, found)) = best
             && (distance >= found - accuracy || seen >= MOST)
         {
-            // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
+            // Near a minimum the distance determines the position only to the square root of
+            // rounding; Newton's method refines it.
             let point = crate::query::foot::polished(&body, p, point, 1e-9 * over.diagonal());
             let found = point.distance(p).min(found);
             return Ok(Some(CertifiedNearest {
@@ -121,7 +124,7 @@ pub fn nearest(
         }
         let tape = tape.pruned(&room).map_or(tape, Arc::new);
         if body.one_state(&tape).is_some() {
-            // What surfaces are left are no surface of the body.
+            // The remaining surfaces are hidden inside the body.
             continue;
         }
         let smooth = surface_point(&body, &tape, &sides, p);
@@ -162,8 +165,8 @@ pub fn nearest(
     }))
 }
 
-/// True when one primitive alone decides in the box, away from the faces of all of it, and its gradient
-/// is nowhere parallel to the way from `p`: then the nearest point is elsewhere.
+/// True if one primitive alone decides in the box, away from the faces of the whole box, and its
+/// gradient is nowhere parallel to the direction from `p`: then the nearest point is elsewhere.
 fn no_foot(tape: &ExprTape<f64>, sides: &[Interval; 3], p: Vec3, over: &Box3) -> bool {
     let alone = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
     let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);

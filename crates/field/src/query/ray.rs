@@ -16,15 +16,15 @@ use smallvec::SmallVec;
 /// A half-line or a piece of a line: start + t direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where t = 0.
+    /// Point at t = 0.
     pub start: Vec3,
-    /// How far a unit of t goes.
+    /// Displacement for a unit of t.
     pub direction: Vec3,
-    /// The end: t runs from 0 to this, which is finite.
+    /// The end of the range of t, from 0; finite.
     pub length: f64,
 }
 
-/// Where a ray meets a set.
+/// An intersection of a ray with a set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
     /// The parameter.
@@ -33,7 +33,7 @@ pub struct Hit {
     pub point: Vec3,
     /// The number of the leaf among [`Set::leaves`].
     pub leaf: usize,
-    /// Unit normal, from solid to air; zero where the primitive has none.
+    /// Unit normal, from solid to air; zero if undefined.
     pub normal: Vec3,
     /// True when the ray enters the solid, false when it leaves it or passes through a sheet.
     pub enters: bool,
@@ -104,8 +104,9 @@ fn horner(p: &[f64], t: f64) -> f64 {
     p.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// The roots of a polynomial in [`low`, `high`], ascending: between the roots of its derivative it is
-/// monotone, so there is one or none in each piece; where it touches zero the derivative's root is one.
+/// The roots of a polynomial in [`low`, `high`], ascending: between the roots of its derivative it
+/// is monotone, so there is at most one in each piece; at a double root the derivative's root is
+/// the result.
 fn polynomial_roots(p: &[f64], low: f64, high: f64) -> Vec<f64> {
     let degree = p.iter().rposition(|c| *c != 0.0).unwrap_or(0);
     if degree == 0 {
@@ -133,7 +134,7 @@ fn polynomial_roots(p: &[f64], low: f64, high: f64) -> Vec<f64> {
         turning.into_iter().filter(|&t| horner(p, t).abs() <= 8.0 * f64::EPSILON * size(t));
     roots.extend(touching);
     roots.sort_by(f64::total_cmp);
-    // Two roots of one touch lie within the square root of rounding.
+    // Two roots of one contact differ by up to the square root of rounding.
     let mut kept: Vec<f64> = Vec::new();
     for t in roots {
         if kept.last().is_none_or(|old| (t - old).abs() > 1e-12 * (1.0 + t.abs())) {
@@ -268,7 +269,8 @@ impl Caster {
         let mut hits = Vec::new();
         let mut from = 0.0;
         for (k, &(t, leaf)) in candidates.iter().enumerate() {
-            // Several primitives may be zero at one place: the first that is on the set's surface tells.
+            // Several primitives may be zero at one position: the first that is on the set's
+            // surface counts.
             let group = |s: f64| (s - t).abs() <= 1e-12 * ray.length;
             if k > 0 && group(candidates[k - 1].0) && hits.last().is_some_and(|h: &Hit| group(h.t))
             {
@@ -289,7 +291,7 @@ impl Caster {
                 from = t;
             }
             if shows {
-                // Of several primitives at one place, the one that decides beside it.
+                // Of several primitives at one position, the one that decides beside it.
                 let g = leaves[leaf].primitive.gradient(point);
                 let normal = g.slope.normalized().unwrap_or_default();
                 hits.push(Hit { t, point, leaf, normal, enters: after && !before });
@@ -303,8 +305,8 @@ impl Caster {
 }
 
 impl Set<f64> {
-    /// Where a ray crosses the surface of the set, in order: from air to solid, from solid to air, or
-    /// through a sheet.
+    /// Intersections of a ray with the surface of the set, in order: from air to solid, from solid
+    /// to air, or through a sheet.
     pub fn hits(&self, ray: &Ray) -> Vec<Hit> {
         Caster::new(self).hits(ray)
     }

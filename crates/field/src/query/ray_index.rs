@@ -1,7 +1,8 @@
 //! The first hit of many rays: an octree in whose parts few leaves decide.
 //!
-//! A ray walks through the parts in order. In a part that is all solid or all air nothing is looked for; elsewhere only the
-//! leaves that its pruned tape has left are asked for roots. What a ray costs grows with the surfaces near it, not with the set.
+//! A ray passes through the parts in order. Parts of solid or air only are skipped; elsewhere the
+//! roots of the leaves in the pruned tape are computed. The cost of a ray depends on the surfaces
+//! near it, not on the size of the set.
 
 use crate::expr::interval::{Interval, sides as sides_of};
 use crate::expr::tape::{ExprTape, NO_LEAF};
@@ -18,13 +19,13 @@ const FEW_LEAVES: usize = 3;
 const DEEPEST: u32 = 8;
 /// An index has this many parts at most; those beyond stay coarse.
 const MOST_PARTS: usize = 400_000;
-/// Roots within this share of a ray are at one place.
+/// Roots within this fraction of a ray coincide.
 const ONE_PLACE: f64 = 1e-12;
 
 enum RayPart {
     /// All solid, or all air.
     Known(bool),
-    /// What decides, with its leaves.
+    /// The deciding part, with its leaves.
     Few(Arc<ExprTape<f64>>, Vec<u32>),
     Halved(Box<[RayPart; 8]>),
 }
@@ -36,7 +37,7 @@ pub(crate) struct RayIndex {
     root: RayPart,
 }
 
-/// A ray on its way: whether it was inside before.
+/// State of a ray: whether it was inside before.
 struct RayWalk<'a> {
     ray: &'a Ray,
     inside: Option<bool>,
@@ -90,7 +91,8 @@ impl RayIndex {
         }
     }
 
-    /// Takes what the ray is in from `at` on; a hit where that changes. `here` are the leaves with a root there.
+    /// Updates the state of the ray from `at` on; returns a hit if it changes. `here` are the
+    /// leaves with a root there.
     fn passed(&self, walk: &mut RayWalk, inside: bool, at: f64, here: &[u32]) -> Option<Hit> {
         let before = walk.inside.replace(inside);
         if before.is_none_or(|b| b == inside) {
@@ -129,7 +131,7 @@ impl RayIndex {
         let mut here: Vec<u32> = Vec::new();
         let mut k = 0;
         loop {
-            // All that is zero at one place, then what is up to the next.
+            // All roots at one position, then the interval up to the next.
             while k < found.len() && found[k].0 - at <= near {
                 here.push(found[k].1);
                 k += 1;
@@ -201,7 +203,7 @@ fn part(
     RayPart::Halved(Box::new(std::array::from_fn(&mut half)))
 }
 
-/// Where a ray is in a box, as parameters within a range.
+/// Parameters of a ray within a box, limited to a range.
 fn clip(ray: &Ray, over: &Box3, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
     for k in 0..3 {
         let (start, along) = (ray.start[k], ray.direction[k]);

@@ -10,24 +10,24 @@ use moldloft_parallel::prelude::*;
 /// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it shines to, for light from afar; `None` for a lamp.
+    /// Direction of parallel light; `None` for a lamp.
     pub direction: Option<Vec3>,
-    /// Where a lamp stands.
+    /// Position of a lamp.
     pub place: Vec3,
     /// Linear red, green and blue; 1 lights a white face that looks into it fully.
     pub colour: [f64; 3],
 }
 
-/// How a picture is taken.
+/// A view of a set with its lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayTrace {
     /// Picture points across and down.
     pub size: [usize; 2],
-    /// Where the eye is.
+    /// Position of the eye.
     pub eye: Vec3,
-    /// What it looks at.
+    /// Centre of the view.
     pub centre: Vec3,
-    /// What is up.
+    /// Upward direction.
     pub up: Vec3,
     /// Angle between the top and bottom of the picture.
     pub angle: f64,
@@ -37,19 +37,20 @@ pub struct RayTrace {
     pub ambient: [f64; 3],
     /// sRGB at the top and bottom.
     pub background: [[u8; 3]; 2],
-    /// Whether things throw shadows.
+    /// True to draw shadows.
     pub shadows: bool,
     /// Strength of highlights, 0 to 1, and how small they are.
     pub shine: [f64; 2],
     /// sRGB of each of the set's leaves.
     pub colours: Vec<[u8; 3]>,
-    /// How much of the light each of the set's leaves throws back as a mirror, 0 to 1; none where the list ends.
+    /// Fraction of light reflected by each of the set's leaves, 0 to 1; 0 beyond the end of the
+    /// list.
     pub mirrors: Vec<f64>,
     /// Rays along each side of a picture point.
     pub samples: usize,
 }
 
-/// A ray goes from mirror to mirror this often at most: what is left then is a thousandth for mirrors of one half.
+/// Maximum number of reflections of a ray: the rest is a thousandth for mirrors of one half.
 const BOUNCES: u32 = 10;
 
 fn linear(c: u8) -> f64 {
@@ -60,12 +61,12 @@ fn stored(x: f64) -> u8 {
     (Real::powf(x.clamp(0.0, 1.0), 1.0 / 2.2) * 255.0 + 0.5) as u8
 }
 
-/// How far before the box rays begin, as a share of it.
+/// Distance before the box at which rays begin, relative to it.
 const MARGIN: f64 = 1e-6;
-/// A view at a smaller angle to what is up is straight up or down.
+/// Angle between view and `up`, below which the view is vertical.
 const STRAIGHT: f64 = 1e-9;
 
-/// Where a ray is within a box, as parameters.
+/// Parameters of a ray within a box.
 fn clipped(start: Vec3, direction: Vec3, over: &Box3) -> Option<[f64; 2]> {
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for k in 0..3 {
@@ -199,7 +200,7 @@ impl RayScene<'_> {
         if share > 0.0 && bounces < BOUNCES {
             let back = direction - normal * (2.0 * direction.dot(normal));
             let from = hit.point + normal * away;
-            // What a mirror sees beyond all things is the background by height.
+            // A mirrored ray without a hit has the colour of the background at its height.
             let seen = self.seen(from, back, bounces + 1).unwrap_or_else(|| {
                 let up = self.view.up.normalized().unwrap_or(normal);
                 self.view.behind(0.5 - 0.5 * back.dot(up))

@@ -14,13 +14,14 @@ use moldloft_num::{Axis, Box3, Vec3};
 pub(super) enum Gauge {
     /// Along a unit vector.
     Along(Vec3),
-    /// From a point.
+    /// Distance from a point.
     Point(Vec3),
-    /// From a line with a unit direction.
+    /// Distance from a line with a unit direction.
     Axis(Axis<f64>),
 }
 
-/// Directions that differ by less are parallel; what that is over the box is taken off the bound.
+/// Directions that differ by less are parallel; the resulting error over the box is subtracted from
+/// the bound.
 const PARALLEL: f64 = 1e-12;
 
 fn from_line(p: Vec3, axis: &Axis<f64>) -> f64 {
@@ -72,7 +73,7 @@ fn leaf_range(gauge: &Gauge, f: &Primitive) -> [f64; 2] {
         true => [(middle - radius).max(all[0]), middle + radius],
         false => all,
     };
-    // Of the solid outside of a round surface the points about the middle are missing.
+    // The solid outside a round surface excludes the points about the centre.
     let outside = |offset: f64, radius: f64| match within {
         true => [(offset - radius).max(0.0), offset + radius],
         false => [(radius - offset).max(0.0), f64::INFINITY],

@@ -1,4 +1,4 @@
-//! A set as a body: what is solid beside its surfaces, whatever its formula says on them.
+//! A set as a body: its regular part, whatever the formula evaluates to on its surfaces.
 //!
 //! Leaves with one zero set (f, -f, parts face to face) are one surface, and change sides together. Near a point a body
 //! takes only the combinations of sides that exist there: those of the cells into which the tangent planes of the surfaces
@@ -20,14 +20,15 @@ use rustc_hash::FxHashMap;
 const ONE_SURFACE: f64 = 1e-13;
 /// Normals at a smaller angle are those of one tangent plane.
 const ONE_PLANE: f64 = 1e-7;
-/// How far from a point touching surfaces are compared, of 1 and the point's size.
+/// Distance from a point at which touching surfaces are compared, relative to 1 and the point's
+/// size.
 const COMPARED_AT: f64 = 1e-4;
 /// Heights that differ by less there, of 1 and the point's size, are equal.
 const EQUAL_HEIGHT: f64 = 1e-14;
 /// Combinations of sides of up to this many surfaces are all tried in a box.
 const MOST_FREE: usize = 5;
 
-/// How a leaf follows from its surface.
+/// Relation of a leaf to its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LeafSide {
     /// The number of its surface.
@@ -39,7 +40,7 @@ pub(crate) struct LeafSide {
 }
 
 impl LeafSide {
-    /// What the leaf is where its surface's function is on `side`.
+    /// State of the leaf for the `side` of its surface's function.
     fn of(self, side: Membership) -> Membership {
         let side = match (self.sheet, side) {
             (_, Membership::Surface) => return Membership::Surface,
@@ -62,7 +63,7 @@ fn of_sign(value: f64) -> Membership {
     if value < 0.0 { Membership::Solid } else { Membership::Air }
 }
 
-/// A set with its surfaces: one answer for all that ask on which of its faces it really ends.
+/// A set with its surfaces, which decides for all queries whether a face is on the boundary.
 ///
 /// # Example
 /// ```
@@ -78,7 +79,7 @@ pub struct SurfacedSet {
     pub(crate) compiled: Compiled<f64>,
     /// One function for each surface.
     pub(crate) surfaces: Vec<Primitive>,
-    /// Of every leaf.
+    /// Sides of every leaf.
     pub(crate) sides: Vec<LeafSide>,
 }
 
@@ -99,7 +100,7 @@ impl SurfacedSet {
         Self { compiled, surfaces, sides }
     }
 
-    /// What a tape of the set is where its surfaces are on these sides.
+    /// State of the set's tape for given sides of its surfaces.
     pub(crate) fn state(
         &self,
         tape: &ExprTape<f64>,
@@ -122,8 +123,8 @@ impl SurfacedSet {
         states.last().copied().unwrap_or(Membership::Air)
     }
 
-    /// What a tape of the set in a box is, if it is the same on all sides of the surfaces that it has left: all of them are
-    /// hidden there.
+    /// State of the set's tape in a box, if it is the same on all sides of the remaining surfaces:
+    /// all of them are hidden there.
     pub(crate) fn one_state(&self, tape: &ExprTape<f64>) -> Option<Membership> {
         let mut free: Vec<u32> = Vec::new();
         for &leaf in tape.leaf.iter().filter(|l| **l != NO_LEAF) {
@@ -150,8 +151,8 @@ impl SurfacedSet {
         same.then_some(first)
     }
 
-    /// Where a point lies. A surface passes through it where it is at most `tolerance` away, by |f| / |f'|, or is that of
-    /// one of the primitives in `known`.
+    /// State of a point. A surface passes through it if it is within `tolerance`, by |f| / |f'|, or
+    /// if it belongs to one of the primitives in `known`.
     pub fn member(&self, p: Vec3, tolerance: f64, known: &[Primitive]) -> Membership {
         let (mut sides, active) = self.sides_at(p, tolerance, known);
         let mut found: Option<Membership> = None;
@@ -257,7 +258,7 @@ impl SurfacedSet {
                         sides[a.surface] = of_sign(a.normal.dot(along));
                     }
                 }
-                // How high above the tangent plane each is, a step away.
+                // Height of each above the tangent plane, at a small distance.
                 let mut heights: Vec<(f64, &ActiveSurface)> = group
                     .iter()
                     .map(|a| {
@@ -280,7 +281,7 @@ impl SurfacedSet {
                         let ties = |other: Option<&(f64, &ActiveSurface)>| {
                             other.is_some_and(|o| (o.0 - height).abs() <= EQUAL_HEIGHT * size)
                         };
-                        // In a gap between two that cannot be told apart either may be first.
+                        // In a gap between two that cannot be distinguished either may be first.
                         let unknown = (i + 1 == gap && ties(heights.get(gap)))
                             || (i == gap && gap > 0 && ties(heights.get(gap - 1)));
                         sides[a.surface] = match unknown {
@@ -314,7 +315,8 @@ fn sectors(planes: &[(Vec3, Vec<&ActiveSurface>)], k: usize, several: bool) -> V
     if ends.is_empty() {
         ends.push(0.1);
     }
-    // Of touching surfaces the order may change within a sector: no simple shares, for symmetric ones.
+    // For touching surfaces the order may change within a sector: irregular fractions, because of
+    // symmetric ones.
     let shares: &[f64] = match (several, ends.len()) {
         (false, _) => &[0.5],
         (true, 1) => &[0.031, 0.157, 0.281, 0.409, 0.533, 0.661, 0.787, 0.911],
@@ -424,7 +426,7 @@ pub(crate) fn surfaces_of(leaves: &[Leaf]) -> (Vec<Primitive>, Vec<LeafSide>) {
             sides.push(LeafSide { surface, flipped, sheet });
             continue;
         }
-        // Any other expression by itself and its complement.
+        // Any other expression is its own surface, as is its complement.
         let minus = -f;
         let known = [(f, false), (&minus, true)].into_iter().find_map(|(g, turned)| {
             let list = by_tape.get(&g.0.fingerprint)?;

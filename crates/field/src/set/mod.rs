@@ -1,4 +1,4 @@
-//! Sets: what primitives leave solid, combined.
+//! Sets: combinations of the solid parts of primitives.
 
 pub(crate) mod body;
 
@@ -14,12 +14,12 @@ use std::hash::{Hash, Hasher};
 use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
 use std::sync::Arc;
 
-/// What a handle to a set says of it; its leaves inherit what they do not say themselves.
+/// Attributes of a handle to a set; leaves inherit those that they do not have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SetAttributes {
     /// Name.
     pub name: Option<String>,
-    /// True for a name that was asked for: it stays when the set is declared under another.
+    /// True for an explicit name, which is kept when the set is declared under another.
     pub given: bool,
     /// Index of a palette colour, 0 to 15.
     pub colour: Option<u8>,
@@ -27,7 +27,7 @@ pub struct SetAttributes {
     pub material: Option<String>,
     /// Distance below which two points count as one.
     pub tolerance: Option<f64>,
-    /// What else is said, by tag.
+    /// Further attributes, by tag.
     pub tags: BTreeMap<String, String>,
 }
 
@@ -49,7 +49,7 @@ impl SetAttributes {
     }
 }
 
-/// Where a point lies.
+/// State of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Membership {
     /// Inside.
@@ -120,7 +120,7 @@ impl<T: Real> Clone for Set<T> {
 /// A primitive of a set with the attributes that reach it.
 #[derive(Clone, Debug)]
 pub struct Leaf<T: Real = f64> {
-    /// The primitive, as it stands in the set: negated where a complement reached it.
+    /// The primitive as used in the set: negated within a complement.
     pub primitive: Primitive<T>,
     /// Its own attributes, completed by those of the sets around it.
     pub attributes: SetAttributes,
@@ -131,7 +131,7 @@ pub struct Leaf<T: Real = f64> {
 pub(crate) struct Compiled<T: Real> {
     pub(crate) tape: Arc<ExprTape<T>>,
     pub(crate) leaves: Vec<Leaf<T>>,
-    /// The number of the leaf at every place of the tree, in order; those of a part that occurs many times once.
+    /// The number of the leaf at every position of the tree, in order; a shared part counts once.
     pub(crate) places: Vec<u32>,
 }
 
@@ -193,7 +193,7 @@ impl<T: Real> Set<T> {
         balanced(sets, |a, b| a | b).unwrap_or_else(Self::nothing)
     }
 
-    /// What some sets have in common, as a balanced tree.
+    /// The intersection of some sets, as a balanced tree.
     pub fn intersection_of(sets: Vec<Self>) -> Self {
         balanced(sets, |a, b| a & b).unwrap_or_else(Self::everything)
     }
@@ -245,7 +245,7 @@ impl<T: Real> Set<T> {
             let normal = (b - a).cross(c - a);
             let face = Primitive::plane(normal, a)?;
             let height = face.value(points[k]);
-            // Of no volume to rounding: the height is lost among the edges' lengths.
+            // No volume within rounding: the height is lost relative to the edges' lengths.
             if height.re().abs() <= 1e-12 * (points[k] - a).norm().re() {
                 return Err(FieldError::Degenerate { what: "tetrahedron" });
             }
@@ -264,7 +264,7 @@ impl<T: Real> Set<T> {
         if along.norm_sq().re() == 0.0 {
             return Err(FieldError::Degenerate { what: "line: its ends coincide; it" });
         }
-        // Slanting sheets, so that they lie along no planes of the grid.
+        // Slanting sheets, so that they are not parallel to planes of the grid.
         let (p, q) = (along.perpendicular(), along.cross(along.perpendicular()));
         let (p, q) = (p / p.norm(), q / q.norm());
         let sheets = [p * T::from(0.8) + q * T::from(0.6), q * T::from(0.8) - p * T::from(0.6)];
@@ -281,7 +281,7 @@ impl<T: Real> Set<T> {
     /// # Errors
     /// A coordinate that is not finite.
     pub fn point(at: Vec3<T>) -> Result<Self, FieldError> {
-        // The columns of a turned frame, so that the sheets lie along no planes of the grid.
+        // Columns of a rotated frame, so that the sheets are not parallel to planes of the grid.
         let frame = [[2.0, 1.0, 2.0], [-2.0, 2.0, 1.0], [1.0, 2.0, -2.0]];
         let mut set = Self::everything();
         for [x, y, z] in frame {
@@ -316,13 +316,13 @@ impl<T: Real> Set<T> {
         }
     }
 
-    /// What distinguishes its node and its attributes from others while they live.
+    /// Addresses of its node and its attributes; unique while both live.
     pub(crate) fn identity(&self) -> (usize, usize) {
         let attributes = self.attributes.as_ref().map_or(0, |a| Arc::as_ptr(a) as usize);
         (Arc::as_ptr(&self.node) as usize, attributes)
     }
 
-    /// True when another handle may hold its node: what no other holds occurs once.
+    /// True if another handle may hold its node; other nodes occur once.
     fn is_shared(&self) -> bool {
         Arc::strong_count(&self.node) > 1
     }
@@ -380,7 +380,7 @@ impl<T: Real> Set<T> {
         self.with(SetAttributes { name: Some(name.to_owned()), ..SetAttributes::default() })
     }
 
-    /// The set with names for those of its primitives that have none.
+    /// The set with names for unnamed primitives.
     pub(crate) fn with_names(&self, name: &dyn Fn(&Primitive<T>) -> Option<String>) -> Self {
         let leaf = |p: &Primitive<T>| {
             let set = Self::of(SetNodeKind::Leaf(p.clone()), Vec::new());
@@ -403,7 +403,7 @@ impl<T: Real> Set<T> {
         a.tape.leaf == b.tape.leaf && a.tape.same(&b.tape) && said(&a) == said(&b)
     }
 
-    /// What this handle says of the set.
+    /// Attributes of this handle.
     pub fn attributes(&self) -> Option<&SetAttributes> {
         self.attributes.as_deref()
     }
@@ -445,7 +445,8 @@ impl<T: Real> Set<T> {
         }
     }
 
-    /// The set rebuilt from its leaves, each handle's attributes kept; what is shared stays shared.
+    /// The set rebuilt from its leaves with the attributes of each handle; shared nodes stay
+    /// shared.
     fn rebuilt<S: Real>(
         &self,
         leaf: &dyn Fn(&Primitive<T>) -> Set<S>,
@@ -506,8 +507,8 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Self::of(SetNodeKind::Leaf(-p), Vec::new()), true, &Self::combined)
     }
 
-    /// What `leaf` makes of the primitives, joined up the tree: unions with `true`. A part that occurs many times is
-    /// joined once.
+    /// `leaf` of the primitives, joined up the tree: unions with `true`. A shared part is joined
+    /// once.
     pub(crate) fn folded<R: Clone>(
         &self,
         leaf: &dyn Fn(&Primitive<T>) -> R,
@@ -555,8 +556,9 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Set::of(SetNodeKind::Leaf(p.re()), Vec::new()), false, &Set::combined)
     }
 
-    /// The set with its coordinates replaced; see [`Primitive::remapped`]. What only turns about the z axis, as a twist does, is
-    /// cut by the box in which it lies whatever the angle: its ends are known without a search.
+    /// The set with its coordinates replaced; see [`Primitive::remapped`]. A map that only rotates
+    /// about the z axis, such as a twist, is intersected with a box that contains all rotations, so
+    /// that its ends need no search.
     pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Self {
         let leaf = |p: &Primitive<T>| Self::of_leaf(&p.remapped(coordinates));
         let made = self.rebuilt(&leaf, false, &Self::combined);
@@ -621,7 +623,8 @@ impl<T: Real> Set<T> {
         self.compiled().leaves
     }
 
-    /// How many leaves the tree has, those of a part as often as it occurs; at most `usize::MAX`.
+    /// Number of leaves of the tree, shared parts counted as often as they occur; at most
+    /// `usize::MAX`.
     pub fn contents(&self) -> usize {
         self.folded(&|_| 1, 0, 0, &|_, a: usize, b| a.saturating_add(b))
     }
@@ -718,15 +721,15 @@ impl<T: Real> Set<T> {
         self.winner(p).0
     }
 
-    /// Where a point lies. A surface passes through it where it is at most `tolerance` away, measured by |f| / |f'|; faces
-    /// with the same on both sides are none of the body.
+    /// State of a point. A surface passes through it if it is within `tolerance`, by |f| / |f'|;
+    /// faces with the same state on both sides are not on the body's surface.
     pub fn member(&self, p: Vec3<T>, tolerance: f64) -> Membership {
         self.re().as_body().member(p.re(), tolerance, &[])
     }
 }
 
 impl Set<f64> {
-    /// The same set among numbers with derivatives, on no parameter of which it depends.
+    /// The same set among numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Set<S> {
         let leaf = |p: &Primitive| Set::of(SetNodeKind::Leaf(p.constant()), Vec::new());
         self.rebuilt(&leaf, false, &Set::combined)

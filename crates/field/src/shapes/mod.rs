@@ -14,7 +14,7 @@ use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef, TriangleBody};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The range of a function that changes by at most the way, from its value in the middle of a box.
+/// The range of a function with Lipschitz constant 1, from its value at the centre of a box.
 fn lipschitz(middle: f64, over: &Box3) -> Interval {
     let reach = 0.5 * over.diagonal() * (1.0 + 1e-9) + 1e-9 * over.diagonal();
     Interval { low: middle - reach, high: middle + reach }
@@ -100,7 +100,7 @@ impl<T: Real> Oracle<T> for Tube<T> {
     }
 }
 
-/// What a surface bounds.
+/// Solid bounded by a surface.
 #[derive(Clone, Copy, Debug)]
 pub enum Beside<T> {
     /// The distance from it on both sides, less half this thickness.
@@ -114,12 +114,12 @@ pub struct Near<T: Real> {
     surface: SurfaceRef<T>,
     nearest: Arc<NearestSurface>,
     what: Beside<T>,
-    /// Which way it faces, for its side.
+    /// Bounds of its facing, for `Beside::Side`.
     facing: Option<Arc<SignedSide>>,
 }
 
 impl<T: Real> Near<T> {
-    /// Of `surface`.
+    /// The distance from `surface`.
     pub fn new(surface: SurfaceRef<T>, what: Beside<T>) -> Self {
         let plain = PlainSurface(&*surface);
         let nearest = Arc::new(NearestSurface::new(&plain));
@@ -141,7 +141,7 @@ impl<T: Real> Field<T> for Near<T> {
         let j = self.foot(p);
         let (away, normal) = (p - j.p, j.normal());
         match self.what {
-            // Beyond an edge it goes on along the tangent plane there.
+            // Beyond an edge the surface continues along the tangent plane there.
             Beside::Side => (away.dot(normal), normal),
             Beside::Plate(thickness) => {
                 let half = thickness * 0.5;
@@ -189,11 +189,11 @@ impl<T: Real> Oracle<T> for Near<T> {
 /// Why triangles bound no solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotClosed {
-    /// How many edges have not exactly one triangle on each side.
+    /// Number of edges without exactly one triangle on each side.
     pub edges: usize,
 }
 
-/// A box about a run of triangles, and where its halves are; a leaf has none.
+/// A box around consecutive triangles, and the indices of its halves; a leaf has none.
 struct BvhNode {
     bounds: Box3,
     triangles: std::ops::Range<u32>,
@@ -219,10 +219,10 @@ pub struct Inside<T: Real> {
 }
 
 impl<T: Real> Inside<T> {
-    /// Of the body that closed triangles bound.
+    /// For the body bounded by closed triangles.
     ///
     /// # Errors
-    /// How many edges are open.
+    /// The number of open edges.
     pub fn new(body: Arc<TriangleBody<T>>) -> Result<Self, NotClosed> {
         let points: Vec<Vec3> = body.points.iter().map(|p| p.re()).collect();
         let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
@@ -336,7 +336,7 @@ impl Tree {
     }
 }
 
-/// The weights of the point of a triangle nearest to `p`, and what it lies on: corners 0 to 2, edges 3 to 5
+/// Weights of the point of a triangle nearest to `p`, and its feature: corners 0 to 2, edges 3 to 5
 /// from these, or 6 for the inside (Ericson, Real-Time Collision Detection, 5.1.5).
 fn foot(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> ([f64; 3], usize) {
     let (ab, ac, ap) = (b - a, c - a, p - a);

@@ -1,33 +1,34 @@
 //! The inside of a polygon as a formula of half-planes, one for each side, so that its sides are faces and its corners
 //! edges of bodies.
 //!
-//! D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, An efficient algorithm for finding the CSG representation of a
-//! simple polygon, Computer Graphics 22 (1988): a chain between two rays is cut at a corner from which both sides,
-//! lengthened, meet the chain no more; what is left of it is left of both parts where the corner is convex, and of one of
-//! them where it is not. A polygon is two chains between its first and its last corner.
+//! D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, An efficient algorithm for finding the CSG
+//! representation of a simple polygon, Computer Graphics 22 (1988): a chain between two rays is cut
+//! at a corner whose extended sides do not meet the rest of the chain; at a convex corner the
+//! result is the intersection of both parts, otherwise the union. A polygon is two chains between
+//! its first and its last corner.
 
 type FlatPoint = [f64; 2];
 
 /// A formula of sides by their numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SideFormula {
-    /// What is left of the side.
+    /// The left side of the side with this number.
     Side(usize),
-    /// What all have.
+    /// Intersection.
     All(Vec<SideFormula>),
-    /// What one of them has.
+    /// Union.
     Any(Vec<SideFormula>),
 }
 
-/// The inside of a polygon by its sides; side k runs from corner k to the next. `None` for a polygon that crosses or
-/// touches itself.
+/// The inside of a polygon as a formula of its sides; side k is from corner k to the next. `None`
+/// for a polygon that intersects or touches itself.
 pub(crate) fn sides_of(corners: &[FlatPoint]) -> Option<SideFormula> {
     let n = corners.len();
     if n < 3 || turn_sum(corners) == 0.0 || !is_simple(corners) {
         return None;
     }
     if turn_sum(corners) < 0.0 {
-        // Run the other way round; side k is then the one before corner n - 1 - k.
+        // In reverse order; side k is then the one before corner n - 1 - k.
         let back: Vec<FlatPoint> = corners.iter().rev().copied().collect();
         return Some(renumbered(sides_of(&back)?, &|k| (2 * n - 2 - k) % n));
     }
@@ -46,7 +47,7 @@ pub(crate) fn sides_of(corners: &[FlatPoint]) -> Option<SideFormula> {
     Some(SideFormula::All(both.into_iter().flat_map(in_all).collect()))
 }
 
-/// Whether no two sides meet but at the corner between neighbours.
+/// True if sides meet only at the corner between neighbours.
 fn is_simple(corners: &[FlatPoint]) -> bool {
     let n = corners.len();
     let side = |k: usize| [corners[k], corners[(k + 1) % n]];
@@ -65,7 +66,7 @@ fn is_simple(corners: &[FlatPoint]) -> bool {
     };
     (0..n).all(|j| {
         let next = side((j + 1) % n);
-        // Neighbours: the second must not run back along the first.
+        // Neighbours: the second must not overlap the first.
         !(on(side(j), next[1]) || on(next, side(j)[0]))
             && (j + 2..n).filter(|k| (k + 1) % n != j).all(|k| !meet(side(j), side(k)))
     })
@@ -101,7 +102,7 @@ fn in_any(of: SideFormula) -> Vec<SideFormula> {
     }
 }
 
-/// Consecutive sides, of which the first comes from infinity and the last goes there.
+/// Consecutive sides; the first comes from infinity and the last extends to it.
 struct SideChain<'a> {
     corners: &'a [FlatPoint],
     sides: &'a [usize],
@@ -136,7 +137,8 @@ impl SideChain<'_> {
         })
     }
 
-    /// Whether the sides before and behind corner `at`, lengthened beyond it, meet the chain no more.
+    /// True if the sides before and behind corner `at`, extended beyond it, do not meet the rest of
+    /// the chain.
     fn is_free(&self, at: usize) -> bool {
         let ([a, v], [_, b]) = (self.ends(self.sides[at - 1]), self.ends(self.sides[at]));
         let ahead = [v[0] - a[0], v[1] - a[1]];
@@ -153,7 +155,7 @@ impl SideChain<'_> {
             let size =
                 (along[0] * along[0] + along[1] * along[1]) * (own[0] * own[0] + own[1] * own[1]);
             if det * det <= 1e-24 * size {
-                // Parallel: it must not lie on the ray.
+                // Parallel: it must not be on the ray.
                 let beside = away[0] * along[1] - away[1] * along[0];
                 let other = [q[0] - v[0], q[1] - v[1]];
                 let ahead = |w: FlatPoint| w[0] * along[0] + w[1] * along[1];
@@ -228,7 +230,7 @@ mod tests {
     fn each_side_stands_once_and_the_inside_is_that_of_a_ray() {
         let mut random = moldloft_testing::Random::new(11);
         for round in 0..400 {
-            // A star, a comb, a spiral or a staircase, either way round.
+            // A star, a comb, a spiral or a staircase, in either orientation.
             let mut corners: Vec<FlatPoint> = match round % 4 {
                 0 => {
                     let n = 3 + random.below(40);
@@ -292,7 +294,7 @@ mod tests {
         assert_eq!(sides_of(&[[0.0, 0.0], [1.0, 0.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 2.0]]), None);
-        // A corner on another side; a side that runs back.
+        // A corner on another side; a side that reverses.
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]]), None);
         assert_eq!(sides_of(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 2.0]]), None);
     }

@@ -17,30 +17,30 @@ use std::sync::Arc;
 /// Why a curve bounds no part of a plane, with the measure of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotAProfile {
-    /// Its ends are so far apart.
+    /// Distance of its ends.
     Open(f64),
     /// Distance by which it leaves its plane.
     Bent(f64),
     /// It has no extent in two directions.
     Flat,
-    /// It is so far from the plane of the axis, or from it on the other side.
+    /// Distance from the plane of the axis, or from the axis on the other side.
     Beside(f64),
 }
 
 /// Samples of a span of the curve.
 const SAMPLES: usize = 96;
-/// What is in one place, or in one plane, as a part of the size.
+/// Relative distance within which points coincide or are in one plane.
 const SAME: f64 = 1e-9;
 
 /// The most corners of a curve whose sides are faces of their own.
 const MOST_CORNERS: usize = 400;
 
-/// How a point is taken into the plane of the curve.
+/// Projection of a point into the plane of the curve.
 #[derive(Clone, Copy)]
 enum ProfileMap<T: Real> {
     /// Along the normal.
     Along,
-    /// About the line, to the half plane beyond it in which the second direction lies.
+    /// Rotation about the line into the half plane with the second direction.
     About(Axis<T>, Vec3<T>),
 }
 
@@ -61,7 +61,7 @@ struct ProfileOutline {
     points: Vec<[f64; 2]>,
     /// Nearer to the curve than this the polygon does not tell sides.
     close: f64,
-    /// Where corners may be.
+    /// Parameters of possible corners.
     breaks: Vec<f64>,
     /// The corners.
     corners: Vec<Vec3>,
@@ -72,7 +72,7 @@ impl ProfileOutline {
         self.across.map(|a| (p - self.origin).dot(a))
     }
 
-    /// Whether a point is inside, by the crossings of a ray (even and odd).
+    /// True if a point is inside, by the crossings of a ray (even-odd rule).
     fn inside(&self, p: Vec3) -> bool {
         let [x, y] = self.at(p);
         let n = self.points.len();
@@ -88,7 +88,7 @@ impl<T: Real> ProfileField<T> {
     /// The prism without ends over a closed plane curve.
     ///
     /// # Errors
-    /// Why it is none.
+    /// Reason why it is not a profile.
     pub fn new(curve: CurveRef<T>) -> Result<Self, NotAProfile> {
         let spans: Vec<f64> = {
             let mut all = PlainCurve(&*curve).breaks();
@@ -153,7 +153,7 @@ impl<T: Real> ProfileField<T> {
     /// The body that a closed plane curve passes over in a full turn about a line of its plane.
     ///
     /// # Errors
-    /// Why it is none.
+    /// Reason why it is not a profile.
     pub fn turned(curve: CurveRef<T>, axis: Axis<T>) -> Result<Self, NotAProfile> {
         let mut own = Self::new(curve)?;
         let along = axis.direction.normalized().ok_or(NotAProfile::Flat)?;
@@ -187,7 +187,7 @@ impl<T: Real> ProfileField<T> {
     /// cylinder or cone, so that the corners are edges; another curve is one face, and its corners are blunt in meshes.
     ///
     /// # Errors
-    /// Those of the faces.
+    /// Errors of the faces.
     pub fn into_set(self) -> Result<Set<T>, FieldError> {
         let formula = self.corners().and_then(|corners| {
             let flat: Vec<[f64; 2]> = corners.iter().map(|p| self.outline.at(p.re())).collect();
@@ -226,7 +226,7 @@ impl<T: Real> ProfileField<T> {
             self.curve.jet(moved + T::from(t), Order::Zero)[0]
         };
         let mut corners: Vec<Vec3<T>> = outline.breaks[..spans].iter().map(corner).collect();
-        // A corner between two sides in line is none, unless it may leave the line.
+        // A corner between two collinear sides is left out, unless it may leave the line.
         let mut k = 0;
         while k < corners.len() && corners.len() > 3 {
             let n = corners.len();
@@ -243,7 +243,7 @@ impl<T: Real> ProfileField<T> {
         Some(corners)
     }
 
-    /// What lies on the inner side of the sides of a formula.
+    /// The set on the inner side of the sides of a formula.
     fn behind(&self, of: &SideFormula, corners: &[Vec3<T>]) -> Result<Set<T>, FieldError> {
         let each = |all: &[SideFormula]| {
             all.iter().map(|f| self.behind(f, corners)).collect::<Result<Vec<_>, _>>()
@@ -293,7 +293,7 @@ impl<T: Real> ProfileField<T> {
     }
 }
 
-/// What lies behind a side in the half plane of an axis, turned about it.
+/// The region behind a side in the half plane of an axis, rotated about it.
 fn turned_side<T: Real>(
     axis: Axis<T>,
     out: Vec3<T>,
@@ -390,7 +390,7 @@ impl<T: Real> Field<T> for ProfileField<T> {
     moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
-/// Where the tangent of a closed curve turns, at breaks from 0 to 1.
+/// Corners of the tangent of a closed curve, at breaks from 0 to 1.
 fn corners_of<T: Real>(curve: &CurveRef<T>, breaks: &[f64]) -> Vec<Vec3> {
     const ASIDE: f64 = 1e-9;
     let jet = |t: f64| curve.jet(T::from(t), Order::First);

@@ -1,10 +1,11 @@
-//! Which way a surface faces, piece by piece: bounds of what lies before it and behind it.
+//! Bounds of the signed side of a surface, piece by piece.
 //!
-//! The value at p is (p - q) . n, with the point q of the surface nearest to p and the normal n there. Over
-//! a box, q lies in one of the pieces that come as near as the nearest may be; each piece has a middle normal
-//! and a bound of how far its own differ from it, so each gives a range, and their hull is one of the value. This
-//! holds beside the surface and beyond its edges, where the nearest point may jump. The bounds are as good as
-//! those of [`moldloft_locate::pieces`]: exact for B-splines up to degree three, measured for others.
+//! The value at p is (p - q) . n, with the nearest point q of the surface and the normal n there.
+//! Over a box, q is in one of the pieces that can be nearest; each piece has a central normal and a
+//! bound of the deviation of its normals, so each gives a range, and their hull bounds the value.
+//! This also holds beyond the edges, where the nearest point may jump. The bounds are as good as
+//! those of [`moldloft_locate::pieces`]: exact for B-splines up to degree three, measured for
+//! others.
 
 use crate::expr::interval::Interval;
 use moldloft_locate::Boxes;
@@ -22,13 +23,13 @@ const LEAF: usize = 4;
 /// A piece of the surface.
 struct SurfacePiece {
     middle: Vec3,
-    /// How far it reaches from the middle, …
+    /// Maximum distance of its points from the centre, …
     reach: f64,
     /// … and along the normal.
     thickness: f64,
     /// The unit normal in the middle, …
     normal: Vec3,
-    /// … and how far others may be from it; 2 where nothing is known.
+    /// … and maximum distance of normals from it; 2 if unknown.
     turn: f64,
 }
 
@@ -38,7 +39,7 @@ pub(crate) struct SignedSide {
     boxes: Boxes,
 }
 
-/// The mean of some vectors, and how far they are from it.
+/// Mean of some vectors, and their maximum distance from it.
 fn ball(all: &[Vec3]) -> (Vec3, f64) {
     let mut mean = Vec3::zero();
     all.iter().for_each(|v| mean += *v);
@@ -91,7 +92,7 @@ impl SurfacePiece {
 }
 
 impl SignedSide {
-    /// Of a surface.
+    /// Pieces of a surface.
     pub(crate) fn new(surface: &dyn Surface<f64>) -> Self {
         let mut pieces = Vec::new();
         let mut bounds = Vec::new();
@@ -195,7 +196,7 @@ mod tests {
                 assert!(range.low <= f && f <= range.high, "{p:?}: {f} in {range:?}");
             }
         }
-        // Of these boxes, half of which reach beyond the edges, many are known to lie on one side.
+        // Half of these boxes reach beyond the edges; most are on a known side.
         assert!(unknown < 280, "{unknown}");
     }
 }

@@ -65,7 +65,7 @@ fn axis(name: &str) -> Option<Primitive> {
 /// The field of a text of fidget: a line `name operation operands` for each value, the last being the field.
 ///
 /// # Errors
-/// What is wrong with the text, with the line.
+/// The fault of the text, with its line.
 ///
 /// # Example
 /// ```
@@ -124,7 +124,7 @@ pub fn read_fidget(text: &str) -> Result<Primitive, TextError> {
 /// The field of a text of libfive: nested lists such as `(- (sqrt (+ (square x) (square y))) 1)`.
 ///
 /// # Errors
-/// What is wrong with the text, with the line.
+/// The fault of the text, with its line.
 ///
 /// # Example
 /// ```

@@ -28,7 +28,7 @@ use std::fmt::Write as _;
 pub struct TextError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// Description of the fault.
     pub message: String,
 }
 
@@ -156,7 +156,7 @@ fn form_text(out: &mut String, form: &Form<f64>, op: &Op<f64>) {
             numbers(out, &p.point.to_array());
             numbers(out, &p.normal.to_array());
         }
-        // That of a complement is that of its operand.
+        // The form of a complement is that of its operand.
         _ if matches!(op, Op::Unary(Unary::Neg, _)) => {}
         Form::Sphere { centre, radius } => {
             out.push_str(" as sphere");
@@ -266,7 +266,7 @@ impl Set<f64> {
     /// The set of a text that [`Set::to_text`] wrote.
     ///
     /// # Errors
-    /// What is wrong with the text, with the line.
+    /// The fault of the text, with its line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
             ParsedShape::Set(set) => Ok(set),
@@ -290,7 +290,7 @@ impl Primitive<f64> {
     /// The primitive of a text that [`Primitive::to_text`] wrote.
     ///
     /// # Errors
-    /// What is wrong with the text, with the line.
+    /// The fault of the text, with its line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
             ParsedShape::Field(f) => Ok(f),
@@ -305,7 +305,7 @@ enum ParsedShape {
     Set(Set),
 }
 
-/// The words of a line; what is quoted is one.
+/// The words of a line; a quoted string is one.
 fn words(line: &str, number: usize) -> Result<Vec<String>, TextError> {
     let mut out = Vec::new();
     let mut chars = line.chars().peekable();

@@ -132,7 +132,7 @@ fn fillets_and_rounds_are_arcs_between_perpendicular_planes() {
 
 #[test]
 fn setbacks_are_kept_between_curved_bodies() {
-    // True distances: contact at the asked distance from the other body.
+    // True distances: contact at the given distance from the other body.
     let run = Primitive::cylinder_distance(axis(Vec3::zero(), v(1.0, 0.0, 0.0)), 1.0).unwrap();
     let branch = Primitive::cylinder_distance(axis(Vec3::zero(), v(0.0, 0.0, 1.0)), 0.6).unwrap();
     let rail = setback_rail([&run, &branch], [0.3, 0.2]).unwrap();
@@ -147,7 +147,7 @@ fn setbacks_are_kept_between_curved_bodies() {
     let joint = fillet([&run, &branch], [0.3, 0.2], 0.5).unwrap();
     let f = facets(&joint.set, &over, 6);
     assert_eq!(sound(&f).euler, 2);
-    // It adds material to the union, and lies where the rail is solid.
+    // It adds material to the union, and is on the solid side of the rail.
     let plain = facets(&(Set::new(&run) | Set::new(&branch)), &over, 6);
     assert!(f.moments().volume() > plain.moments().volume() + 0.01);
 }

@@ -132,7 +132,7 @@ fn hidden_faces_are_no_surface() {
     let cavities = cub([0.0; 3], [2.0, 1.0, 1.0])
         - (cub([0.5, 0.2, 0.2], [1.0, 0.8, 0.8]) | cub([1.0, 0.2, 0.2], [1.5, 0.8, 0.8]));
     assert_eq!(cavities.member(v(1.0, 0.5, 0.5), 1e-9), Membership::Air);
-    // A cylinder on its tangent plane: surface along the line, from both sides of which one sees it.
+    // A cylinder on its tangent plane: surface along the line, visible from one of its sides only.
     let ground = cub([-5.0, -5.0, -2.0], [5.0, 5.0, 0.0]);
     let lying =
         Set::new(&Primitive::cylinder(axis(v(0.0, 0.0, 1.0), v(1.0, 0.0, 0.0)), 1.0).unwrap());
@@ -140,7 +140,7 @@ fn hidden_faces_are_no_surface() {
     assert_eq!(both.member(v(0.0, 0.0, 0.0), 1e-9), Membership::Surface);
 }
 
-/// A part that is known by itself.
+/// A part with a known formula.
 #[derive(Clone, Debug)]
 enum Part {
     Cuboid([f64; 3], [f64; 3]),
@@ -244,7 +244,7 @@ fn direction(random: &mut Random) -> Vec3 {
     }
 }
 
-/// A body by its parts: each joined to what there is before, or cut from it.
+/// A body by its parts: each united with the previous ones, or cut from them.
 #[derive(Debug)]
 struct Known(Vec<(Part, bool)>);
 
@@ -352,7 +352,7 @@ fn nearest_points_are_as_near_as_any_of_the_surface() {
     assert!(asked > 40);
 }
 
-/// Whether a body of boxes meets the box of half side `d` about a point: its dilation by a cube.
+/// True if a body of boxes meets the box of half side `d` around a point: its dilation by a cube.
 fn dilated(known: &Known, p: Vec3, d: f64) -> bool {
     let cuts: Vec<Vec<f64>> = (0..3)
         .map(|k| {

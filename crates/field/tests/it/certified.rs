@@ -80,7 +80,7 @@ fn thin_bodies_anywhere_have_their_volume_inside_the_bracket() {
         assert!(low <= 1.0 + 1e-9 && high >= 1.0 - 1e-9, "{name} {t:e}: [{low}, {high}]");
         let best = found.best.volume() / exact;
         assert!(low <= best && best <= high, "{name} {t:e}: {best} in [{low}, {high}]");
-        // What is thin along a line is left to facets with cells as thin.
+        // Parts that are thin along a line are left to facets with cells of that size.
         let m = mass(&set, &over, &IntegralOptions::default()).unwrap();
         assert!(m.bracket.contains(&m.best));
         let off = m.best.volume() / exact - 1.0;

@@ -1,5 +1,5 @@
-//! Bodies that touch in points and lines, that share a face, overlap or stay apart: how many there are, and where
-//! they touch. `MOLDLOFT_SOAK` makes the number 60 times as large.
+//! Number of bodies, and their contacts, for bodies that touch in points and lines, share a face,
+//! overlap or are apart. `MOLDLOFT_SOAK` makes 60 times as many.
 
 use crate::common::{axis, sound, v};
 use moldloft_field::{
@@ -21,7 +21,8 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Set {
     Set::cuboid(low.into(), high.into()).unwrap()
 }
 
-/// A set, how many bodies it is, a place where they touch if they do, and whether triangles near there may cut others.
+/// A set, its number of bodies, a contact if there is one, and whether triangles near it may
+/// intersect.
 fn case(kind: usize, random: &mut Random) -> (&'static str, Set, usize, Option<Vec3>, bool) {
     let mut between = |low: f64, high: f64| random.between(low, high);
     let (r, s) = (between(0.5, 1.2), between(0.3, 1.2));

@@ -1,5 +1,5 @@
-//! Random bodies of two to five bounded primitives, and plates with oblique holes: how many have an edge or a corner that
-//! their facets cut off.
+//! Random bodies of two to five bounded primitives, and plates with oblique holes: frequency of
+//! edges and corners cut off by facets.
 //!
 //! `MOLDLOFT_SOAK` makes the number 1 000.
 
@@ -120,7 +120,7 @@ fn few_bodies_have_edges_that_are_cut_off() {
         all += f.cells;
     }
     println!("{blunt} of {bodies} bodies, {cells} of {all} cells");
-    // Of the first 136 bodies 21 had some before edges were followed, 63 cells.
+    // Without edge tracing 21 of the first 136 bodies had some, 63 cells in total.
     assert!(50 * blunt <= bodies && 10_000 * cells <= all, "{blunt} of {bodies}, {cells} of {all}");
 }
 
@@ -139,8 +139,9 @@ fn volumes_lie_in_narrow_brackets() {
     }
 }
 
-/// A block whose edge is cut by a plane that runs out along it, one with two bores that cross at ten degrees, a ball whose
-/// flat and bore meet in a thin tip, and a rod through a side at a small angle.
+/// A block whose edge is cut by a plane at a small angle, one with two bores that cross at ten
+/// degrees, a ball whose flat and bore meet in a thin tip, and a rod through a side at a small
+/// angle.
 fn with_small_angles() -> Vec<(&'static str, Set)> {
     let block = Set::cuboid(v(0.0, 0.0, 0.0), v(4.0, 3.0, 2.0)).unwrap();
     let bore = |at: Vec3, d: Vec3, r: f64| Set::new(&Primitive::cylinder(axis(at, d), r).unwrap());

@@ -162,8 +162,8 @@ fn rounded_corners_are_cylinders() {
     // A square with one corner rounded off, one filled in from an L: convex and concave.
     let (rounding, outer) = arc([3.0, 3.0], 0.0, FRAC_PI_2, 2, 1);
     let (filling, inner) = arc([2.0, -1.0], PI, -FRAC_PI_2, 3, 2);
-    // From a point that sees all others down to (0, -2), (1, -2), up to the filling at (1, -1), over to
-    // (2, 0), (4, 0), the rounding.
+    // From a point that sees all others down to (0, -2), (1, -2), up to the filling at (1, -1),
+    // over to (2, 0), (4, 0), the rounding.
     let mut outline =
         vec![(Vec3::zero(), 8), (Vec3::of(0.0, -2.0, 0.0), 3), (Vec3::of(1.0, -2.0, 0.0), 4)];
     outline.extend(filling);

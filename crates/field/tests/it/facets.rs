@@ -40,7 +40,7 @@ fn closed_forms_converge_at_second_order() {
 
 #[test]
 fn edges_and_corners_are_sharp() {
-    // A turned cube has its exact volume: every edge and corner is in its place.
+    // A rotated cube has its exact volume: every edge and corner is exact.
     let turn = moldloft_field::Affine::rotation(&axis(v(0.1, 0.0, 0.2), v(1.0, 2.0, 3.0)), 0.7);
     let set = Set::cuboid(v(-1.0, -0.7, -0.5), v(0.9, 0.8, 0.6)).unwrap().mapped(&turn).unwrap();
     let f = facets(&set, &cube(2.0), 5);

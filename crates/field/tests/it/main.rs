@@ -1,4 +1,4 @@
-//! What the crate promises, as one program: a module for each subject.
+//! Tests of the crate as one program: a module for each subject.
 
 mod blends;
 mod bodies;

@@ -198,7 +198,7 @@ fn true_distances_are_distances() {
         assert!((f.value(p) - (p.distance(a.foot(p)) - 0.7)).abs() < 1e-14);
         assert!((f.gradient(p).slope.norm() - 1.0).abs() < 1e-12);
     }
-    // Where the distance has no gradient it is zero, never not-a-number.
+    // Without a gradient of the distance the result is zero, not NaN.
     assert_eq!(f.gradient(a.point).slope.norm(), 0.0);
     // The direction of s_sqrt(f) on the surface is that of f.
     let [x, y, _] = Primitive::<f64>::axes();

@@ -19,10 +19,10 @@ fn roots_of_quadrics_and_quartics_are_exact() {
     }
     assert_eq!(found.len(), 4);
     let ball = Primitive::sphere(Vec3::zero(), 1.0).unwrap();
-    // A touch is one root, a miss none.
+    // A contact is one root; a miss has none.
     assert_eq!(roots(&ball, &ray(v(-3.0, 1.0, 0.0), v(1.0, 0.0, 0.0), 6.0)), [3.0]);
     assert!(roots(&ball, &ray(v(-3.0, 1.0 + 1e-9, 0.0), v(1.0, 0.0, 0.0), 6.0)).is_empty());
-    // Outside the piece asked for.
+    // Outside the given interval.
     assert!(roots(&ball, &ray(v(-3.0, 0.0, 0.0), v(1.0, 0.0, 0.0), 1.5)).is_empty());
 }
 

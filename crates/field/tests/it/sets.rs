@@ -157,8 +157,8 @@ fn long_chains_neither_overflow_nor_crawl() {
     assert_eq!(s.leaves().len(), 1);
 }
 
-/// Sets that double at each turn share their parts: everything that is asked of them takes as long as they have parts,
-/// not as their trees have leaves (2^60 here).
+/// Sets that double in each step share their parts: queries take time proportional to the number of
+/// parts, not to the leaves of the tree (2^60 here).
 #[test]
 fn what_is_shared_is_looked_at_once() {
     let mut same = ball(0.0, 1.0);

@@ -46,7 +46,7 @@ fn a_wavy_sheet_with_and_without_the_sphere() {
     let report = m.sheets[0].mesh.report();
     assert!(report.manifold && report.oriented && report.euler == 1);
     assert_eq!(report.open_loops.len(), 1);
-    // With a solid sphere: the sheet goes on outside only, and the sphere is a solid.
+    // With a solid sphere: the sheet continues outside only, and the sphere is solid.
     let (sheet, solid) = (Set::new(&wave().abs()), Set::new(&ball()));
     let both = mixed(&(&sheet | &solid));
     assert!(both.solid.mesh.report().closed);
@@ -138,7 +138,7 @@ fn wires_and_points_beside_a_solid() {
         [w.points[0], w.points[w.points.len() - 1]].iter().any(|p| ball().value(*p).abs() < 1e-9)
     };
     assert!(both.wires.iter().all(ended));
-    // What is inside, and what is outside.
+    // The part inside, and the part outside.
     let (inside, outside) =
         (mixed(&(&wire & &Set::new(&ball()))), mixed(&(&wire - &Set::new(&ball()))));
     assert!((length(&inside) - 2.0 * half).abs() < 1e-9);

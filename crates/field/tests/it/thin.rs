@@ -1,4 +1,5 @@
-//! Boxes that are thinner than their cells: what has no thickness is whole there, and bodies are refused.
+//! Boxes that are thinner than their cells: sheets, wires and points are complete, bodies are
+//! refused.
 
 use crate::common::{at_depth, v};
 use moldloft_field::{

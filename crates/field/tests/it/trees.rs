@@ -74,7 +74,7 @@ fn random_trees_are_closed_manifold_and_oriented() {
         }
         sound(&f);
         let (volume, best) = (bracket(&set, &cube(1.2), 5).unwrap().volume(), f.moments().volume());
-        // Facets miss what is thinner than a cell: up to a cell's volume where they are blunt.
+        // Facets miss features thinner than a cell: up to the volume of a cell for each blunt one.
         let wrong = f.undecided.len() + f.blunt.len();
         let slack = f.step.powi(3) * (1.0 + wrong as f64);
         assert!(
@@ -98,6 +98,6 @@ fn random_trees_are_closed_manifold_and_oriented() {
     println!("undecided: {undecided:?} of {cells:?} cells, {coarse:.2e} and {fine:.2e}");
     println!("blunt: {blunt:?}, {coarse_blunt:.2e} and {fine_blunt:.2e}");
     assert!(coarse < 1e-3 && fine < 1e-3, "{coarse} {fine}");
-    // Of 10 000 trees 3.4e-3 and 6.3e-4.
+    // Over 10 000 trees: 3.4e-3 and 6.3e-4.
     assert!(coarse_blunt < 4e-3 && fine_blunt < 1e-3, "{coarse_blunt} {fine_blunt}");
 }

@@ -89,7 +89,7 @@ struct CurveFront<'a, T: Real> {
     ends: [MarchBoundary; 2],
 }
 
-/// What is known of a curve at a node.
+/// Data of a curve at a node.
 struct CurveNode<T> {
     next: Vec3<T>,
     last: Vec3<T>,
@@ -172,7 +172,7 @@ impl<T: Real> CurveFront<'_, T> {
         self.support.project(r).into_iter().map(|(_, up)| up).collect()
     }
 
-    /// Steps along the coordinate of a plane that an end stays in are none.
+    /// Zeroes the component of steps normal to the plane of an end.
     fn keep_planes(&self, from: &[Vec3<T>], to: &mut [Vec3<T>]) {
         if self.closed {
             return;

@@ -1,4 +1,4 @@
-//! The march itself, the same for curves and surfaces: layers, sub-steps, and what is tried when cells fold.
+//! The march of curves and surfaces: layers, sub-steps, and retries if cells fold.
 
 use super::outcome::{FailureCause, MarchFailure};
 use super::report::Worst;
@@ -16,7 +16,7 @@ pub(super) struct MarchStep<'a, T> {
     pub d: T,
     pub s: T,
     pub last: T,
-    /// How far volumes have been smoothed away from the plain ones, which may change by the factor `cap`.
+    /// Smoothed relative to plain volumes, which may differ by at most the factor `cap`.
     pub smoothed: &'a mut [T],
     pub cap: Option<f64>,
     pub dissipation: f64,
@@ -24,7 +24,7 @@ pub(super) struct MarchStep<'a, T> {
     pub first: bool,
 }
 
-/// What is marched: the unique points of a curve or a surface, with their neighbours.
+/// The marched front: the unique points of a curve or a surface, with their neighbours.
 pub(super) trait Front<T: Real> {
     /// The points of the wall.
     fn wall(&self) -> &[Vec3<T>];
@@ -55,11 +55,11 @@ const CAP: f64 = 1.15;
 /// No march makes more steps.
 const MOST_STEPS: usize = 40_000;
 
-/// What is tried one after the other: as the recipe has it; without the cap on volumes, which acute corners
-/// with clustered points need; with more dissipation, too.
+/// Successive settings: the standard ones; without the cap on volumes, as acute corners with
+/// clustered points need; and with more dissipation.
 const LADDER: [(Option<f64>, f64); 3] = [(Some(CAP), 1.0), (None, 1.0), (None, 3.0)];
 
-/// What a march came to.
+/// Result of a march.
 pub(super) struct MarchOutcome<T> {
     pub layers: Vec<Vec<Vec3<T>>>,
     pub steps: usize,

@@ -177,7 +177,8 @@ pub(super) fn inverse<T: Real>(a: &Matrix<T>) -> Matrix<T> {
     [p, q, r].map(|row| (row * det).to_array())
 }
 
-/// The matrix with the signs of one column turned: what a mirror does to a step in its plane's coordinate.
+/// The matrix with the signs of one column reversed: reflection of a step in the coordinate of a
+/// mirror plane.
 pub(super) fn mirrored<T: Real>(a: &Matrix<T>, column: usize) -> Matrix<T> {
     let mut b = *a;
     for row in &mut b {

@@ -1,4 +1,4 @@
-//! What a march comes to: the report, and why it ended.
+//! Result of a march: the report, and the reason of its end.
 
 use crate::SurfaceGrid;
 use moldloft_num::Vec3;
@@ -9,7 +9,7 @@ use std::fmt;
 pub struct Marched<T> {
     /// The layers, the wall first; off a curve one grid whose line s\[k,\] is layer k.
     pub layers: Vec<SurfaceGrid<T>>,
-    /// How it went.
+    /// Report of the march.
     pub report: MarchReport,
 }
 
@@ -40,18 +40,19 @@ impl fmt::Display for StopReason {
     }
 }
 
-/// How a march went.
+/// Report of a march.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarchReport {
     /// Layers, the wall among them.
     pub layers: usize,
     /// Steps that were made for them.
     pub steps: usize,
-    /// Which of the three settings was needed: 1, 2 without a cap on smoothed volumes, 3 with more smoothing.
+    /// Number of the required setting: 1, 2 without a cap on smoothed volumes, 3 with more
+    /// smoothing.
     pub rung: usize,
     /// The least scaled Jacobian at a corner of a cell.
     pub jacobian: f64,
-    /// Where: layer above the cell and indices of the cell, from 1.
+    /// Position: layer above the cell and indices of the cell, from 1.
     pub at: [usize; 3],
     /// The largest equiangle skewness of a cell's corners.
     pub skewness: f64,
@@ -75,7 +76,7 @@ pub enum FailureCause {
         angle: f64,
         /// The spacing of the points beside the corner.
         spacing: f64,
-        /// The first cell asked for.
+        /// The given first cell height.
         height: f64,
         /// The largest one that fits.
         fits: f64,
@@ -90,7 +91,7 @@ pub enum FailureCause {
     NotFinite,
 }
 
-/// Where and why a march ends.
+/// Position and reason of a march's end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarchFailure {
     /// The layer, from 1 (the wall).

@@ -1,4 +1,4 @@
-//! What is measured of a march: cells, corners, walls, and whether it ends early.
+//! Measures of a march: cells, corners, walls, and the criterion of an early end.
 
 use super::front::{Front, MarchOutcome};
 use super::outcome::{FailureCause, MarchReport, StopReason};
@@ -50,7 +50,7 @@ pub(super) fn quad(corners: [Vec3; 4], up: Vec3) -> [f64; 2] {
     [least, skew]
 }
 
-/// How far the angle between two edges is from a right one, 0 to 1.
+/// Deviation of the angle between two edges from 90°, relative to 90°.
 pub(super) fn angle_skewness(a: Vec3, b: Vec3) -> f64 {
     let angle = libm::atan2(a.cross(b).norm(), a.dot(b));
     (angle / std::f64::consts::FRAC_PI_2 - 1.0).abs()
@@ -89,7 +89,7 @@ pub(crate) fn hexahedron(p: [[[Vec3; 2]; 2]; 2]) -> [f64; 2] {
 /// spacing tan(half angle), which no march can pass; beyond 0.95 of it nothing is left of the first edge.
 ///
 /// # Errors
-/// Where the corner is sharper and the cell higher.
+/// If the corner is sharper and the cell higher.
 pub(super) fn fits_corner(
     [sine, cosine]: [f64; 2],
     spacing: f64,
@@ -106,7 +106,8 @@ pub(super) fn fits_corner(
     Ok(height <= fits)
 }
 
-/// How far from the wall a layer counts: (s / last)^0.15, independent of the number of layers.
+/// Weight of a layer by its distance from the wall: (s / last)^0.15, independent of the number of
+/// layers.
 pub(super) fn shift<T: Real>(s: T, last: T) -> T {
     (s / last).powf(T::from(0.15))
 }

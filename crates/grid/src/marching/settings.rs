@@ -1,15 +1,15 @@
-//! How a grid is marched, and when a march ends early.
+//! Options of a march, and criteria of an early end.
 
 use moldloft_num::Real;
 
-/// What happens at an edge of the surface, or an end of the curve, that a grid is marched from.
+/// Condition at an edge of the surface, or an end of the curve, that is marched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MarchBoundary {
-    /// The edge goes where the equations, one-sided there, take it.
+    /// The edge follows the equations, which are one-sided there.
     #[default]
     Free,
-    /// The edge stays in the plane x = const (0), y = const (1) or z = const (2) that it lies in: a
-    /// plane of symmetry, which the grid lines cross at right angles.
+    /// The edge stays in its plane x = const (0), y = const (1) or z = const (2), a plane of
+    /// symmetry to which the grid lines are perpendicular.
     Symmetry(usize),
     /// The edge keeps its x (0), y (1) or z (2) and is free otherwise.
     Constant(usize),
@@ -19,8 +19,8 @@ pub enum MarchBoundary {
     Periodic,
 }
 
-/// When a march ends before its last height. With the default it never does: what cannot be marched to the
-/// last height is an error.
+/// Criteria for an end before the last height. By default there is none: a march that cannot reach
+/// the last height is an error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// Keeps the layers below the one that cannot be marched, instead of refusing all.
@@ -48,7 +48,7 @@ impl Default for Stop {
     }
 }
 
-/// How a grid is marched.
+/// Options of hyperbolic marching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hyperbolic<T> {
     /// The distances of the layers from the wall, the first 0. The first cell is kept everywhere; further out
@@ -56,7 +56,7 @@ pub struct Hyperbolic<T> {
     pub heights: Vec<T>,
     /// At the edges s[1,], s[m,], s[,1], s[,n]; of a curve the first two.
     pub sides: [MarchBoundary; 4],
-    /// How strongly lines that converge are smoothed apart; 1 for nearly everything, 0 for not at all.
+    /// Factor of the smoothing where lines converge: 1 suits nearly every wall, 0 is none.
     pub smoothing: f64,
     /// When to end early.
     pub stop: Stop,

@@ -13,11 +13,12 @@ use moldloft_parallel::prelude::*;
 
 /// The layers of a grid marched off a surface, along its normals s_i x s_j: the surface first.
 ///
-/// Lines leave the surface on the bisecting normals with the first height, at corners and sharp edges too. Each
-/// further layer solves r_i . r_k = 0, r_j . r_k = 0, r_k . (r_i x r_j) = V, linearised about the layer below and
-/// factored along j and along i (Chan and Steger 1992), in steps of at most half the shortest edge; where lines
-/// converge, second differences push them apart. Every cell is tested before it is accepted; what folds is tried
-/// with less constraint, then with more smoothing, then refused.
+/// Lines leave the surface on the bisecting normals with the first height, at corners and sharp
+/// edges too. Each further layer solves r_i . r_k = 0, r_j . r_k = 0, r_k . (r_i x r_j) = V,
+/// linearised about the layer below and factored along j and along i (Chan and Steger 1992), in
+/// steps of at most half the shortest edge; where lines converge, second differences separate them.
+/// Every cell is tested before it is accepted; a step that folds is repeated with less constraint,
+/// then with more smoothing, and otherwise is an error.
 ///
 /// # Errors
 /// Heights that do not ascend from 0; surfaces without a normal; periodic edges apart; [`GridError::March`] with
@@ -81,7 +82,7 @@ struct SurfaceFront<T> {
     sides: [MarchBoundary; 4],
 }
 
-/// What is known of one direction at a node.
+/// Data of one direction at a node.
 #[derive(Clone, Copy)]
 struct NodeDirection<T> {
     next: Vec3<T>,
@@ -100,7 +101,7 @@ impl<T: Real> NodeDirection<T> {
     }
 }
 
-/// What is known of the surface at a node.
+/// Data of the surface at a node.
 #[derive(Clone, Copy)]
 struct SurfaceNode<T> {
     ways: [NodeDirection<T>; 2],
@@ -233,8 +234,8 @@ impl<T: Real> SurfaceFront<T> {
         }
     }
 
-    /// The nodes of poles with the unit mean of the vectors of the ring beside them; what leads out of a plane of
-    /// symmetry is dropped, so that half bodies keep their poles in it.
+    /// The nodes of poles with the unit mean of the vectors of the ring around them; components
+    /// normal to a plane of symmetry are dropped, so that half bodies keep their poles in it.
     fn pole_directions(&self, vectors: &[Vec3<T>]) -> Vec<(usize, Vec3<T>)> {
         let mut found = Vec::new();
         for axis in 0..2 {
@@ -318,7 +319,7 @@ fn concave_sine<T: Real>(node: &SurfaceNode<T>) -> T {
 /// The equations of a node: steps alone, or with their coupling along i and j.
 struct Equation<T> {
     right: Vec3<T>,
-    /// C^-1 A and C^-1 B with the implicit dissipation, or none where the step is prescribed.
+    /// C^-1 A and C^-1 B with the implicit dissipation; `None` if the step is prescribed.
     coupling: Option<[(Matrix<T>, T); 2]>,
 }
 

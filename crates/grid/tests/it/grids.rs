@@ -473,7 +473,7 @@ fn metrics_of_known_cells() {
     assert!(growth.iter().all(|g| (g - 3.0).abs() < 1e-14) && growth.len() == 6);
     assert!(quality(&grid, QualityMetric::GrowthJ).iter().all(|g| (g - 1.0).abs() < 1e-14));
     assert!(quality(&grid, QualityMetric::Turn).iter().all(|g| (g - PI / 6.0).abs() < 1e-14));
-    // A pole: triangles, none folded.
+    // A pole: triangles, not folded.
     let fan = SurfaceGrid::<f64>::from_fn(3, 5, |i, j| {
         let a = 0.3 * j as f64;
         Vec3::of(i as f64 * a.cos(), i as f64 * a.sin(), 0.0)

@@ -83,7 +83,7 @@ fn wall_angle(grid: &SurfaceGrid<f64>, wall: &Wall) -> f64 {
     worst
 }
 
-/// What is wrong with a marched grid.
+/// Faults of a marched grid.
 fn faults(wall: &Wall, grid: &SurfaceGrid<f64>) -> Vec<String> {
     let mut faults = Vec::new();
     let least = jacobian(grid);
@@ -104,8 +104,8 @@ fn faults(wall: &Wall, grid: &SurfaceGrid<f64>) -> Vec<String> {
     faults
 }
 
-/// How tight the tightest concave corner is: first cell over spacing times the tangent of half its angle. Beyond 1
-/// no lines on the bisectors can miss each other.
+/// Tightness of the tightest concave corner: first cell over spacing times the tangent of half its
+/// angle. Beyond 1 lines on the bisectors must intersect.
 fn tightness(wall: &Wall) -> f64 {
     let n = wall.points.len();
     let mut most = 0.0f64;
@@ -171,7 +171,7 @@ fn listings_and_blades_march_or_say_why_not() {
     judged(&all);
 }
 
-/// Concave corners take first cells up to the limit, and are refused beyond it with what fits.
+/// Concave corners accept first cells up to the limit; larger ones are refused with the maximum.
 #[test]
 fn concave_corners_march_up_to_the_limit() {
     for angle in [30.0, 45.0, 60.0, 75.0, 90.0, 110.0, 135.0, 160.0f64] {
@@ -336,7 +336,8 @@ fn ball(m: usize, n: usize, flat: f64) -> SurfaceGrid<f64> {
     })
 }
 
-/// Spheres and flat ellipsoids with two poles; spheres reach the radius asked for, the better the finer.
+/// Spheres and flat ellipsoids with two poles; spheres reach the given radius, more exactly with
+/// finer grids.
 #[test]
 fn balls_with_two_poles() {
     let sides = [

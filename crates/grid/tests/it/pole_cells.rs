@@ -1,4 +1,4 @@
-//! Cells of which edges or faces have no length: what is left has the volume and its faces outward.
+//! Cells with edges or faces without length: the remaining cell has the volume, and outward faces.
 
 use moldloft_grid::{HEX_FACES, PoleCell};
 use moldloft_num::Vec3;
@@ -39,8 +39,8 @@ fn faces(cell: PoleCell) -> Vec<Vec<usize>> {
     }
 }
 
-/// Each edge, each face, and faces with edges of a cube drawn together: what is left has the volume of the
-/// collapsed hexahedron, with its faces outward.
+/// Each edge, each face, and faces with edges of a cube collapsed: the remaining cell has the
+/// volume of the collapsed hexahedron, and outward faces.
 #[test]
 fn what_is_left_of_a_cube_has_its_volume() {
     let cube: Vec<Vec3> = [

@@ -1,7 +1,7 @@
 //! Sections as they come: listings of aerofoils, and blades of cascades.
 //!
-//! `MOLDLOFT_AEROFOILS` names a folder of listings in Selig's order (tail, upper side, nose, lower side, tail), such as
-//! the UIUC collection; without it the three that stand here are taken.
+//! `MOLDLOFT_AEROFOILS` names a folder of listings in Selig's order (tail, upper side, nose, lower
+//! side, tail), such as the UIUC collection; the default is the three sections below.
 
 use crate::walls::{Wall, geometric, with_base};
 use moldloft_num::Vec3;

@@ -63,7 +63,7 @@ fn figures_of_check_mesh() {
     assert!((check.aspect - 1.188_686_194).abs() < 1e-9);
     assert!((check.weight - 0.460_837_918).abs() < 1e-9);
     assert!((check.volume_ratio - 0.846_153_846).abs() < 1e-9);
-    // What checkMesh accepts: a corner that is turned over.
+    // As accepted by checkMesh: an inverted corner.
     let check = cubes(1, &[([1, 1, 1], [0.4, 0.4, 0.4])]).check();
     assert!((check.skewness - 0.864_073_045).abs() < 1e-9);
     assert!((check.aspect - 1.489_675_038).abs() < 1e-9);

@@ -121,7 +121,7 @@ pub fn corner(angle: f64, n: usize, first: Option<f64>) -> Vec<Vec3> {
     points
 }
 
-/// A section as a listing has it: coordinates rounded to so many decimals.
+/// A section as in a listing: coordinates rounded to a number of decimals.
 pub fn listed(section: &[Vec3], decimals: i32) -> Vec<Vec3> {
     let scale = 10f64.powi(decimals);
     section

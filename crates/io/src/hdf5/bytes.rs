@@ -3,7 +3,7 @@
 use crate::{FilePosition, ReadError};
 use std::fmt::Display;
 
-/// That the bytes are not what they should be.
+/// Error for unexpected bytes.
 pub(super) fn fault(byte: usize, expected: &str, found: impl Display) -> ReadError {
     ReadError {
         format: "HDF5",
@@ -39,7 +39,7 @@ impl<'a> Cursor<'a> {
         self.take(count).map(|_| ())
     }
 
-    /// A whole number of so many bytes (at most 8), the lowest first.
+    /// An unsigned integer of `count` bytes (at most 8), little-endian.
     pub fn number(&mut self, count: usize) -> Result<u64, ReadError> {
         let bytes = self.take(count)?;
         Ok(bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)))
@@ -54,7 +54,7 @@ impl<'a> Cursor<'a> {
         self.number(self.offset)
     }
 
-    /// A length, which cannot exceed what can be addressed here.
+    /// A length; it must be addressable.
     pub fn size(&mut self) -> Result<u64, ReadError> {
         self.number(self.length)
     }

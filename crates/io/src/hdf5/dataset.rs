@@ -14,7 +14,7 @@ pub(crate) struct StoredNumbers {
     pub values: Vec<f64>,
 }
 
-/// What one number is.
+/// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct NumberType {
     /// 0 whole, 1 real, 3 text.
@@ -60,7 +60,7 @@ impl NumberType {
     }
 }
 
-/// The extents of a dataspace; none for a single value.
+/// The extents of a dataspace; empty for a single value.
 fn extents(at: &mut Cursor<'_>) -> Result<Vec<usize>, ReadError> {
     let start = at.at;
     let (version, rank, flags) = (at.byte()?, at.byte()?, at.byte()?);
@@ -280,7 +280,7 @@ fn chunked(
     Ok(all)
 }
 
-/// Copies what of a chunk is inside of the array, line by line.
+/// Copies the part of a chunk inside the array, line by line.
 fn copy_chunk(
     from: &[u8],
     chunk: &[usize],

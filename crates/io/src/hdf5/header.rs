@@ -1,4 +1,4 @@
-//! StoredObject headers: the messages that say what an object is.
+//! Object headers: the messages that describe an object.
 
 use super::bytes::{Cursor, fault};
 use super::{Hdf5File, MOST_OBJECTS};
@@ -65,7 +65,7 @@ pub(super) fn messages<'a>(
             return Err(fault(from, &format!("{length} bytes of messages"), "the end of the file"));
         };
         let mut at = Cursor { bytes: &file.bytes[..end], at: from, ..at };
-        // What is left over is a gap.
+        // The rest is a gap.
         while at.at + prefix <= end {
             let (kind, size, flags) = if modern {
                 let message = (u16::from(at.byte()?), at.number(2)? as usize, at.byte()?);

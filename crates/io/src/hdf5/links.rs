@@ -1,4 +1,4 @@
-//! What groups hold: tables of symbols, links in the header, links in a fractal heap.
+//! Content of groups: tables of symbols, links in the header, links in a fractal heap.
 
 use super::bytes::{Cursor, fault};
 use super::header::{self, Message};
@@ -124,7 +124,7 @@ fn dense(
     if record < 5 || node < 32 || depth > 16 || record > node {
         return Err(fault(here, "a tree of names", "other sizes"));
     }
-    // How many records a node of each depth holds at most, alone and with all below it.
+    // Maximum number of records in a node of each depth, alone and with all below it.
     let leaf = (node - 10) / record;
     let count_width = width(leaf);
     let mut below = vec![leaf];
@@ -158,7 +158,7 @@ fn dense(
     Ok(())
 }
 
-/// Where the objects of a heap are.
+/// Location of the objects of a heap.
 struct FractalHeap {
     /// Bytes of a place in the heap, and of a length.
     place: usize,
@@ -200,7 +200,7 @@ impl FractalHeap {
         Ok(Self { place, length, columns, first, most_direct, root, rows })
     }
 
-    /// The object that an identifier stands for.
+    /// The object of an identifier.
     fn object<'a>(&self, file: &Hdf5File<'a>, id: &[u8]) -> Result<Cursor<'a>, ReadError> {
         let mut at = Cursor { bytes: id, at: 0, offset: file.offset, length: file.length };
         let kind = at.byte()? >> 4 & 3;

@@ -41,7 +41,7 @@ pub(crate) struct Hdf5File<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct StoredObject(u64);
 
-/// What a group has under a name.
+/// A named member of a group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Link {
     pub name: String,
@@ -55,7 +55,7 @@ impl<'a> Hdf5File<'a> {
     /// The file of these bytes.
     ///
     /// # Errors
-    /// When they are none.
+    /// If they are not an HDF5 file.
     pub fn open(all: &'a [u8]) -> Result<Self, ReadError> {
         let starts = std::iter::once(0).chain((9..40).map(|k| 1usize << k));
         let start = starts
@@ -118,7 +118,7 @@ impl<'a> Hdf5File<'a> {
         messages(self, object.0)
     }
 
-    /// What a group holds, in the order in which it was made where that was kept, else by names.
+    /// Members of a group, in the order of creation if stored, otherwise by name.
     pub fn children(&self, group: StoredObject) -> Result<Vec<Link>, ReadError> {
         let mut links = links::links(self, &self.messages(group)?)?;
         match links.iter().all(|link| link.order.is_some()) {

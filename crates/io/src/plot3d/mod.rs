@@ -2,9 +2,9 @@
 //! one block or several; two or three coordinates; with or without blanking; both byte orders; whole
 //! blocks or plane by plane.
 //!
-//! The format says none of this about itself. The reader tries what the bytes can mean, and takes
-//! what fits to the byte: record marks, sizes and counts against the length of the file, and, where
-//! more than one reading fits, coordinates that look like coordinates.
+//! The format does not declare any of this. The reader tries the possible readings, and accepts the
+//! one that fits to the byte: record marks, sizes and counts against the length of the file, and,
+//! if more than one fits, plausible coordinates.
 //!
 //! Layout: Walatka et al. 1990, PLOT3D User's Manual, NASA TM 101067, chapter 8.
 

@@ -12,7 +12,7 @@ use crate::{FilePosition, ReadError, StructuredGrid};
 /// Memory grows with the bytes that are there, whatever the sizes in the file say.
 ///
 /// # Errors
-/// What no variant explains: with the reading that comes nearest, and what it would expect.
+/// Data without a valid reading: with the closest reading, and what it would expect.
 pub fn read(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), ReadError> {
     if looks_like_text(bytes) {
         return read_text(bytes);
@@ -72,14 +72,14 @@ fn complaint(rank: usize, byte: usize, expected: String, found: String) -> Compl
     }
 }
 
-/// Text begins with a number, and no byte of it is none of a text's: sizes in binary have zeros.
+/// Text begins with a number and has only text bytes: binary sizes have zeros.
 fn looks_like_text(bytes: &[u8]) -> bool {
     let of_text = |b: &u8| b.is_ascii_graphic() || b" \t\r\n\x0c".contains(b);
     let first = bytes.trim_ascii_start().first();
     first.is_some_and(|b| b.is_ascii_digit() || *b == b'+') && bytes.iter().all(of_text)
 }
 
-/// Refuses what is not a number, and reports the first place.
+/// Refuses numbers that are not finite, with the first position.
 fn finite(blocks: &[StructuredGrid]) -> Result<(), ReadError> {
     for (number, block) in blocks.iter().enumerate() {
         for (axis, plane) in ["x", "y", "z"].iter().zip(&block.planes) {
@@ -151,7 +151,7 @@ fn records(
             let Some(lead) = mark_at(bytes, at, big_endian, mark) else {
                 return Err(wrong("a record".into(), "the end of the file".into()));
             };
-            // A negative length: the record goes on (gfortran, beyond 2 GiB).
+            // A negative length: the record is continued (gfortran, beyond 2 GiB).
             let length = usize::try_from(lead.unsigned_abs()).unwrap_or(usize::MAX);
             let start = at + mark;
             let end = start.checked_add(length).filter(|end| end + mark <= bytes.len());
@@ -355,7 +355,7 @@ fn take(data: &[u8], at: usize, count: usize, variant: &Variant, block: &mut Str
     }
 }
 
-/// A 2-D grid lies in z = 0.
+/// A 2-D grid is in z = 0.
 pub(super) fn fill(block: &mut StructuredGrid, axes: usize) {
     if axes == 2 {
         block.planes[2] = vec![0.0; block.count()];
@@ -414,7 +414,8 @@ fn of_stream(
         }
         readings.push((all, variant));
     }
-    // Sizes that ask for a little more or less than there is: cut off, or something else behind.
+    // Sizes that require slightly more or less than the available data: a truncated file, or
+    // further data at the end.
     let per_point = left as f64 / points as f64;
     if !fits && points > 1 && (1.0..100.0).contains(&per_point) {
         let width = axes as u128 * if per_point < 5.0 * axes as f64 { 4 } else { 8 };

@@ -4,7 +4,7 @@ use super::read::{fill, sizes};
 use super::variant::{FORMAT, Laid, Variant};
 use crate::{FilePosition, ReadError, StructuredGrid};
 
-/// A word of the text: a number, perhaps several times over, and the line it stands in.
+/// A word of the text: a number, with a repeat count, and its line.
 struct TextNumbers {
     values: Vec<f64>,
     whole: Vec<bool>,
@@ -54,7 +54,7 @@ fn words(bytes: &[u8]) -> Result<TextNumbers, ReadError> {
     Ok(all)
 }
 
-/// A reading whose sizes ask for another number of numbers than there are.
+/// A reading whose sizes require another number of values.
 struct Misfit {
     ends_line: bool,
     left: usize,

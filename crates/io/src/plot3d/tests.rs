@@ -1,4 +1,4 @@
-//! Every variant forth and back, damaged files, and what a variant cannot hold.
+//! Every variant written and read, damaged files, and the limits of a variant.
 
 use super::*;
 use crate::{FilePosition, StructuredGrid, WriteError};
@@ -40,7 +40,7 @@ fn variants() -> Vec<Variant> {
                 mark: if bit(5) { 8 } else { 4 },
                 planes: bit(6),
             };
-            // What a layout has no notion of.
+            // Not supported by the layout.
             let text = laid == Laid::Formatted && (!variant.double || variant.big_endian);
             let marks = laid != Laid::Unformatted && (variant.mark == 8 || variant.planes);
             let flat_planes = variant.planes && !variant.three;
@@ -149,7 +149,7 @@ fn fortran_text_with_repeats_and_doubles() {
 
 #[test]
 fn records_in_several_parts() {
-    // gfortran splits what is beyond 2 GiB; here, each record of coordinates into two.
+    // gfortran splits records beyond 2 GiB; here, each record of coordinates into two.
     let given = blocks(true, false, false);
     let one = Variant { laid: Laid::Unformatted, multi: false, iblank: true, ..Variant::default() };
     let whole = write(&given, one).unwrap();

@@ -1,9 +1,9 @@
-//! What the format leaves open. Holds: a default variant is read by every program.
+//! Variants of the format. Invariant: a default variant is read by every program.
 
-/// What errors call the format.
+/// Name of the format in errors.
 pub(super) const FORMAT: &str = "Plot3D";
 
-/// How the numbers are laid down.
+/// Encoding of numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Laid {
     /// Text.
@@ -18,7 +18,7 @@ pub enum Laid {
 /// Everything that the format leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
-    /// How the numbers are laid down.
+    /// Encoding of the numbers.
     pub laid: Laid,
     /// Double precision; single otherwise. Text has either.
     pub double: bool,
@@ -37,7 +37,8 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// What every program reads: plain numbers, double precision, several blocks, three coordinates.
+    /// Variant that every program reads: plain numbers, double precision, several blocks, three
+    /// coordinates.
     pub const USUAL: Self = Self {
         laid: Laid::Stream,
         double: true,

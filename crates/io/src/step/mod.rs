@@ -1,8 +1,9 @@
 //! STEP files (ISO 10303-21) of boundary representations: application protocols 242, 214 and 203.
 //!
-//! What faces share is written once: a vertex, an edge with its curve, and on B-spline surfaces its curves in
-//! parameters. Each part is a product of its own; several make an assembly. Names, colours, layers, the unit of length,
-//! the uncertainty and the error of fits stand in the file.
+//! Common elements of faces are written once: a vertex, an edge with its curve, and on B-spline
+//! surfaces its curves in parameters. Each part is a product of its own; several make an assembly.
+//! The file also has names, colours, layers, the unit of length, the uncertainty and the error of
+//! fits.
 
 mod part21;
 mod shape;
@@ -13,7 +14,7 @@ use part21::{Part21, list, real, text};
 use shape::Shapes;
 pub(crate) use shape::check;
 
-/// What a file says besides its shapes.
+/// Header of a file besides its shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepHeader<'a> {
     /// The name of the model.
@@ -107,7 +108,7 @@ pub fn write(brep: &Brep, header: &StepHeader<'_>) -> Result<Vec<u8>, WriteError
     Ok(file.finished(header, brep.error(), brep.exact(), brep.faceted.len()))
 }
 
-/// What all representations refer to.
+/// References of all representations.
 struct RepresentationContext {
     product: usize,
     definition: usize,
@@ -125,7 +126,7 @@ struct Product {
     name: String,
 }
 
-/// What a part consists of.
+/// Items of a part.
 pub(crate) struct RepresentationItems {
     /// Solids, models of shells, or curves.
     pub items: Vec<usize>,

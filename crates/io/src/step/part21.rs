@@ -149,10 +149,10 @@ pub(crate) fn joined(items: impl IntoIterator<Item = String>) -> String {
     out
 }
 
-/// A string with what is not plain ASCII as its code.
+/// A string with other characters than plain ASCII encoded.
 pub(crate) fn text(words: &str) -> String {
     let mut out = String::from("'");
-    // The width of the run of codes that is open: 4, 8, or 0 for none.
+    // Width of the open sequence of codes: 4, 8, or 0 outside one.
     let mut open = 0;
     for c in words.chars() {
         let code = c as u32;

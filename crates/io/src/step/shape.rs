@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 /// The highest degree that readers take.
 const HIGHEST_DEGREE: usize = 25;
 
-/// Refuses what readers would drop without a word.
+/// Refuses content that readers would drop silently.
 pub fn check(brep: &Brep, format: &'static str) -> Result<(), WriteError> {
     let empty =
         brep.parts.iter().all(|p| p.shells.is_empty() && p.wires.is_empty() && p.points.is_empty());

@@ -8,7 +8,7 @@ use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::Vec3;
 
 /// The fields of patches as fields of the mesh's vertices. A vertex of several patches has the mean
-/// of their numbers; one of none that has the field, NaN.
+/// of their values; one without a value has NaN.
 fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<VtkArray> {
     let count = mesh.positions().len();
     let mut out: Vec<(VtkArray, Vec<u32>)> = Vec::new();
@@ -27,7 +27,7 @@ fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<VtkArray> {
                 out.len() - 1
             });
             let (sum, times) = &mut out[at];
-            // A pole stands several times in its block.
+            // A pole occurs several times in its block.
             let mut seen: Vec<(u32, usize)> =
                 block.vertices.iter().enumerate().map(|(k, &v)| (v, k)).collect();
             seen.sort_unstable();
@@ -122,7 +122,7 @@ pub fn polydata_with(
     }
     let mut arrays = String::new();
     for field in by_vertex(mesh, fields) {
-        // Loose points and polylines lie on no surface.
+        // Loose points and polylines are not on a surface.
         let none = std::iter::repeat_n(f64::NAN, field.components * (count - first as usize));
         let offset = data.add_reals(field.values.iter().copied().chain(none));
         arrays += &array("Float64", &xml(&field.name), field.components, offset);
@@ -149,7 +149,7 @@ pub fn polydata_with(
     Ok(data.file("PolyData", &body))
 }
 
-/// An element of cells, unless there are none.
+/// An element of cells; empty without cells.
 fn cells(name: &str, none: bool, [connectivity, offsets]: [usize; 2]) -> String {
     if none {
         return String::new();

@@ -1,8 +1,8 @@
 //! VTK's XML formats: `.vtp` for panels, `.vts` for a structured patch or block, `.vtm` for several,
 //! `.vtu` for all hexahedra of a volume mesh in one.
 //!
-//! Arrays stand behind the XML as raw little-endian bytes, each after its length in 64 bits
-//! ("VTK File Formats", vtk.org, section "XML File Formats").
+//! Arrays follow the XML as raw little-endian bytes, each after its length in 64 bits ("VTK File
+//! Formats", vtk.org, section "XML File Formats").
 
 mod grid;
 mod mesh;

@@ -44,8 +44,8 @@ fn grids_become_files() {
     assert_eq!(reals(&files[1].bytes, 0)[3..6], [1.0, 0.0, 0.0]);
 }
 
-/// Two patches of six vertices that share a column: their numbers stand in their own files as
-/// they are, and in the common one as means.
+/// Two patches of six vertices that share a column: their values are unchanged in their own files,
+/// and means in the common one.
 #[test]
 fn fields_of_patches_are_point_arrays() {
     let mut b = TopologyBuilder::new();

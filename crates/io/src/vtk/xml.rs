@@ -1,5 +1,5 @@
-//! What all files share: arrays behind the XML, and what is written. Holds: an offset is that of the length before
-//! its array.
+//! Common parts of all files: arrays after the XML, and the output. Invariant: an offset is that of
+//! the length before its array.
 
 use crate::text::put;
 
@@ -76,7 +76,7 @@ pub struct VtkArray {
     pub name: String,
     /// Numbers per point.
     pub components: usize,
-    /// The numbers, point by point. NaN stands for none.
+    /// The numbers, point by point; NaN for missing ones.
     pub values: Vec<f64>,
 }
 

@@ -18,13 +18,13 @@ use moldloft_syntax::sdl::{BinaryOp, ExprId};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// So many recipes that did not fit, and the expression is not recorded again.
+/// Number of misfits after which an expression is not recorded again.
 const MOST_MISFITS: u8 = 4;
 
-/// How a kept recipe went.
+/// Result of a cached recipe.
 enum RecipeOutcome<T: Real> {
     Done(Result<Value<T>, Diagnostic>),
-    /// It does not fit: what was read goes through the tree.
+    /// It does not fit: the tree evaluates the leaves that were read.
     Misfit(Read<T>),
 }
 
@@ -71,7 +71,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Recorder::new(self.usage.depth)
     }
 
-    /// Keeps what was recorded, or gives the expression up.
+    /// Stores a recording, or gives the expression up.
     pub fn keep_recipe(
         &mut self,
         key: ExprKey,
@@ -117,7 +117,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return RecipeOutcome::Misfit(Vec::new());
         }
         values.clear();
-        // What was read so far, when the tree must do the rest.
+        // Leaves read so far, for the tree.
         let so_far = |values: &[Value<T>]| -> Read<T> {
             let leaf = |(entry, value): (&Entry<T>, &Value<T>)| match *entry {
                 Entry::Leaf { expr, .. } | Entry::Same(_, expr) => Some((expr, Ok(value.clone()))),
@@ -194,7 +194,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             });
         }
         let (roots, count) = (lanes.roots(), lanes.shape.count());
-        // What can fail must leave the variable as it was.
+        // An operation that can fail must not change the variable.
         if !tape.is_checked() {
             let filled = |outs: &mut [Vec<T>]| tape.execute(&rows, &roots, count, outs).is_ok();
             if let Some(value) = self.filled_in_place(m, key, lanes, filled) {
@@ -227,7 +227,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let place = self.env.scope.place_of(m.names[symbol.0 as usize])?;
         let whole = place.is_whole();
         let outside = place.frame.is_none() && self.run.extent() == Extent::Edit;
-        // Not what could still stop the run, either.
+        // Neither may one that can stop the run.
         if !whole || outside || !self.has_room(lanes.shape.count()) {
             return None;
         }
@@ -267,7 +267,7 @@ fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> 
             (BinaryOp::Mul, Value::Number(a), Value::Vector(b)) => Some(Value::Vector(*b * *a)),
             (_, a, b) => ops::binary(op, a, b).ok(),
         }
-        // What is not finite is judged by the tree.
+        // Values that are not finite are judged by the tree.
         .filter(Value::is_finite),
         Entry::Negated(a) => ops::negated(of(a)).ok(),
         Entry::Magnitude(a) => ops::magnitude(of(a)).ok().filter(Value::is_finite),

@@ -1,8 +1,8 @@
 //! Runs a program: operators on arrays, element by element.
 //!
 //! The element-wise part of an expression becomes a [`Tape`] that is run once, when its value is
-//! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
-//! text and before any element is touched; what has no array in it is computed at once.
+//! needed. Kinds and shapes are compared at each operator, so that faults come in the order of the
+//! text and before any element is computed; parts without arrays are computed at once.
 
 use crate::array::lanes::{Calls, TapeArray, What, not_finite};
 use crate::array::recipe::{Course, ExprKey, LeafKind, Recorder};
@@ -90,7 +90,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Ok(LoweredOperand::Lanes(lanes)) => {
                 let tape = &mut work.tape;
                 let filled = match tape.is_checked() {
-                    // What can fail must leave the variable as it was.
+                    // An operation that can fail must not change the variable.
                     true => None,
                     false => self.filled_in_place(m, key, &lanes, |outs| {
                         tape.run(&lanes.roots(), lanes.shape, outs).is_ok()
@@ -126,8 +126,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// A part of an expression that is not an operator, executed as it stands; an object is read when
-    /// `read`.
+    /// A part of an expression other than an operator; an object is read if `read`.
     fn leaf(
         &mut self,
         m: &Module,
@@ -139,8 +138,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let x = T::from(m.program[literal].value);
             return Ok(LoweredOperand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
         }
-        // Another expression than this one was read when a name has come to mean something else: then it
-        // was a name alone, or the component of one, and reading it has changed nothing.
+        // Another expression was read if a name has changed its meaning: that was a name alone, or
+        // a component of one, and reading it has no effect.
         let (value, object) = match work.ready.pop_front() {
             Some((read, value)) if read == id => (value?, false),
             _ => {
@@ -188,7 +187,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             | ExprKind::List(_) => true,
             ExprKind::Binary { op, .. } => ops::is_elementwise(op),
             ExprKind::Member { base, name, .. } => {
-                // A component of an expression or of rows; of other names it is read as it stands.
+                // A component of an expression or of rows; components of other names are evaluated
+                // as members.
                 axis(m.program.name(name)).is_some()
                     && (self.names_vectors(m, base)
                         || !matches!(
@@ -712,7 +712,7 @@ pub(crate) struct TapeBuilder<T: Real> {
     pub calls: Calls,
     /// Leaves that were read already, the next first.
     ready: VecDeque<(ExprId, Result<Value<T>, Diagnostic>)>,
-    /// Notes what is done, for a recipe.
+    /// Recorder of a recipe.
     pub recorder: Option<Recorder<T>>,
     /// True to let infinite results and NaN pass.
     ieee: bool,
@@ -738,7 +738,7 @@ impl<T: Real> TapeBuilder<T> {
         Some(shape).filter(|_| !self.ieee)
     }
 
-    /// Says what the checks that were added last are of.
+    /// Names the subject of the checks added last.
     fn name_checks(&mut self, span: Span, name: &'static str) {
         while self.calls.len() < self.tape.checks() {
             self.calls.push((span, name));

@@ -1,4 +1,4 @@
-//! What a run keeps for its array expressions: memory, tapes, recipes.
+//! State that a run keeps for array expressions: memory, tapes, recipes.
 
 use crate::array::recipe::{ExprKey, Slots};
 use moldloft_elementwise::Tape;
@@ -13,7 +13,7 @@ pub(crate) struct ArrayMachine<T: Real> {
     /// Tapes that are not in use.
     pub tapes: Vec<Tape<T>>,
     pub spare: Spare<T>,
-    /// What is known of expressions that are executed again.
+    /// Recipes of expressions that are executed repeatedly.
     pub recipes: Slots<T>,
     /// The expression that is assigned to a whole variable, and its target.
     pub assigning: Option<(ExprKey, ExprId)>,

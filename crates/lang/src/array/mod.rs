@@ -1,5 +1,5 @@
-//! Array expressions as tapes of the machine in `moldloft-elementwise`: how they are lowered, and what is
-//! kept of one that is executed again.
+//! Array expressions as tapes of the machine in `moldloft-elementwise`: lowering, and recipes for
+//! repeated execution.
 
 mod cache;
 pub(crate) mod lanes;

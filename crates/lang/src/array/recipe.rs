@@ -2,12 +2,12 @@
 //!
 //! `second execution -> recipe -> later executions`
 //!
-//! The first execution of an element-wise expression walks through its tree. The second does so, too, and
-//! records what it finds: which parts of the expression are read from variables and calls (leaves),
-//! what is computed of those that are no arrays, and the tape. Later executions read the leaves, in the same
-//! order, and run the tape, as long as kinds and shapes are those of the recording. Whatever differs
-//! (another shape, another exponent, a fault) sends the leaves that were read already through the tree, so
-//! that a recipe changes no value and no message, and nothing is read twice.
+//! The first execution of an element-wise expression evaluates its tree. The second does so too,
+//! and records the parts that are read from variables and calls (leaves), the computations without
+//! arrays, and the tape. Later executions read the leaves, in the same order, and run the tape, as
+//! long as kinds and shapes are those of the recording. Any difference (another shape, another
+//! exponent, a fault) passes the leaves read so far to the tree, so that a recipe changes no value
+//! and no message, and nothing is read twice.
 
 use crate::array::lanes::{Calls, TapeArray};
 use crate::functions::elementary::Elementary;
@@ -23,7 +23,7 @@ use std::hash::{BuildHasherDefault, Hash, Hasher};
 /// The most entries of a recipe.
 const LONGEST: usize = 1_000;
 
-/// What is known of an expression that is executed again and again.
+/// State of an expression that is executed repeatedly.
 #[derive(Debug)]
 pub(crate) enum Slot<T: Real> {
     /// Executed once, or the number of times that a recipe did not fit.
@@ -31,7 +31,7 @@ pub(crate) enum Slot<T: Real> {
     Kept(Box<Recipe<T>>),
     /// Under way.
     Busy,
-    /// Not worth it, or not possible.
+    /// No gain, or not possible.
     Never,
 }
 
@@ -71,7 +71,7 @@ impl Hasher for KeyHasher {
     }
 }
 
-/// What a leaf must be.
+/// Required kind of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LeafKind {
     Number,
@@ -82,7 +82,7 @@ pub(crate) enum LeafKind {
 }
 
 impl LeafKind {
-    /// `None` of what no tape takes.
+    /// `None` for values that tapes do not support.
     pub fn of<T: Real>(value: &Value<T>) -> Option<Self> {
         Some(match value {
             Value::Number(_) => LeafKind::Number,
@@ -243,7 +243,7 @@ impl<T: Real> Recorder<T> {
     }
 }
 
-/// True for what reads variables and numbers only, and can change nothing.
+/// True if it reads only variables and numbers, and has no effects.
 fn is_pure(m: &Module, id: ExprId) -> bool {
     match m.program[id].kind {
         ExprKind::Name(_) | ExprKind::Number(_) | ExprKind::Text(_) => true,
@@ -269,7 +269,7 @@ pub(crate) struct Recipe<T: Real> {
     pub(super) entries: Vec<Entry<T>>,
     pub(super) functions: Vec<Symbol>,
     pub(super) exponents: Vec<(Cell, T)>,
-    /// How much deeper than the start it goes.
+    /// Nesting depth relative to the start.
     pub(super) depth: u32,
     pub(super) tape: Tape<T>,
     pub(super) calls: Calls,
@@ -285,10 +285,10 @@ impl<T: Real> std::fmt::Debug for Recipe<T> {
     }
 }
 
-/// Leaves that were read, and what came of them.
+/// Leaves that were read, with their results.
 pub(crate) type Read<T> = Vec<(ExprId, Result<Value<T>, Diagnostic>)>;
 
-/// How an expression is executed.
+/// Result of one way of execution.
 pub(crate) enum Course<T: Real> {
     Done(Result<Value<T>, Diagnostic>),
     /// Through the tree, with values that were read already; `misfits` when it is to be recorded.

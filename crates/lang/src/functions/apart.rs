@@ -1,7 +1,7 @@
-//! Work that does not look at what is left of the budget, such as the encoders of files: done on a thread of its own
-//! while the run looks.
+//! Work that does not check the budget, such as encoders of files, on a thread of its own while the
+//! run checks.
 //!
-//! When the budget is spent the run ends and leaves the thread behind; it ends by itself, and what it made is dropped.
+//! When the budget is spent the run ends without the thread, whose result is dropped.
 
 use crate::run::interpreter::Interpreter;
 use crate::run::usage;
@@ -9,7 +9,7 @@ use moldloft_budget::{Budget, Spent};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::Scalar;
 
-/// So many items take less time than a look.
+/// Number of items that take less time than a check.
 const FEW: usize = 20_000;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {

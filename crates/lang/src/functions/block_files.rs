@@ -1,4 +1,4 @@
-//! Blocks as one mesh with named boundaries: how they meet, which boundaries are periodic, what CGNS is to know.
+//! Blocks as one mesh with named boundaries: joints, periodic boundaries, and the data for CGNS.
 
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
@@ -15,7 +15,7 @@ pub(crate) struct NamedBlock {
     pub faces: FaceNames,
 }
 
-/// What boundaries are.
+/// Kinds of boundaries.
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
 
@@ -25,22 +25,22 @@ pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 /// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
 pub type PeriodicJoint = ([f64; 3], [f64; 3], [f64; 3]);
 
-/// Both sides of a joint, for each axis of the first that of the second, from 1, negative if against, and how the
-/// second lies to the first when they are periodic.
+/// Both sides of a joint; for each axis of the first that of the second, from 1, negative if
+/// opposite; and the position of the second relative to the first, if periodic.
 pub type BlockJoint = (FacePart, FacePart, [i32; 3], Option<PeriodicJoint>);
 
-/// What a CGNS file holds besides points.
+/// Content of a CGNS file besides points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CgnsBlocks {
     /// Names of the blocks.
     pub names: Vec<String>,
-    /// Where blocks meet.
+    /// Joints of blocks.
     pub joints: Vec<BlockJoint>,
-    /// What is boundary: its place, name and type.
+    /// Boundaries: position, name and type.
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
-/// How blocks meet.
+/// Connections of blocks.
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,
@@ -101,7 +101,7 @@ pub(crate) fn volumes(blocks: &[NamedBlock]) -> Vec<VolumeGrid<f64>> {
         .collect()
 }
 
-/// The blocks as one mesh; what coincides to 1e-10 of the size is joined.
+/// The blocks as one mesh; points within 1e-10 of the size are merged.
 pub(crate) fn one_mesh(blocks: &[NamedBlock]) -> HexMesh {
     let names: Vec<FaceNames> = blocks.iter().map(|block| block.faces.clone()).collect();
     HexMesh::of_blocks(&volumes(blocks), &names)
@@ -226,7 +226,7 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     Ok(Connected { content, partners, nameless })
 }
 
-/// Points of two periodic faces are this near, as a share of the size.
+/// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;
 
 /// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
@@ -273,7 +273,8 @@ fn candidates(a: &[Vec3], b: &[Vec3]) -> Vec<Periodicity> {
     all
 }
 
-/// How the indices of a face run on another with the same points, moved: whether they are exchanged, and reversed.
+/// Relation of a face's indices to those of another with the same points, moved: exchanged, and
+/// reversed.
 fn laid(
     a: &(Vec<Vec3>, [usize; 2], [usize; 2]),
     b: &(Vec<Vec3>, [usize; 2], [usize; 2]),

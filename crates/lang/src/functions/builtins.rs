@@ -1,4 +1,5 @@
-//! The built-in functions that need the interpreter: names, arguments and examples. What they do is in `context`.
+//! Built-in functions that need the interpreter: names, arguments and examples; their
+//! implementation is in `context`.
 
 use crate::functions::block_files::BOUNDARY_KINDS;
 use crate::functions::grid_formats::{self, GridFormat};
@@ -11,22 +12,21 @@ pub const MOST_REFINED: u32 = 8;
 pub struct Builtin {
     /// Its name.
     pub name: &'static str,
-    /// What a call does.
     pub(crate) action: Action,
     /// Its arguments.
     pub signature: &'static str,
-    /// What it does, in one line.
+    /// Description in one line.
     pub doc: &'static str,
-    /// What it returns.
+    /// Description of the result.
     pub returns: &'static str,
     /// Name, class and meaning of each argument; `?` behind the name of one that may be left out.
     pub help: &'static [(&'static str, &'static str, &'static str)],
-    /// A program that calls it and runs by itself.
+    /// A complete program that calls it.
     pub example: &'static str,
 }
 
 impl Builtin {
-    /// How many arguments it takes, at least and at most.
+    /// Minimum and maximum number of arguments.
     pub fn arity(&self) -> (usize, usize) {
         let least = self.help.iter().filter(|(name, ..)| !name.ends_with('?')).count();
         let several = self.help.iter().any(|(_, class, _)| class.ends_with('…'));
@@ -55,7 +55,7 @@ impl Builtin {
     }
 }
 
-/// What the call of a built-in function does.
+/// Implementation of a built-in function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Action {
     Format,
@@ -83,7 +83,7 @@ pub(crate) enum Action {
     ReadRows(RowFormat),
 }
 
-/// What writers of meshes of blocks take.
+/// Arguments of writers of meshes of blocks.
 const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
     ("name", "text", "Name of the file, beside the program."),
     ("b", "block or surface …", "Blocks, or surfaces in one plane; a list stands for its members."),
@@ -454,7 +454,7 @@ pub const BUILTINS: [Builtin; 32] = [
     },
 ];
 
-/// What `read_...` reads as a curve.
+/// Formats that `read_...` reads as a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowFormat {
     Points,

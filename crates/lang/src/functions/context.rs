@@ -1,5 +1,5 @@
-//! Functions that need more than the values of their arguments: the place that an argument is, the
-//! files of the run, how fine it is asked for.
+//! Functions that need more than the values of their arguments: the variable behind an argument,
+//! the files of the run, the requested refinement.
 
 use crate::functions::builtins::{Action, BUILTINS, Builtin};
 use crate::functions::files::{OpenMode, STANDARD_OUTPUT};
@@ -62,7 +62,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         count: usize,
         span: Span,
     ) -> Option<Arc<Row>> {
-        // Without a parameter it is asked of the points of an array.
+        // Without a parameter it is the curvature of the points of an array.
         if count == 1 && m.program.name(symbol) == "curvature" {
             return self.loader.registry.get("curvatures").cloned();
         }
@@ -82,7 +82,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Some(row)
     }
 
-    /// The value of a call of a built-in function; `None` when the name means none.
+    /// The value of a call of a built-in function; `None` for other names.
     pub fn builtin(
         &mut self,
         m: &Module,
@@ -173,7 +173,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     None => true,
                 };
                 if std::mem::replace(&mut self.arrays.ieee, on) != on {
-                    // Their tapes test, or do not test, what they compute.
+                    // Tapes depend on whether results are checked.
                     self.arrays.recipes.clear();
                 }
                 Ok(Value::Unset)
@@ -287,7 +287,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(Value::Number(T::from(f64::from(unit))))
     }
 
-    /// What a variable is and what is known of it.
+    /// Type, value and initialised elements of a variable.
     fn known(
         &self,
         place: &Place,
@@ -329,7 +329,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let count = shape.map_or(1, ArrayShape::count);
         let files = &mut self.env.files;
         let mut number = || files.number(unit).map(T::from);
-        // Grids stand in files with their first index fastest.
+        // Files store grids with the first index fastest.
         let order: Vec<usize> = match shape {
             Some(ArrayShape::Grid(a, b)) => {
                 (0..b).flat_map(|j| (0..a).map(move |i| i * b + j)).collect()

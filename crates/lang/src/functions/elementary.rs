@@ -277,7 +277,7 @@ fn greater<T: Real>(a: T, b: T) -> T {
     if b.re().is_nan() { b } else { a.max(b) }
 }
 
-/// What combines two numbers, for `min`, `max` and `sum` of several arguments.
+/// The operation on two numbers, for `min`, `max` and `sum` of several arguments.
 pub(crate) fn combining<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
     Some(match name {
         "min" => ("min", Elementary::Binary(lesser)),
@@ -295,7 +295,7 @@ pub(crate) fn combined<T: Real>(name: &str, args: &[Value<T>]) -> Option<Value<T
     (2..=4).contains(&numbers.len()).then(|| numbers.into_iter().reduce(f).map(Value::Number))?
 }
 
-/// True for functions that take no longer than finding their remembered values.
+/// True for functions that are faster than a look-up of cached values.
 pub(crate) fn is_quick(row: &Row) -> bool {
     row.cheap && matches!(row.body, Implementation::Native { .. })
 }
@@ -354,7 +354,7 @@ macro_rules! elementary {
     };
 }
 
-/// A number without derivatives: what the steps of floor and round give.
+/// A number without derivatives, the result of floor and round.
 fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
     T::from(f(x.re()))
 }
@@ -368,7 +368,7 @@ pub fn small_remainder(a: f64, b: f64) -> Option<f64> {
     let rounded = |x: f64| (x + ROUNDS) - ROUNDS;
     let small = |x: f64| x > 0.0 && x < MOST && rounded(x) == x;
     (small(a) && small(b)).then(|| {
-        // All of it is exact but the quotient, of which the nearest whole number is asked.
+        // All is exact except the quotient, which is rounded anyway.
         let rest = a - rounded(a / b) * b;
         if rest < 0.0 { rest + b } else { rest }
     })

@@ -23,7 +23,7 @@ const FIRST_FREE: u32 = 10;
 const MOST_BYTES: usize = 256 << 20;
 const MOST_OPEN: usize = 1_000;
 
-/// The number that a name stands for without being declared: a unit, or PI.
+/// The number of a predeclared name: a unit, or PI.
 pub fn predeclared(name: &str) -> Option<f64> {
     match name {
         "PI" => Some(std::f64::consts::PI),
@@ -34,12 +34,12 @@ pub fn predeclared(name: &str) -> Option<f64> {
     }
 }
 
-/// What a run has opened and written.
+/// Files opened and written by a run.
 #[derive(Debug, Default)]
 pub struct RunFiles {
     open: BTreeMap<u32, OpenFile>,
     written: IndexMap<String, Vec<u8>>,
-    /// Files that the host makes CGNS of, and what is known of their blocks.
+    /// Files that the host converts to CGNS, with data about their blocks.
     cgns: IndexMap<String, CgnsBlocks>,
     bytes: usize,
 }
@@ -50,7 +50,7 @@ enum OpenFile {
     Write { name: String },
 }
 
-/// How a file is opened.
+/// Mode of opening a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OpenMode {
     /// An existing file, read from its beginning.
@@ -129,7 +129,7 @@ impl RunFiles {
         }
         let open = match mode {
             OpenMode::Read => {
-                // What this run wrote is seen before what is on the disk.
+                // Files written by this run take precedence over those on disk.
                 let own = inside(path).ok().and_then(|name| self.written.get(&name));
                 let text = match own {
                     Some(bytes) => moldloft_syntax::decode(bytes, path)?.to_string(),
@@ -165,7 +165,7 @@ impl RunFiles {
         Ok(unit)
     }
 
-    /// The content of a file: what this run wrote, or what is on the disk.
+    /// The content of a file, from this run or from disk.
     pub fn bytes(&self, world: &dyn World, from: &str, path: &str) -> Result<Vec<u8>, Diagnostic> {
         if let Some(bytes) = inside(path).ok().and_then(|name| self.written.get(&name)) {
             return Ok(bytes.clone());
@@ -199,12 +199,12 @@ impl RunFiles {
         Ok(())
     }
 
-    /// What is known of the blocks of a file that the host makes CGNS of.
+    /// Data about the blocks of a file that the host converts to CGNS.
     pub(crate) fn cgns_of(&self, path: &str) -> Option<&CgnsBlocks> {
         self.cgns.get(&inside(path).ok()?)
     }
 
-    /// The files that the host makes CGNS of: what was written is Plot3D.
+    /// The files that the host converts to CGNS; their content is Plot3D.
     pub fn cgns(&self) -> impl Iterator<Item = (&str, &CgnsBlocks)> {
         self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks))
     }
@@ -297,7 +297,7 @@ impl RunFiles {
         Ok(())
     }
 
-    /// What was written, by name.
+    /// Written files, by name.
     pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.written.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
     }

@@ -2,7 +2,7 @@
 
 use moldloft_diag::Diagnostic;
 
-/// What a format is given.
+/// Argument of a format.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormatArgument {
     /// A number.
@@ -14,7 +14,7 @@ pub enum FormatArgument {
 /// The widest field and the most digits.
 const WIDEST: usize = 1_000;
 
-/// The text of `items` by the format, which is used again for what is left over.
+/// The text of `items` by the format, which is repeated for remaining items.
 ///
 /// # Errors
 /// For directives that do not exist, or items that do not fit them.
@@ -29,7 +29,7 @@ pub fn format(pattern: &str, items: &[FormatArgument]) -> Result<String, Diagnos
                 FormatPiece::Text(text) => out.push_str(text),
                 FormatPiece::Directive(d) => match items.next() {
                     Some(item) => out.push_str(&d.spell(item)?),
-                    // Where values are used up the format ends.
+                    // The format ends where its values are used up.
                     None if !out.is_empty() => return Ok(out),
                     None => {
                         return Err(Diagnostic::error(

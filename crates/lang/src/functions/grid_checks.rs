@@ -1,5 +1,5 @@
-//! Blocks judged before they are written: folded and left-handed cells, boundaries that are not what they are called,
-//! faces that lie on each other without being joined.
+//! Checks of blocks before writing: folded and left-handed cells, boundaries that contradict their
+//! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
     Connected, FacePart, NamedBlock, connected, extruded, volumes,
@@ -11,17 +11,17 @@ use moldloft_io::StructuredGrid;
 use moldloft_io::hexahedra::is_plane;
 use moldloft_num::{Box3, Vec3};
 
-/// Faces without names that are this near to each other, as a share of their size, lie on each other: facets of one
-/// curved surface with other counts of points differ by less.
+/// Distance, relative to their size, within which unnamed faces coincide: facets of one curved
+/// surface with different numbers of points differ by less.
 const ABUTTING: f64 = 5e-3;
 
 /// Points of a face, along each of its axes, that are looked for on others.
 const SAMPLES: usize = 5;
 
-/// What there is to say of blocks, and how they meet where the format joins them.
+/// Warnings about blocks, and their connections if the format joins them.
 ///
 /// # Errors
-/// What no file can hold.
+/// Faults that no file can represent.
 pub(super) fn checked(
     blocks: &[NamedBlock],
     format: &GridFormat,
@@ -154,7 +154,7 @@ struct FaceMesh {
     quads: Vec<[usize; 4]>,
 }
 
-/// Faces called symmetry that do not lie in a plane.
+/// Faces of type symmetry that are not plane.
 fn symmetry(blocks: &[NamedBlock], found: &mut Vec<Diagnostic>) {
     for block in blocks {
         for (face, name) in block.faces.iter().enumerate() {
@@ -183,7 +183,7 @@ fn symmetry(blocks: &[NamedBlock], found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Faces without a name: those that lie on each other, and that there are such.
+/// Faces without a name: coincident ones, and the existence of others.
 fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut Vec<Diagnostic>) {
     let word = |part: &FacePart| match (flat, GridFace::ALL[part.1].word()) {
         (true, "in") => "im",
@@ -243,7 +243,7 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
     }
 }
 
-/// How far a face lies off another that it lies on as a whole; `None` where it does not.
+/// Distance of a face from another that contains it; `None` if none does.
 fn lies_on(face: &FaceMesh, other: &FaceMesh) -> Option<f64> {
     let bounds = Box3::around(face.points.iter().copied());
     let size = (bounds.high - bounds.low).norm();

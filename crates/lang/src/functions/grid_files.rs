@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
 
-/// What a call of `write_...` has taken in so far.
+/// Arguments of a call of `write_...`, collected.
 #[derive(Default)]
 struct TakenIn {
     blocks: Vec<NamedBlock>,

@@ -10,18 +10,18 @@ use moldloft_io::quadrilaterals::{self, PlaneMesh};
 use moldloft_io::{StructuredGrid, WriteError, hexahedra, points, stl, vtk};
 use moldloft_num::Vec3;
 
-/// What is written, with the words that choose among the variants of the format.
+/// Content to write, with the words that select variants of the format.
 pub(crate) struct GridFile<'a> {
     /// Its name, as the program states it.
     pub path: &'a str,
     pub words: &'a str,
     pub blocks: Vec<NamedBlock>,
-    /// How the blocks meet, of formats that join them.
+    /// Connections of the blocks, for formats that join them.
     pub connected: Option<Connected>,
     pub budget: &'a Budget,
 }
 
-/// The files that a format makes of a call, and what is known of the blocks of a CGNS file.
+/// Files of a call, and data about the blocks of a CGNS file.
 #[derive(Default)]
 pub(crate) struct EncodedFiles {
     pub files: Vec<(String, Vec<u8>)>,
@@ -31,15 +31,15 @@ pub(crate) struct EncodedFiles {
 /// A format of grid files.
 #[derive(Debug)]
 pub(crate) struct GridFormat {
-    /// Whether blocks are written besides curves and surfaces.
+    /// True if blocks are written besides curves and surfaces.
     pub blocks: bool,
-    /// Whether blocks are joined where their points coincide, and their boundaries have names.
+    /// True if blocks are joined at coincident points, and their boundaries have names.
     pub joins: bool,
-    /// Whether an farray of whole numbers behind a surface is its blanking.
+    /// True if an farray of whole numbers after a surface is its blanking.
     pub blanking: bool,
-    /// Whether cells keep the order of the points, right-handed or not.
+    /// True if cells keep the order of the points, right-handed or not.
     pub keeps_order: bool,
-    /// Whether it looks at the budget itself; the others are watched from outside.
+    /// True if it checks the budget itself; others are watched from outside.
     pub watches: bool,
     /// The words that it knows, as completion offers them.
     pub words: &'static [&'static str],

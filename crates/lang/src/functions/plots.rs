@@ -17,7 +17,7 @@ const HEIGHT: usize = 800;
 /// Curves on pictures: dark and broad enough to be seen against panels and nothing.
 const CURVE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
 const CURVE_WIDTH: f32 = 2.0;
-/// An extent below this share of the largest is none.
+/// Extent, relative to the largest, below which it is zero.
 const FLAT: f64 = 1e-9;
 /// Colours of the palette that show as thin lines on white.
 const LINE_COLOURS: [usize; 7] = [1, 4, 2, 5, 3, 6, 0];
@@ -38,7 +38,7 @@ fn view(word: &str) -> Option<[f64; 2]> {
     })
 }
 
-/// The view of who names none: what is flat along an axis is seen along it, all else obliquely.
+/// Default view: flat arrays along their normal axis, others obliquely.
 fn usual(low: Vec3, high: Vec3) -> &'static str {
     let size = [high.x - low.x, high.y - low.y, high.z - low.z];
     let most = size.into_iter().fold(0.0, f64::max);
@@ -118,7 +118,7 @@ fn faces(grid: &StructuredGrid) -> Vec<[u32; 4]> {
 /// The picture of grids under the names that are written; `words` choose the view.
 ///
 /// # Errors
-/// Unknown words or endings, and what shows nothing.
+/// Unknown words or extensions, and content without extent.
 pub(crate) fn plot(
     path: &str,
     words: &str,
@@ -170,8 +170,8 @@ pub struct DrawnArrays {
     pub view: [f64; 2],
 }
 
-/// The arrays of points among the variables of a program, records and lists by their members; `None` where none has an
-/// extent.
+/// The arrays of points among the variables of a program, with those in records and lists; `None`
+/// if none has an extent.
 ///
 /// # Errors
 /// A budget that is spent.
@@ -271,8 +271,8 @@ fn drawn(
     Ok((mesh, curves))
 }
 
-/// Lines at true proportions, the names of what is drawn below, the extents beside the axes; nothing where the
-/// view shows a point.
+/// Lines at true proportions, names below, extents beside the axes; `None` if the view shows a
+/// point.
 fn svg(
     grids: &[StructuredGrid],
     names: &[String],
@@ -335,7 +335,7 @@ fn svg(
             escaped(name)
         );
     }
-    // What is measured along the sides of the picture, where these are axes of the model.
+    // Labels of the sides of the picture, if these are axes of the model.
     let names = match word {
         "x" => Some(["y", "z"]),
         "-y" => Some(["x", "z"]),

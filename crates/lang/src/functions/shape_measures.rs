@@ -1,5 +1,5 @@
-//! `area(hull)`, `volume(tank)`, `distance(P, hull)`: the functions of sets, asked of objects that have these numbers
-//! as members, and distances of points from points, curves and surfaces.
+//! `area(hull)`, `volume(tank)`, `distance(P, hull)`: functions of sets applied to objects that
+//! have these numbers as members, and distances of points from points, curves and surfaces.
 
 use crate::run::interpreter::Interpreter;
 use crate::source::fault_location::unplaced;
@@ -9,7 +9,7 @@ use moldloft_registry::{CallError, Given, Scalar, Value};
 use moldloft_relational::{distance_from_curve, distance_from_surface, separation};
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// What the function `name` of sets gives for shapes that are none; `None` where the call means something else.
+    /// The function `name` of sets for other shapes; `None` if the call has another meaning.
     pub fn shape_measure(
         &self,
         name: &str,

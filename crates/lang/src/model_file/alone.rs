@@ -1,4 +1,4 @@
-//! Model files that stand by themselves: run without a program around them, and converted for one that loads them.
+//! Independent model files: run without a program, and converted for a program that loads them.
 
 use crate::World;
 use crate::model_file::source::ModelFileSource;
@@ -14,7 +14,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_registry::Registry;
 use std::collections::HashSet;
 
-/// The program that a model file stands for where a program loads it.
+/// The program equivalent to a model file.
 ///
 /// # Errors
 /// That the file is not sound, with its first fault.
@@ -34,7 +34,7 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
     }
 }
 
-/// Makes the objects of a model file that stands by itself.
+/// Makes the objects of an independent model file.
 pub(super) fn run_alone(
     source: &ModelFileSource,
     world: &dyn World,

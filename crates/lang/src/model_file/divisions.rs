@@ -4,10 +4,10 @@ use moldloft_diag::Span;
 use moldloft_registry::Class;
 use moldloft_syntax::model_file::{EntryField as Written, FieldKind, NumberId};
 
-/// A part of a head: its name, its numbers and where they stand.
+/// A part of a head: its name, its numbers and their position.
 pub(super) type Part = (&'static str, Vec<NumberId>, Span);
 
-/// The divisions of an object of `class`, or what they should look like.
+/// The divisions of an object of `class`, or the expected form.
 pub(super) fn divisions(class: Class, fields: &[Written]) -> Result<Vec<Part>, &'static str> {
     let kinds: Vec<FieldKind> = fields.iter().map(|field| field.kind).collect();
     let span = |from: usize, to: usize| fields[from].span.to(fields[to].span);

@@ -36,7 +36,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             fields.iter().filter_map(number).collect()
         };
         let mut data = numbers(slash.map_or(&fields[..], |at| &fields[at + 1..]));
-        // Without a slash, colour and visibility may stand in front.
+        // Without a slash, colour and visibility may precede.
         if slash.is_none() && data.len() == 5 {
             data.drain(..2);
         }
@@ -132,7 +132,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             self.inputs.again(),
         );
         interpreter.current = at;
-        // Only what nests deep needs a stack of its own.
+        // Only deeply nested formulas need a stack of their own.
         let nests = spelled.bytes().filter(|b| b"([{^-!".contains(b)).count() > 8;
         let mut evaluate = || interpreter.operand(&module, expr);
         let value = if nests { crate::run::program::with_stack(evaluate) } else { evaluate() };

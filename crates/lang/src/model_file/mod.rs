@@ -1,7 +1,8 @@
 //! A model file as a producer of objects.
 //!
-//! Every object is a call of the row that its entity word names; the row's `columns` say which field of the line is
-//! which argument. Parents may stand below their children in the file: objects are declared so that they do not.
+//! Every object is a call of the row named by its entity word; the row's `columns` assign the
+//! fields of the line to arguments. Parents may follow their children in the file: objects are
+//! declared in order of dependency.
 
 mod alone;
 mod divisions;

@@ -26,7 +26,7 @@ pub(crate) fn bare(formula: &str) -> &str {
     inside.unwrap_or_else(|| formula.trim_start_matches('=')).trim()
 }
 
-/// The words of a formula that may be names, with where they begin; not what follows a point.
+/// The words of a formula that may be names, with their start; words after a point are left out.
 pub(crate) fn words(formula: &str) -> impl Iterator<Item = (usize, &str)> {
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut at = 0;

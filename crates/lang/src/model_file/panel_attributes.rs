@@ -1,12 +1,12 @@
-//! What model files have no column for: the size, spacing and tags of panels, as attributes.
+//! Size, spacing and tags of panels, which have no columns in model files, as attributes.
 //!
 //! `A:Size(0.5 0)`, `A:Spacing(cosine 1.2)`, `A:Tags(wetted keel)`; along u, then v, with `auto`
-//! where nothing is said. An attribute of these names that says something else is kept as it is.
+//! for defaults. An attribute of these names with other content is kept unchanged.
 
 use moldloft_registry::{Attributes, PanelAttributes, Value};
 use std::fmt::Write;
 
-/// The attributes of a model file's line that say what a head says of its panels.
+/// The attributes of a model file's line for the panels of a head.
 pub fn written(panels: &PanelAttributes) -> String {
     let mut out = String::new();
     if panels.size.iter().any(Option::is_some) {
@@ -24,7 +24,7 @@ pub fn written(panels: &PanelAttributes) -> String {
     out
 }
 
-/// Takes over what an attribute says of panels; false when it says nothing of them.
+/// Reads an attribute of panels into a head; false for other attributes.
 pub fn read(head: &mut Attributes, name: &str, text: &str) -> bool {
     let argument = match name {
         "Size" => "size",

@@ -1,4 +1,5 @@
-//! The objects of a model file, made in a run of the graph: arguments, numbers, what is missing and why.
+//! The objects of a model file, made in a run of the graph: arguments, numbers, and reasons of
+//! missing objects.
 
 use crate::model_file::names::is_real;
 use crate::model_file::names::system_name;
@@ -37,7 +38,7 @@ pub struct Producer<'a, 'g, T: Scalar> {
     /// By the place of the object in the file.
     pub outcomes: Vec<Option<Outcome>>,
     pub(super) roots: Vec<RootCause>,
-    /// How often a nearest name was looked for, which takes long in large models.
+    /// Number of searches for the nearest name, which are slow in large models.
     pub(super) suggestions: usize,
 }
 
@@ -435,7 +436,7 @@ impl RootCause {
             *first = first.clone().note(format!("not built for want of it: {shown}{more}"));
             return diagnostics;
         }
-        // The cause is only a warning, but what is built on it is missing.
+        // The cause is only a warning, but dependent objects are missing.
         let cause = first.clone();
         let wanted = cause.object.as_deref().unwrap_or_default();
         diagnostics.push(

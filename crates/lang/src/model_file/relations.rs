@@ -1,8 +1,9 @@
 //! Numbers of a program that its model file keeps as relations: parameters as `Variable`, variables as `Formula`,
 //! arguments as `=name` or `[expression]`.
 //!
-//! A relation is kept where its expression means the same in the file: it names parameters, variables that are
-//! assigned once, and objects of the main program. What a routine or a loop computes becomes a number.
+//! A relation is kept if its expression has the same meaning in the file: it names parameters,
+//! variables that are assigned once, and objects of the main program. Results of routines and loops
+//! become numbers.
 
 use crate::functions::files::predeclared;
 use crate::model_file::names::plain_name;
@@ -19,10 +20,10 @@ use moldloft_syntax::sdl::{AssignOp, ExprId, ExprKind, StmtId, StmtKind, Symbol,
 use std::cell::RefCell;
 use std::collections::HashSet;
 
-/// How many radians a degree has, as programs from model files spell it.
+/// Radians per degree, as spelled in programs converted from model files.
 pub(super) const RADIANS: &str = "0.017453292519943295";
 
-/// What a model file can say of a number.
+/// Representation of a number in a model file.
 pub(super) enum NumberForm {
     /// It is stated, or the same whatever the parameters are.
     Constant,
@@ -44,7 +45,7 @@ pub(super) struct Relations<'a> {
     module: &'a Module,
     evaluation: &'a Evaluation<f64>,
     reals: IndexMap<Symbol, RealLine>,
-    /// Where numbers were changed since the text was parsed.
+    /// Spans of numbers changed since the text was parsed.
     edited: Vec<Span>,
     /// Names that arguments mention, directly or through formulas.
     used: RefCell<HashSet<Symbol>>,
@@ -206,7 +207,7 @@ impl<'a> Relations<'a> {
         self.evaluation.env.origins.get(object.origin as usize)
     }
 
-    /// What the file can say of a number: that of an argument, or of an item of it.
+    /// Representation of an argument, or an item of it, in the file.
     pub fn number(
         &self,
         object: &Object<f64>,

@@ -9,7 +9,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_model::{Graph, Object};
 use moldloft_registry::{Registry, Role, Unit, Value};
 
-/// By how much an angle may differ that is written in degrees, relative.
+/// Tolerance of an angle written in degrees, relative.
 const ANGLE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The objects that the text makes otherwise or not at all, each with how; files are read as from `path`.

@@ -1,5 +1,5 @@
-//! A parsed model file as a producer of objects: the fields of each sorted by what they are for, the order in which they
-//! are built, and the run that builds them.
+//! A parsed model file as a producer of objects: the fields of each by purpose, the order of
+//! construction, and the run.
 
 use crate::model_file::divisions::{Part, divisions, is_pair};
 use crate::model_file::names::{degrees, is_layer, is_real, our_word, words};
@@ -44,19 +44,19 @@ pub struct ModelNumber {
     angle: bool,
 }
 
-/// The fields of an object, sorted by what they are for.
+/// The fields of an object, by purpose.
 pub struct Sorted {
-    /// The row of its entity; `None` when there is none that model files know.
+    /// The row of its entity; `None` if model files do not know it.
     pub row: Option<Arc<Row>>,
     /// Colour, visibility and divisions.
     pub head: Vec<Written>,
     /// `A:Name(value)`.
     pub attributes: Vec<Written>,
-    /// What stands in the column for a relabel, unless that is `*`.
+    /// Content of the relabel column, unless it is `*`.
     pub relabel: Option<Written>,
     /// Arguments, each with the number of its field in the row.
     pub slots: Vec<(usize, Written)>,
-    /// How many of the arguments have their columns.
+    /// Number of arguments with columns.
     pub(super) in_columns: usize,
     /// Arguments by name that the row does not know, or that are not one field.
     pub(super) unknown: Vec<Written>,
@@ -66,7 +66,7 @@ pub struct Sorted {
     pub(super) extra: Option<Written>,
 }
 
-/// What became of an object in a run.
+/// Result of an object in a run.
 #[derive(Clone, Copy)]
 pub enum Outcome {
     /// An object of the graph.
@@ -82,13 +82,13 @@ pub(super) struct RootCause {
     pub(super) diagnostics: Vec<Diagnostic>,
     /// The objects that could not be built for want of it.
     pub(super) blocked: Vec<String>,
-    /// For a root that is not an error by itself: where it was asked for first.
+    /// For a root that is not an error itself: its first use.
     pub(super) first_use: Option<(Span, String)>,
 }
 
 /// Why a field has no value.
 pub enum Trouble {
-    /// What is wrong with it.
+    /// Faulty.
     Wrong(Box<Diagnostic>),
     /// It refers to an object that is missing because of this root.
     Blocked {
@@ -105,7 +105,7 @@ pub fn wrong(diagnostic: Diagnostic) -> Trouble {
 }
 
 impl ModelFileSource {
-    /// Reads a text. It never fails: what is wrong is in the diagnostics.
+    /// Parses a text. It never fails: errors are in the diagnostics.
     pub fn parse(text: String, file: FileId) -> (Self, Vec<Diagnostic>) {
         let (model, mut diagnostics) = model_file::parse(text, file);
         let lines: Vec<Line> = model.objects().collect();
@@ -210,7 +210,7 @@ impl ModelFileSource {
         self.names.contains_key(name)
     }
 
-    /// Sorts the fields of an object by what they are for.
+    /// Sorts the fields of an object by purpose.
     pub fn sorted(&self, registry: &Registry, line: &Line) -> Sorted {
         let entity = self.model.slice(line.entity);
         let row = registry.get(our_word(entity));
@@ -257,7 +257,7 @@ impl ModelFileSource {
 
         let columns = row.columns.unwrap_or("");
         let mut columns: Vec<&str> = columns.split_ascii_whitespace().collect();
-        // A curve's or a surface's own, not what a relabel is made from.
+        // The relabel of a curve or surface itself, not the argument of a relabel object.
         let slot = row.field("relabel").filter(|_| row.class.dimension() > Some(0));
         let own_column = columns.first() == Some(&"relabel") && row.class.dimension() > Some(0);
         let first = data.first();
@@ -289,7 +289,7 @@ impl ModelFileSource {
         sorted
     }
 
-    /// An argument by its name goes before that of the column.
+    /// A named argument takes precedence over that of the column.
     fn sort_argument(&self, sorted: &mut Sorted, argument: Written) {
         let (Some(row), FieldKind::Argument { name, value }) = (&sorted.row, argument.kind) else {
             return;
@@ -323,8 +323,8 @@ impl ModelFileSource {
         let mut marks = vec![Mark::New; sorted.len()];
         let mut order = Vec::with_capacity(sorted.len());
         let mut cycles = Vec::new();
-        // The path from the object under way to what it is built on: each with its parents, and
-        // how many of them were visited.
+        // The path from the current object to its ancestors: each with its parents, and the number
+        // of those visited.
         let mut path: Vec<(usize, Vec<usize>, usize)> = Vec::new();
         for start in 0..sorted.len() {
             if marks[start] != Mark::New {
@@ -347,7 +347,7 @@ impl ModelFileSource {
                         path.push((parent, self.parents(&sorted[parent]), 0));
                     }
                     Mark::Open => {
-                        // Without the object at the end of the path none of the others is built.
+                        // No object of the cycle is built without the one at the end of the path.
                         let known = cycles.len() < MOST_CYCLES;
                         let from = path.iter().position(|(at, ..)| known && *at == parent);
                         let round = path[from.unwrap_or(path.len() - 1)..].iter();
@@ -388,8 +388,8 @@ impl ModelFileSource {
         }
     }
 
-    /// Where other objects mention this one, by object and place. Of an entity that nobody knows,
-    /// every word may be a name.
+    /// Mentions of this object in others, by object and position. Every word of an unknown entity
+    /// may be a name.
     pub fn mentions(&self, registry: &Registry, name: &str) -> Vec<(usize, Span)> {
         let mut found = Vec::new();
         for (at, line) in self.lines.iter().enumerate() {
@@ -433,7 +433,7 @@ impl ModelFileSource {
         self.names.get(name).map(|&at| &self.lines[at])
     }
 
-    /// How an object is drawn and divided; what is wrong with that is pushed.
+    /// Display attributes and divisions of an object; errors are pushed.
     pub(super) fn head(
         &self,
         sorted: &Sorted,
@@ -463,7 +463,7 @@ impl ModelFileSource {
         let fields = sorted.head.get(2..).unwrap_or(&[]);
         match divisions(class, fields) {
             Ok(divided) => parts.extend(divided),
-            // What comes after a fault in colour or visibility may only be out of step.
+            // Errors after one in colour or visibility may only be due to a missing column.
             Err(_) if !errors.is_empty() => {}
             Err(expected) => {
                 let ends = fields.first().zip(fields.last());
@@ -513,7 +513,7 @@ impl ModelFileSource {
                 if let ("Layer", Ok(layer)) = (name, value.trim().parse::<u8>()) {
                     head.layer = layer.into();
                 }
-                // What the head has by itself need not be kept as text.
+                // Attributes that the head represents are not kept as text.
                 if k == 0 && is_layer(text) || panel_attributes::read(&mut head, name, value) {
                     continue;
                 }
@@ -524,7 +524,7 @@ impl ModelFileSource {
         head
     }
 
-    /// Where the fault of an object lies.
+    /// Position of an object's fault.
     pub fn fault_span<T: Scalar>(&self, object: &Object<T>, fault: &CallError) -> Option<Span> {
         let line = self.lines.get(object.origin as usize)?;
         let whole = Some(line.entity.to(line.name));
@@ -533,7 +533,7 @@ impl ModelFileSource {
         self.place(&sorted, field, fault.item()).or(whole)
     }
 
-    /// Where an object is declared.
+    /// Position of an object's declaration.
     pub fn declared_at<T: Scalar>(&self, object: &Object<T>) -> Option<Span> {
         self.lines.get(object.origin as usize).map(|line| line.name)
     }
@@ -542,7 +542,7 @@ impl ModelFileSource {
         self.sorted(&Registry::new([Row::clone(row)]), line)
     }
 
-    /// Where an argument stands, or an item of it.
+    /// Position of an argument, or of an item of it.
     pub(super) fn place(&self, sorted: &Sorted, field: usize, item: Option<usize>) -> Option<Span> {
         let (_, written) = sorted.slots.iter().find(|(at, _)| *at == field)?;
         let item = item.and_then(|k| self.items(written)?.get(k));

@@ -20,10 +20,10 @@ use std::fmt::Write;
 /// The version of model files made from programs that do not come from one.
 const VERSION: &str = "1.44";
 
-/// What begins the comments that the program writes into a model file.
+/// Prefix of the program's comments in a model file.
 const OWN_REMARK: &str = "Rem Moldloft: ";
 
-/// Names listed in a remark; the rest is counted.
+/// Maximum number of names in a comment; others are counted.
 const LISTED: usize = 5;
 
 /// The entities whose columns are known from MultiSurf's own files or from readers of them.
@@ -56,11 +56,11 @@ const KNOWN_COLUMNS: [&str; 26] = [
     "ZContours",
 ];
 
-/// The text of a model file, and what it does not hold of the program.
+/// The text of a model file, and the parts of the program that it does not contain.
 pub struct ModelFileText {
     /// The text.
     pub text: String,
-    /// Numbers that no longer follow the parameters.
+    /// Numbers without their relation to parameters.
     pub remarks: Vec<Diagnostic>,
 }
 
@@ -68,7 +68,7 @@ pub struct ModelFileText {
 /// objects compared with those of the program.
 ///
 /// # Errors
-/// Which objects a model file cannot hold.
+/// Objects that a model file cannot represent.
 pub fn to_model_file(
     main: &Module,
     evaluation: &Evaluation<f64>,
@@ -99,7 +99,7 @@ fn tells_layer(attributes: &str) -> bool {
     attributes.match_indices("A:Layer(").any(|(at, _)| depth(&attributes[..at]) == 0)
 }
 
-/// A line of the file with what comes before it.
+/// A line of the file with the text before it.
 struct FileLine {
     before: String,
     name: String,
@@ -108,7 +108,7 @@ struct FileLine {
     real: bool,
 }
 
-/// Goes on with a text; one empty line is enough where what was between two is left out.
+/// Appends a text; of the empty lines around an omitted part one is kept.
 fn append(text: &mut String, mut before: &str) {
     while text.ends_with("\n\n") && before.starts_with('\n') {
         before = &before[1..];
@@ -129,19 +129,19 @@ struct ToModelFile<'a> {
     /// Objects whose relations cannot be kept.
     fixed: &'a HashSet<String>,
     legacy: bool,
-    /// True for what was a model file before.
+    /// True if the program was converted from a model file.
     returning: bool,
     version: String,
     head: String,
     chunks: Vec<FileLine>,
-    /// What stands before the next object.
+    /// Text before the next object.
     before: String,
     relabel: Option<String>,
     entity: Option<String>,
     /// The names in the order of the file that it was.
     order: Vec<String>,
     trailer: String,
-    /// Objects with numbers that no longer follow the parameters.
+    /// Objects with numbers that do not follow the parameters in the file.
     computed: Vec<String>,
     /// Statements that are not objects of the file.
     left_out: Vec<String>,
@@ -244,7 +244,7 @@ impl<'a> ToModelFile<'a> {
             let mut place = 0;
             let mut keyed: Vec<(usize, FileLine)> = Vec::with_capacity(self.chunks.len());
             for chunk in std::mem::take(&mut self.chunks) {
-                // What is new stays behind what it followed.
+                // New objects keep their position after their predecessor.
                 place = places.get(&*chunk.name).copied().unwrap_or(place);
                 keyed.push((place, chunk));
             }
@@ -280,7 +280,7 @@ impl<'a> ToModelFile<'a> {
         ModelFileText { text, remarks }
     }
 
-    /// What the file leaves out.
+    /// Message about omitted parts.
     fn left_out_message(&self) -> Option<String> {
         let mut parts = self.left_out.clone();
         let program = &self.module.program;
@@ -314,7 +314,7 @@ impl<'a> ToModelFile<'a> {
         )
     }
 
-    /// Comments about what in the file is not MultiSurf's.
+    /// Comments about objects that MultiSurf does not have.
     fn own_remarks(&self) -> String {
         let mut out = String::new();
         let graph = &self.evaluation.graph;
@@ -391,7 +391,7 @@ impl<'a> ToModelFile<'a> {
             let _ = writeln!(out, "Symmetry: {}", planes(&symmetry));
         }
         for line in lines.iter().filter(|line| !line.starts_with("MultiSurf ")) {
-            // The arguments stand, should they have been changed.
+            // The header's arguments take precedence, since they may have been changed.
             if line.starts_with("Units:") && !units.is_empty() {
                 let _ = writeln!(out, "Units: {units}");
             } else if line.strip_prefix("Symmetry:").is_some_and(|rest| letters(rest) != symmetry)
@@ -545,7 +545,8 @@ impl<'a> ToModelFile<'a> {
         computed: &mut bool,
     ) -> Option<String> {
         let field = &object.row.fields[at];
-        // Where no column of another program says what it is, numbers may be a point or a vector.
+        // If no column of another program determines the class, three numbers may be a point or a
+        // vector.
         let vector = match &object.args[at] {
             Value::Vector(v) if named && !is_number(field.class) => Some(v.to_array()),
             _ => None,
@@ -610,7 +611,7 @@ impl<'a> ToModelFile<'a> {
         out
     }
 
-    /// The argument as a column, or what it is when no column can hold that.
+    /// The argument as a column, or a description of its class if no column can represent it.
     fn value(
         &self,
         object: &Object<f64>,

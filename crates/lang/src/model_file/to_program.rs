@@ -1,5 +1,6 @@
-//! From a model file to a program: one statement an object, in the order of the file (parents first). What
-//! the language has no words for travels in comments that begin with `#ms2 `.
+//! Conversion of a model file to a program: one statement per object, in the order of the file
+//! (parents first). Content without an equivalent in the language is kept in comments that begin
+//! with `#ms2 `.
 
 use crate::model_file::names::{bare, identifier, is_real, system_name};
 use crate::model_file::relations::RADIANS;
@@ -13,7 +14,7 @@ use moldloft_syntax::model_file::{
 use moldloft_syntax::number;
 use std::fmt::Write;
 
-/// A line of a model file that is not an object of ours stands in a program as a comment.
+/// Prefix of a comment with a line of a model file that is not one of our objects.
 pub(crate) const VERBATIM: &str = "#ms2 ";
 
 /// The relabel of the object that follows.
@@ -22,7 +23,8 @@ pub(crate) const RELABEL: &str = "#ms2-relabel ";
 /// The entity word of the object that follows, where it is another than that of our kind.
 pub(crate) const ENTITY: &str = "#ms2-entity ";
 
-/// The names of the file's objects in its order, where parents stand below their children.
+/// Prefix of a comment with the names of the file's objects in their order, if parents follow their
+/// children.
 pub(crate) const ORDER: &str = "#ms2-order ";
 
 /// The most names in a line of the order.
@@ -37,15 +39,15 @@ pub fn to_program(
     ToProgram { source, registry, evaluation }.text()
 }
 
-/// True for what stands in the way of writing a model in the other form: an error that is not of an object
-/// that is there.
+/// True for a diagnostic that prevents conversion to the other form: an error that does not belong
+/// to an existing object.
 pub fn prevents_conversion(evaluation: &Evaluation<f64>, diagnostic: &Diagnostic) -> bool {
     let there = |name| evaluation.graph.find(name).is_some();
     let built = diagnostic.object.as_deref().is_some_and(there);
     diagnostic.is_error() && !built && diagnostic.id != "blocked"
 }
 
-/// The named arguments in which a head differs from what its class has by itself.
+/// Named arguments for the differences of a head from the default of its class.
 fn head_arguments(head: &Attributes, class: Class) -> Vec<String> {
     let usual = Attributes::of(class);
     let mut named = Vec::new();
@@ -85,7 +87,7 @@ fn head_arguments(head: &Attributes, class: Class) -> Vec<String> {
     named
 }
 
-/// What is said of panels besides their number.
+/// Named arguments of panels besides their number.
 fn panel_arguments(panels: &PanelAttributes) -> Vec<String> {
     let mut named = Vec::new();
     let pair = |name: &str, [a, b]: [String; 2]| {
@@ -134,7 +136,7 @@ impl ToProgram<'_> {
     fn text(&self) -> String {
         let model = self.source.model();
         let mut out = self.header();
-        // What stands before each object, and after the last: each piece with its place.
+        // Text before each object, and after the last: pieces with their positions.
         let mut before: Vec<Vec<(u32, String)>> = Vec::with_capacity(self.source.lines().len());
         let mut pending = Vec::new();
         for item in &model.items {
@@ -146,7 +148,7 @@ impl ToProgram<'_> {
                     pending.push((item.span.start, comment(model.slice(item.span))));
                 }
                 ItemKind::Object(_) => before.push(std::mem::take(&mut pending)),
-                // Reported as an error, which stands in the way of converting.
+                // Reported as an error, which prevents conversion.
                 ItemKind::Unknown => {}
             }
         }
@@ -196,7 +198,7 @@ impl ToProgram<'_> {
         let mut told_others = false;
         for line in &model.header {
             let (key, rest) = (model.slice(line.key), model.slice(line.rest));
-            // Where the way back would put them, the arguments tell enough.
+            // If the conversion back would give the same position, the arguments suffice.
             let reported = match key {
                 _ if told_others || line.key.start > first_other => false,
                 "Units" => rest == units && !rest.is_empty(),

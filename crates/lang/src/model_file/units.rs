@@ -1,6 +1,6 @@
 //! The units of a model: of length, mass, force and angle, each a word of one table.
 
-/// What a unit measures.
+/// Physical dimension of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhysicalDimension {
     /// In metres.

@@ -1,4 +1,4 @@
-//! Runs a program: whether an expression gives an array, by the types of what it is made of.
+//! Static detection of expressions that give arrays, by the types of their parts.
 //!
 //! `and` and `or` of numbers evaluate their right operand only if needed; beside an array they give a mask, whatever
 //! the number is. So it must be known without evaluating the operand.
@@ -12,7 +12,7 @@ use crate::value::variables;
 use moldloft_registry::{Class, Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, ExprKind, ItemType, NodeList, Subscript, Type};
 
-/// The number of indices of what an expression gives: 0 of a single value.
+/// Number of indices of an expression's value: 0 for a single value.
 type Rank = usize;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {

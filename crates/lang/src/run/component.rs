@@ -2,11 +2,10 @@
 //!
 //! `Component keel("keel.sdl", hull = myhull, span = 2);`
 //!
-//! The file runs as a program of its own: it sees none of the caller's names but those it is given,
-//! and these stand in for its own declarations of the same names. So a component can be opened by
-//! itself, with parents and parameters of its own, and inserted elsewhere on others. What its own
-//! parents alone were built on is not made then. Its objects are `keel.tip`, its parameters
-//! `keel.span`.
+//! The file runs as a program of its own, without the caller's names except the given ones, which
+//! replace its own declarations of the same names. So a component can be opened separately, with
+//! parents and parameters of its own, and inserted elsewhere on others. Objects that only its own
+//! parents depend on are then not made. Its objects are `keel.tip`, its parameters `keel.span`.
 
 use crate::run::interpreter::{Flow, Interpreter, silent};
 use crate::source::module::{Module, Name};
@@ -142,7 +141,7 @@ fn is_used(m: &Module, word: &str) -> bool {
     })
 }
 
-/// What may be given to a file with these declarations, in words.
+/// The possible arguments of a file with these declarations, as text.
 fn listed(own: &[String]) -> String {
     /// More names than this are not read.
     const MOST: usize = 12;

@@ -119,7 +119,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 }
 
-/// Where a declarator's name and dimensions end.
+/// End of a declarator's name and dimensions.
 fn span_end(m: &Module, item: &Declarator) -> u32 {
     let last = m.program[item.dims].last();
     // The bracket after the last dimension.

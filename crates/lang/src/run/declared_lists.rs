@@ -1,4 +1,4 @@
-//! Which declarators name lists.
+//! Declarators of lists.
 
 use crate::source::module::Module;
 use moldloft_syntax::sdl::{Declarator, ExprId, ListLength, NodeList, Type};

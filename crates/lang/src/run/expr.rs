@@ -59,7 +59,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
                 let first = self.operand(m, left)?;
-                // Numbers decide at once, but never what kind of value it is: a mask stays one.
+                // Numbers decide at once, but do not change the kind of the value: a mask stays a
+                // mask.
                 if let Value::Number(x) = first
                     && !self.gives_array(m, right)
                 {
@@ -120,7 +121,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Binary { op, left, right } => {
                 let levels = levels.checked_sub(1).filter(|_| ops::is_elementwise(op))?;
                 let (a, b) = (self.scalar(m, left, levels)?, self.scalar(m, right, levels)?);
-                // What is not finite is judged where it can be reported.
+                // Values that are not finite are judged where they can be reported.
                 ops::of_numbers(op, a, b).filter(|x| x.is_finite())
             }
             _ => None,
@@ -280,8 +281,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The full name of an object that an expression such as `fore[2].leg[3]` spells, when it
-    /// begins with something that stands for several objects.
+    /// The full object name that an expression such as `fore[2].leg[3]` spells, if it begins with
+    /// the name of a family.
     pub fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
         Ok(match m.program[id].kind {
             ExprKind::Paren(inner) => self.spelled(m, inner)?,
@@ -314,7 +315,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         })
     }
 
-    /// What a spelled name means: an object or all objects of a family.
+    /// The object or family of a spelled name.
     pub fn spelled_value(&self, text: &str) -> Option<Value<T>> {
         if let Some(key) = self.run.find(text) {
             return Some(Value::Object(key));
@@ -384,7 +385,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         let word = m.program.name(name).to_string();
-        // The extents of what was passed by reference are known without reading it.
+        // The extents of a variable passed by reference are known without reading it.
         if let Some(symbol) = m.program.as_name(base)
             && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
             && let Some(section) = place.section
@@ -539,7 +540,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let errors = self.error_count();
             let value = self.call_routine(m, routine, args, None, span)?;
             if value.is_none() && self.error_count() > errors {
-                // Why there is none was reported.
+                // The reason was reported.
                 return Err(silent());
             }
             return value.ok_or_else(|| {
@@ -632,7 +633,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let positional = given.positional.len();
         let (filled, _) = bind_arguments(row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;
-        // What is as quick to compute as to look up is not remembered.
+        // Values that are as fast to compute as to look up are not cached.
         let value = if let Some(nested) = self.nested_row(row, &filled, span) {
             nested
         } else if crate::functions::elementary::is_quick(row) {

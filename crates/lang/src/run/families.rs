@@ -1,7 +1,7 @@
 //! Runs a program: distributions of refined runs, whose points contain those of the coarse run.
 //!
-//! A law with a first step per index nests by itself when the step is halved with the intervals. Laws with exact cells
-//! do not: of them the coarse row is made, and its intervals are halved.
+//! A law with a first step per index nests if the step is halved with the intervals. Laws with
+//! exact cells do not: their coarse row is made, and its intervals are halved.
 
 use crate::run::interpreter::Interpreter;
 use moldloft_arrays::halved;

@@ -6,10 +6,10 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_syntax::sdl::{ExprId, ExprKind, Ident, StmtId, StmtKind, Symbol};
 use std::collections::{HashMap, HashSet};
 
-/// A declaration that stands after its use.
+/// A declaration that follows its use.
 pub(crate) struct Later {
     name: Ident,
-    /// The objects from the later one back to itself, when it depends on what uses it.
+    /// The cycle of objects, if the later one depends on its user.
     cycle: Option<Vec<Symbol>>,
 }
 

@@ -32,7 +32,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         names.contains(&symbol)
     }
 
-    /// Runs `work`, noting what it reads if that is asked.
+    /// Runs `work`, with a log of the objects it reads if `asked`.
     pub fn noting<R>(&mut self, asked: bool, work: impl FnOnce(&mut Self) -> R) -> R {
         self.reads.begin(asked);
         let result = work(self);
@@ -58,8 +58,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             && self.run.extent() == Extent::Whole
     }
 
-    /// Declares the object of `field f = ...;` or `set s = ...;`. What the expression read becomes its
-    /// parents.
+    /// Declares the object of `field f = ...;` or `set s = ...;`. The objects that the expression
+    /// reads become its parents.
     pub fn implicit_object(
         &mut self,
         m: &Module,

@@ -5,9 +5,9 @@
 pub struct InsertedFile {
     /// The word it begins with.
     pub name: &'static str,
-    /// What is written.
+    /// Syntax.
     pub signature: &'static str,
-    /// What it does; the first line is a summary.
+    /// Description; the first line is a summary.
     pub doc: &'static str,
     /// Its arguments, each with a line of help.
     pub arguments: &'static [(&'static str, &'static str)],
@@ -16,7 +16,7 @@ pub struct InsertedFile {
     pub(crate) content: Content,
 }
 
-/// What is in the file.
+/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Content {
     Component,

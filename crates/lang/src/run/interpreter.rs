@@ -41,14 +41,14 @@ pub(crate) const DEEPEST: u32 = 2_500;
 /// Calls of routines under way at a time.
 pub(super) const MOST_CALLS: usize = 12_000;
 
-/// The stack that a run needs: the deepest nesting times the largest frame, with room to spare.
+/// Stack of a run: maximum nesting times the largest frame, with a reserve.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) const STACK_BYTES: usize = 192 << 20;
 
 /// The id of a diagnostic that is not shown, because its cause was reported already.
 pub(crate) const SILENT: &str = "silent";
 
-/// What a run is given besides the program.
+/// Inputs of a run besides the program.
 pub struct Inputs<'a, T: Scalar> {
     /// Values of parameters that differ from the text's.
     pub overrides: &'a IndexMap<String, f64>,
@@ -56,16 +56,16 @@ pub struct Inputs<'a, T: Scalar> {
     pub seed: Seed<'a, T>,
     /// Objects with seeded literals, by name.
     pub seeded_objects: &'a HashSet<String>,
-    /// What the run may use; from outside it ends the run.
+    /// Limits of the run; the host can end it through them.
     pub budget: &'a Budget,
-    /// How the host wants the program run.
+    /// Settings by the host.
     pub settings: Settings,
 }
 
-/// How a program is run, besides its parameters.
+/// Settings of a run besides parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
-    /// How often the intervals of `refined` numbers are halved.
+    /// Number of halvings of `refined` intervals.
     pub refine: u32,
     /// True to apply operators one after the other, whole arrays at a time: the reference that
     /// fused passes are tested against.
@@ -84,7 +84,7 @@ impl<'a, T: Scalar> Inputs<'a, T> {
     }
 }
 
-/// How a statement ended.
+/// Result of a statement.
 pub(crate) enum Flow<T: Scalar> {
     Next,
     Break,
@@ -106,7 +106,7 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub turns: u64,
     /// The components under way, by module.
     pub components: Vec<usize>,
-    /// What was reported already: a statement that is executed often reports each fault once.
+    /// Reported faults: a repeated statement reports each fault once.
     reported: HashSet<(Cow<'static, str>, Span)>,
     /// Failed objects that were reported to the program when it read them.
     pub blocked: HashSet<Key>,
@@ -114,10 +114,10 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub reads: ReadLog,
     /// The names that statements of a module assign to, by module.
     pub assigned: HashMap<usize, HashSet<Symbol>>,
-    /// Names that are declared somewhere in the main file: for hints at what comes later.
+    /// Names declared anywhere in the main file, for hints about later declarations.
     pub(crate) current: usize,
     pub arrays: ArrayMachine<T>,
-    /// What a refined run has refined.
+    /// Refined numbers of a refined run.
     pub(crate) refined: RefinedNumbers<T>,
     /// Numbers of the whole model that were read last.
     pub(crate) measured: Option<(usize, String, Vec<(&'static str, Value<T>)>)>,
@@ -192,7 +192,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    /// Judges what the run has not executed; a run that was stopped is not judged.
+    /// Checks the statements that were not executed; not for a stopped run.
     pub fn judge(&mut self) {
         self.env.steps = self.usage.steps;
         if self.env.stopped || T::PARTS > 1 {
@@ -358,8 +358,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         true
     }
 
-    /// Runs the body of a routine one call deeper. Calls nest deeper than one stack holds, so now and then one goes
-    /// on a new stack.
+    /// Runs the body of a routine at one more level of calls. The stack does not suffice for the
+    /// maximum nesting, so some levels start a new one.
     pub fn deeper_call(
         &mut self,
         span: Span,
@@ -383,7 +383,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.on_enough_stack(span, body)
     }
 
-    /// Does what may nest deep where there is stack for it; `None` when there is no memory for more, which is
+    /// Runs deeply nested work with sufficient stack; `None` without memory for it, which is
     /// reported.
     pub fn on_enough_stack<R: Send>(
         &mut self,
@@ -470,7 +470,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.executed.note(self.current, id);
         let flow = self.statement_of(m, id, stmt.kind, stmt.span).unwrap_or_else(|diagnostic| {
             self.report(diagnostic.or_at(stmt.span));
-            // A library routine does not go on after an error: what follows would only be its echo.
+            // A library routine ends at an error, since further ones would be consequences.
             self.abandoned |= m.library;
             Flow::Next
         });
@@ -808,7 +808,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             self.call_routine(m, routine, args, None, m.program[expr].span)?;
             return Ok(if self.env.stopped { Flow::Stop } else { Flow::Next });
         }
-        // A call for its effect alone has none, but its errors are worth hearing.
+        // Such a call has no value, but its errors are reported.
         self.expr(m, expr)?;
         Ok(Flow::Next)
     }
@@ -831,12 +831,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .help("`moldloft doc --list` lists all kinds")
     }
 
-    /// How many errors there are so far.
+    /// Number of errors so far.
     pub fn error_count(&self) -> usize {
         self.usage.errors
     }
 
-    /// True while hints are worth a search.
+    /// True while searches for hints are worthwhile.
     pub fn hints(&self) -> bool {
         self.usage.errors < MOST_HINTS
     }

@@ -158,7 +158,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(Flow::Next)
     }
 
-    /// Walks through a multiple argument: the variable stands for each argument itself.
+    /// Loop over a multiple argument: the variable is an alias of each argument.
     fn foreach_passed(
         &mut self,
         m: &Module,

@@ -47,7 +47,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let name_id = m.names[name.symbol.0 as usize];
         let word = m.program.name(kind.symbol);
         let row = match &m.rows[kind.symbol.0 as usize] {
-            // A file says of itself what does not concern whoever inserts it.
+            // The header of a file does not concern a program that inserts it.
             Some(row) if row.role == Role::Header && !self.components.is_empty() => return Ok(()),
             Some(row) if row.kind => row,
             other => {
@@ -81,7 +81,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 (Ok(value), Some(ident)) => {
                     given.named.push((m.program.name(ident.symbol), value));
                 }
-                // Go on: the other arguments may have errors worth telling as well.
+                // Continue: the other arguments may have errors too.
                 (Err(diagnostic), _) => {
                     let shown = diagnostic.or_at(m.program[arg.value].span);
                     if let Some(earlier) = failed.replace(shown) {
@@ -200,7 +200,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok((Some(format!("{family}[{}]", labels.join(","))), Some((family, turn.id))))
     }
 
-    /// Lists an object under the names that stand for several.
+    /// Adds an object to its families.
     fn enter_families(&mut self, full: &str, key: Key) {
         if let Some((family, _)) = full.rsplit_once('[')
             && full.ends_with(']')
@@ -227,7 +227,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(())
     }
 
-    /// Makes `name` stand for a group of objects; the full name that theirs begin with.
+    /// Makes `name` a group of objects; returns the prefix of their names.
     pub fn instance_name(&mut self, m: &Module, name: Ident) -> Result<Arc<str>, Diagnostic> {
         let name_id = m.names[name.symbol.0 as usize];
         let (full, turn) = self.full_name(m, name)?;

@@ -1,12 +1,13 @@
-//! What statements and expressions consist of: the one walk of all that looks at a program without running it.
+//! Parts of statements and expressions, for all static analyses of a program.
 
 use crate::source::module::Module;
 use moldloft_syntax::sdl::{
     ChainItem, ExprId, ExprKind, ListLength, NodeList, StmtId, StmtKind, Subscript,
 };
 
-/// The expressions of a statement, and the statements in it, each in the order of the text. What is assigned to is an
-/// expression of an assignment; the elements of a block and the body of a loop are statements in it.
+/// The expressions of a statement, and the statements in it, each in the order of the text. The
+/// target of an assignment is one of its expressions; the elements of a block and the body of a
+/// loop are statements in it.
 #[derive(Default)]
 pub(super) struct StatementParts {
     pub values: Vec<ExprId>,
@@ -73,7 +74,7 @@ pub(super) fn of_statement(m: &Module, stmt: StmtId) -> StatementParts {
     StatementParts { values, inner }
 }
 
-/// The expressions that an expression consists of, in the order of the text, what is called among them.
+/// The direct subexpressions of an expression, in the order of the text, with the callee.
 pub(super) fn of_expression(m: &Module, expr: ExprId) -> Vec<ExprId> {
     match m.program[expr].kind {
         ExprKind::Paren(inner) | ExprKind::Magnitude(inner) => vec![inner],

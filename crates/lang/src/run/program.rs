@@ -19,7 +19,7 @@ use moldloft_registry::{CallError, Registry, Scalar, Value};
 use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
-/// What running a program needs.
+/// Context of a run.
 pub struct RunContext<'a> {
     /// The modules parsed up to now.
     pub modules: &'a mut Modules,
@@ -44,7 +44,7 @@ pub enum NotLiteral {
         /// The names that it reads.
         names: Vec<String>,
     },
-    /// Several objects are made by the statement it stands in.
+    /// The statement makes several objects.
     Shared {
         /// The place of the statement.
         span: Span,
@@ -53,7 +53,7 @@ pub enum NotLiteral {
     Default,
 }
 
-/// Where an argument of an object is in the main text, or could be.
+/// Position of an object's argument in the main text, or for its insertion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArgumentInText {
     /// The expression.
@@ -74,12 +74,12 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     })
 }
 
-/// The stack that a part of a run with deep calls needs: [`STACK_BYTES`] has room for large frames of native
-/// functions at all levels, this for a few.
+/// Stack of a part of a run with deep calls: [`STACK_BYTES`] covers large frames of native
+/// functions at all levels, this only a few.
 #[cfg(not(target_arch = "wasm32"))]
 const MORE_STACK: u32 = 64 << 20;
 
-/// Runs `f` on a stack of its own, which counts as memory; `None` when there is none for it.
+/// Runs `f` on a stack of its own, which counts as memory; `None` without memory for it.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn on_new_stack<R: Send>(budget: &Budget, f: impl FnOnce() -> R + Send) -> Option<R> {
     budget.grow(MORE_STACK.into()).ok()?;
@@ -107,7 +107,7 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
 }
 
 impl RunContext<'_> {
-    /// Runs module 0 and what it loads.
+    /// Runs module 0 and the modules that it loads.
     pub fn run<T: Scalar>(
         self,
         evaluation: &mut Evaluation<T>,
@@ -123,7 +123,7 @@ impl RunContext<'_> {
             diagnostics: found,
             converted: self.converted,
         };
-        // What is left to evaluate after the program is evaluated in the caller's thread pool.
+        // Evaluation that remains after the run uses the caller's thread pool.
         let (modules, sketch) = (self.modules, self.sketch);
         graph
             .apply(Extent::Whole, |run| {
@@ -141,14 +141,14 @@ impl RunContext<'_> {
             .1
     }
 
-    /// The value of an expression in the names that the last run left behind, with what is remarkable about it.
+    /// The value of an expression in the names of the last run, with its warnings.
     pub fn eval<T: Scalar>(
         self,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
         text: &str,
     ) -> Result<(Value<T>, Vec<Diagnostic>), Vec<Diagnostic>> {
-        // One place for all expressions: a long session asks for many.
+        // One name for all expressions, since a long session has many.
         const NAME: &str = "expression";
         let known = self.sources.find(NAME).filter(|&file| self.sources.ids().next() != Some(file));
         let file = match known {
@@ -204,7 +204,7 @@ impl RunContext<'_> {
     }
 }
 
-/// Where in the text the fault of an object lies.
+/// Position of an object's fault in the text.
 pub fn fault_span<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
@@ -219,7 +219,7 @@ pub fn fault_span<T: Scalar>(
     Some(fault_location::diagnostic(m, args, &object.row, unnamed, fault, stmt.span).span())
 }
 
-/// Where in the text an object is declared.
+/// Position of an object's declaration in the text.
 pub fn declared_at<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
@@ -270,8 +270,8 @@ pub fn literal<T: Scalar>(
     Ok((origin.module as usize, literal))
 }
 
-/// Where an argument of an object is in the main text, or could be; nothing for objects that share their
-/// statement with others.
+/// Position of an object's argument in the main text, or for its insertion; `None` for objects that
+/// share their statement with others.
 pub fn argument_place<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
@@ -289,7 +289,7 @@ pub fn argument_place<T: Scalar>(
     let unnamed = args.iter().filter(|a| a.name.is_none()).count();
     let row = &object.row;
     if row.fields.get(field)?.variadic && unnamed > field + 1 {
-        // A list that was given as so many arguments.
+        // A list given as separate arguments.
         let unnamed: Vec<Span> =
             args.iter().zip(&spans).filter(|(a, _)| a.name.is_none()).map(|(_, s)| *s).collect();
         let (first, last) = (unnamed.get(field)?, unnamed.last()?);
@@ -309,8 +309,8 @@ fn computed(m: &crate::source::module::Module, expr: ExprId) -> NotLiteral {
     NotLiteral::Expression { span: m.program[expr].span, names }
 }
 
-/// Lets an expression find the objects that a model file made, by their names or by the
-/// identifiers that stand for them.
+/// Makes the objects of a model file available to an expression, by their names or the equivalent
+/// identifiers.
 fn bind_objects<T: Scalar>(
     modules: &Modules,
     expression: &Module,

@@ -1,4 +1,5 @@
-//! Which objects an expression reads: they become the parents of the object that it defines.
+//! Log of the objects that an expression reads: they become the parents of the object that it
+//! defines.
 
 use moldloft_num::trace::Key;
 
@@ -10,7 +11,7 @@ pub(crate) struct ReadLog {
 }
 
 impl ReadLog {
-    /// Begins a new log, if that is asked.
+    /// Begins a new log if `asked`.
     pub fn begin(&mut self, asked: bool) {
         if asked {
             self.keys.clear();

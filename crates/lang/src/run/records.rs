@@ -1,4 +1,4 @@
-//! Runs a program: records, lists of values of one type, and what stands inside of them.
+//! Execution of records, lists of values of one type, and their parts.
 
 use crate::run::declared_lists::declared_list;
 use crate::run::interpreter::{Interpreter, silent};
@@ -35,7 +35,7 @@ fn members(of: &Module, at: RecordAt) -> Vec<DeclaredMember> {
     all
 }
 
-/// A given member of a new record: its place, its value and where that stands.
+/// A given member of a new record: its index, value and position.
 type GivenMember<T> = (usize, Value<T>, Span);
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
@@ -57,7 +57,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// Where the record is declared that a word of a type names.
+    /// The declaration of the record that a type names.
     pub(super) fn record_type(&self, m: &Module, ty: Type) -> Option<RecordAt> {
         let (Type::Other(symbol) | Type::List(ItemType::Other(symbol))) = ty else { return None };
         self.env.scope.records.get(&m.names[symbol.0 as usize]).copied()
@@ -72,10 +72,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The value, if it is the record, or the list of records, that a type of a module asks for.
+    /// The value, if it is the record, or list of records, of a type.
     ///
     /// # Errors
-    /// For another value where a record is asked.
+    /// For another value than the record.
     pub(super) fn record_checked(
         &self,
         m: &Module,
@@ -107,7 +107,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(value)
     }
 
-    /// The value of an expression where a list is asked: braces hold its items, whatever these are.
+    /// The value of an expression in a list context: braces contain its items, of any class.
     pub(super) fn list_operand(
         &mut self,
         m: &Module,
@@ -329,7 +329,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(values)
     }
 
-    /// The place of a member of a record; `None` of a place that is none.
+    /// The place of a member of a record; `None` for other places.
     pub(super) fn member_place(
         &self,
         m: &Module,
@@ -360,7 +360,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The type of what a path leads to, and whether its dimensions were declared.
+    /// The type of the value at a path, and whether its dimensions were declared.
     fn type_inside(&self, place: &Place) -> Option<(Type, bool)> {
         let Binding::Variable { ty, value, fixed, .. } = &self.env.scope.root(place)?.what else {
             return None;
@@ -395,7 +395,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Some((ty, fixed))
     }
 
-    /// Stores a value into what stands inside of a list or a record.
+    /// Stores a value into a part of a list or record.
     pub(super) fn store_inside(&mut self, place: Place, value: Value<T>) -> Result<(), Diagnostic> {
         let text = self.modules.text(place.name).clone();
         let (ty, fixed) = self.type_inside(&place).ok_or_else(silent)?;

@@ -1,8 +1,8 @@
-//! What refined runs know of the coarse one.
+//! Relation of a refined run to the coarse one.
 
 use std::collections::HashMap;
 
-/// The numbers that `refined` and `refined_step` gave, by their bits, and what they are in the coarse run.
+/// Results of `refined` and `refined_step`, by their bits, with their values in the coarse run.
 pub(crate) struct RefinedNumbers<T> {
     pub counts: HashMap<u64, f64>,
     pub steps: HashMap<u64, T>,

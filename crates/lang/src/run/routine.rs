@@ -11,7 +11,7 @@ use moldloft_syntax::sdl::{Arg, ExprId, Formal, ItemType, NodeList, Type};
 use std::sync::Arc;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// Calls a routine; `instance` goes before the names of the objects that it declares.
+    /// Calls a routine; `instance` is the prefix of the objects that it declares.
     pub fn call_routine(
         &mut self,
         m: &Module,
@@ -136,7 +136,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The arguments that a name stands for, when it is a multiple argument.
+    /// The arguments behind a name, if it is a multiple argument.
     pub fn multiple(&self, m: &Module, expr: ExprId) -> Option<Vec<Passed<T>>> {
         let symbol = m.program.as_name(expr)?;
         match &self.env.scope.lookup(m.names[symbol.0 as usize])?.what {
@@ -298,7 +298,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .note_at(formal.ty.1, "requested here"))
     }
 
-    /// What an argument that is passed by value stands for.
+    /// Binding of an argument that is passed by value.
     fn passed_by_value(
         &mut self,
         m: &Module,

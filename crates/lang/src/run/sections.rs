@@ -12,7 +12,7 @@ use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, ExprKind, NodeList, Subscript};
 use smallvec::SmallVec;
 
-/// What subscripts mean.
+/// Meaning of subscripts.
 enum Subscripted {
     Section(ArraySection),
     Chosen(Chosen),
@@ -32,7 +32,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             return Err(self.no_such_object(&text));
         }
-        // A part of what was passed by reference is read where it stands.
+        // A part of a variable passed by reference is read without a copy of the whole.
         if let Some(symbol) = m.program.as_name(base)
             && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
             && (place.section.is_some() || !place.path.is_empty())
@@ -167,7 +167,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The subscripts as positions, checked against the extents of what stands before them; `shape` describes that
+    /// The subscripts as positions, checked against the extents of their base; `shape` describes it
     /// in errors.
     fn section(
         &mut self,
@@ -278,7 +278,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             Subscript::Range { from, to, step } => {
                 let step = bound(self, step, 1.0)?.0;
-                // A range that goes down begins at the last element.
+                // A descending range begins at the last element.
                 let ends = [1.0, extent as f64];
                 let ends = if step < 0.0 { [ends[1], ends[0]] } else { ends };
                 let from = bound(self, from, ends[0])?;
@@ -309,8 +309,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The variable, section and component that an assignment's target names, and the elements of it that masks or
-    /// index arrays choose.
+    /// The variable, section and component of an assignment's target, and its elements selected by
+    /// masks or index arrays.
     pub fn target(
         &mut self,
         m: &Module,
@@ -381,7 +381,7 @@ fn has_value<T: Scalar>(m: &Module, id: ExprId, value: Value<T>) -> Result<Value
     Err(Diagnostic::error("no-value", format!("`{text}` has no value yet")).at(span))
 }
 
-/// What is said of an assignment to an object or parameter.
+/// Error for an assignment to an object or parameter.
 fn not_a_variable(m: &Module, base: ExprId, declared: Span) -> Diagnostic {
     let text = m.program.slice(m.program[base].span);
     Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))

@@ -1,10 +1,10 @@
-//! Faults of a program that running it does not meet: in routines that nothing calls and in branches that are not
-//! taken; and what is worth a remark in any program: names that are declared again, statements that are never reached.
+//! Faults that a run does not meet, in routines that are not called and branches that are not
+//! taken; and warnings for any program: repeated declarations, statements that are never reached.
 //!
-//! The pass follows a run. It judges only statements that the run has not executed, since those that were executed
-//! have reported their faults with their values at hand. Names are known when they are declared anywhere at file
-//! level of what was loaded, or anywhere in the routine: the pass never takes a program for wrong whose run would be
-//! right.
+//! The pass follows a run. It checks only statements that the run has not executed, since executed
+//! ones have reported their faults with actual values. Names are known if they are declared
+//! anywhere at file level in the loaded files, or anywhere in the routine: the pass reports no
+//! error in a program that would run correctly.
 
 use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
@@ -59,7 +59,7 @@ pub(crate) fn has_gaps(m: &Module) -> bool {
         || (0..m.program.expr_count() as u32).any(unread)
 }
 
-/// What a declared name holds.
+/// Class of a declared name.
 #[derive(Clone)]
 struct Declared {
     span: Span,
@@ -69,7 +69,7 @@ struct Declared {
     dims: Option<Vec<f64>>,
 }
 
-/// What the pass knows.
+/// State of the pass.
 pub(crate) struct Semantics<'a> {
     pub modules: &'a Modules,
     pub registry: &'a Registry,
@@ -84,7 +84,7 @@ pub(crate) struct Semantics<'a> {
     found: Vec<Diagnostic>,
 }
 
-/// Where a statement stands.
+/// Scope of a statement.
 struct JudgedScope<'a> {
     m: &'a Module,
     module: usize,
@@ -107,7 +107,7 @@ impl<'a> Semantics<'a> {
         Self { modules, registry, run, routines, records, executed, open, globals, found }
     }
 
-    /// What is to be said of the program.
+    /// Diagnostics of the program.
     pub fn judged(mut self) -> Vec<Diagnostic> {
         let modules = self.modules;
         let run = self.run.clone();
@@ -170,7 +170,7 @@ impl<'a> Semantics<'a> {
         let sound = self.found[before..].iter().all(|d| d.severity == Severity::Note);
         self.declared_again(m, routine.body);
         self.shadows(m, of_file, routine.body);
-        // What has faults may be unread because of them.
+        // Variables of a faulty routine may be unread because of its faults.
         if sound {
             self.found.extend(unused::unread(m, routine));
         }
@@ -186,7 +186,7 @@ impl<'a> Semantics<'a> {
                 .help("add one at the end of the function"),
             );
         }
-        // A subroutine is called as a statement, a function stands in expressions: they are distinguished.
+        // A subroutine is called as a statement, a function in expressions: they are distinguished.
         let known = self.registry.get(word).is_some_and(|row| !row.kind);
         if routine.result.is_none() {
             return;
@@ -396,7 +396,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    /// The arguments of a function of the registry: how many, and their names.
+    /// Checks the number and names of arguments of a function of the registry.
     fn row_arguments(&mut self, m: &Module, row: &Row, args: NodeList<Arg>, span: Span) {
         let given = &m.program[args];
         let positional = given.iter().filter(|arg| arg.name.is_none()).count();
@@ -442,7 +442,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    /// The arguments of a routine of a program: how many, and their names.
+    /// Checks the number and names of arguments of a program's routine.
     fn arity(&mut self, m: &Module, routine: RoutineAt, args: NodeList<Arg>, span: Span) {
         let callee = self.modules.get(routine.module);
         let routine = callee.program[routine.routine];
@@ -548,7 +548,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    /// That a variable of a type takes what an expression is, as far as the text says it.
+    /// Checks, as far as types are known, that an expression fits a variable.
     fn fits(
         &mut self,
         place: &JudgedScope<'_>,
@@ -620,8 +620,8 @@ impl<'a> Semantics<'a> {
         })
     }
 
-    /// The dimensions of an array that an expression names, where numbers declare them, or spells in braces where a
-    /// row of `ty` is asked.
+    /// The dimensions of an array named by an expression, if declared by numbers, or spelled in
+    /// braces for a row of `ty`.
     fn dims(&self, place: &JudgedScope<'_>, id: ExprId, ty: Option<Type>) -> Option<Vec<f64>> {
         let m = place.m;
         let bare = m.program.bare(id);
@@ -737,7 +737,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    /// A variable PI that is none.
+    /// A variable PI with another value.
     fn pi(&mut self, m: &Module, name: Ident, value: Option<ExprId>) {
         if m.program.name(name.symbol) != "PI" {
             return;
@@ -755,7 +755,7 @@ impl<'a> Semantics<'a> {
     }
 }
 
-/// The variables that routines of a file may read; those of loops at file level are none.
+/// The variables that routines of a file may read; those of loops at file level are excluded.
 fn variables_of_file(m: &Module) -> HashSet<Symbol> {
     let mut names = HashSet::new();
     for &stmt in &m.program[m.program.body()] {
@@ -850,7 +850,7 @@ fn signature(row: &Row) -> String {
     format!("{}({})", row.name, fields.join(", "))
 }
 
-/// True when what stands behind the statement is never reached.
+/// True if the statements after it are never reached.
 fn leaves(m: &Module, stmt: StmtId) -> bool {
     match m.program[stmt].kind {
         StmtKind::Return(_) | StmtKind::Break | StmtKind::Continue => true,

@@ -23,7 +23,7 @@ use moldloft_syntax::sdl::{Arg, Ident, NodeList, StmtId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Where a sketch is declared.
+/// Position of a sketch's declaration.
 #[derive(Clone, Copy)]
 pub(crate) struct Site {
     pub origin: u32,
@@ -34,7 +34,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// `load "dam.skt"`: once, at file level.
     pub fn load_sketch(&mut self, path: &str, id: StmtId, span: Span) -> Result<(), Diagnostic> {
         let file = self.modules.load_sketch(self.current, path, span, &mut self.loader)?;
-        // The parser has reported that it stands in a loop or subroutine.
+        // The parser has reported it inside a loop or subroutine.
         if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Ok(());
         }
@@ -85,7 +85,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn sketch_origin(&mut self, id: StmtId) -> u32 {
         let origin = self.env.origins.len() as u32;
-        // Several objects are made by the statement, so none of them has a literal in it.
+        // The statement makes several objects, so no literal belongs to one of them.
         self.env.origins.push(DeclarationOrigin {
             module: self.current as u32,
             stmt: id,
@@ -160,8 +160,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(changed.then_some(value))
     }
 
-    /// `Sketch low("dam.skt", CREST = w);`: a sketch under a name of its own, with values that are no
-    /// parameters but depend on what the program says.
+    /// `Sketch low("dam.skt", CREST = w);`: a named sketch with values that are not parameters but
+    /// results of the program.
     pub fn sketch_object(
         &mut self,
         m: &Module,
@@ -525,11 +525,11 @@ fn face_arguments<T: Scalar>(body: &SketchSolid<T>, mesh: &Mesh<T>, key: Key) ->
     vec![Value::Object(key), sides, rounds]
 }
 
-/// What is being declared, and under which names.
+/// Current declaration: the object and its names.
 struct SketchDeclarations<'a, T: Scalar> {
     prefix: &'a str,
     site: Site,
-    /// Whether it is shown: a tool that another body is made with is not.
+    /// True if it is visible; a tool of another body is not.
     shown: bool,
     members: Vec<(String, Value<T>)>,
     points: BTreeMap<PointId, Key>,
@@ -579,7 +579,7 @@ fn curve_arguments<T: Scalar>(
     ("CubicChain", vec![Value::list(points)])
 }
 
-/// What is wrong with a layout; redundant dimensions are no fault.
+/// Description of a layout's fault; `None` for redundant dimensions.
 fn fault_text(fault: &DimensionFault) -> Option<String> {
     Some(match fault {
         DimensionFault::Redundant { .. } => return None,

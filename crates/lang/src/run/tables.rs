@@ -8,8 +8,8 @@ use moldloft_num::Vec3;
 use moldloft_registry::{ArrayShape, Row, Scalar, Value, Vectors};
 use std::sync::Arc;
 
-/// Reads the file that the argument `file` names into `points`, and into `rows` where the file says how many it
-/// has; nothing where there is no file, or points are given.
+/// Reads the file of the argument `file` into `points`, and its number of rows into `rows` if
+/// stated; nothing without a file, or with given points.
 ///
 /// # Errors
 /// A file that cannot be read, with the field that names it; a file and points at once.

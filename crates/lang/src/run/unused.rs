@@ -1,4 +1,5 @@
-//! What a program has and does not use: variables of routines that are never read, routines that nothing calls.
+//! Unused parts of a program: variables of routines that are never read, routines that are never
+//! called.
 
 use crate::run::parts::{self, StatementParts};
 use crate::source::module::{Module, Name};
@@ -38,7 +39,7 @@ impl Uses {
         values.into_iter().for_each(|expr| self.expression(m, expr));
     }
 
-    /// What is assigned to is not read; its subscripts are.
+    /// The target of an assignment is not read; its subscripts are.
     fn target(&mut self, m: &Module, target: ExprId, values: &mut Vec<ExprId>) {
         let mut at = target;
         loop {
@@ -97,7 +98,7 @@ pub(super) fn mentioned(m: &Module) -> HashSet<Name> {
     uses.read.iter().map(|symbol| m.names[symbol.0 as usize]).collect()
 }
 
-/// True when a file does something by itself; files that only define are there to be loaded.
+/// True if a file has statements other than definitions; other files are libraries.
 pub(super) fn does_something(m: &Module) -> bool {
     m.program[m.program.body()].iter().any(|&stmt| {
         !matches!(

@@ -1,9 +1,9 @@
-//! What a run has used, and what it says when that is too much.
+//! Use of the budget by a run, and the messages when it is exceeded.
 
 use moldloft_budget::Spent;
 use moldloft_diag::Diagnostic;
 
-/// So many steps of code take the time of one that the interpreter does.
+/// Number of compiled steps that take the time of one interpreted step.
 pub(crate) const STEPS_OF_CODE: u64 = 16;
 
 /// Counts of a run, compared with its limits.
@@ -13,7 +13,7 @@ pub(crate) struct Usage {
     pub steps: u64,
     /// Those of them that code did, where they count for less.
     pub quick: u64,
-    /// How deep statements, expressions and calls nest.
+    /// Nesting depth of statements, expressions and calls.
     pub depth: u32,
     /// Bytes that were printed.
     pub printed: usize,

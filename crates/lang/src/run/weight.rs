@@ -78,7 +78,7 @@ impl<T: Real> Build<T> for Weight<T> {
         let unsound = || {
             CallError::new("no-body", "the shape has places that are not finite").in_field(Self::AT)
         };
-        // The size of the shape, none of a point, and its centre.
+        // Size of the shape (`None` for a point), and its centre.
         let (size, centre) = match &self.at {
             Value::Point(p) => (None, p.xyz),
             Value::Vector(p) => (None, *p),

@@ -1,8 +1,8 @@
 //! Numbers of the whole model in its own program: `hydrostatics.volume`, `mesh.area`.
 //!
-//! They are those of the surfaces and bodies that are shown and declared so far; reading one evaluates these. Which
-//! way the surfaces face follows from the panels, which the run with plain numbers makes; a run with derivatives
-//! takes it over from there.
+//! They are those of the visible surfaces and bodies declared so far; reading one evaluates these.
+//! The orientation of the surfaces follows from the panels of the run with plain numbers; a run
+//! with derivatives uses the same.
 
 use crate::model_file::header;
 use crate::run::interpreter::Interpreter;
@@ -32,7 +32,7 @@ pub fn named<T: Real>(h: &Hydrostatics<T>) -> Vec<(&'static str, Value<T>)> {
     all
 }
 
-/// What the panels of a whole model measure.
+/// Measures of the panels of a whole model.
 pub fn mesh_numbers<T: Real>(mesh: &Mesh<T>) -> Vec<(&'static str, Value<T>)> {
     let measures = measure(mesh);
     vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]

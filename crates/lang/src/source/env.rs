@@ -1,4 +1,4 @@
-//! What a run leaves behind: the names, parameters, solve sets and printed lines that expressions refer to afterwards.
+//! Results of a run: the names, parameters, solve sets and printed lines for later expressions.
 
 use crate::functions::files::RunFiles;
 use crate::source::scope::Scope;
@@ -27,11 +27,11 @@ pub struct Param {
     pub range: Option<(f64, f64)>,
     /// True when it takes whole numbers only.
     pub is_int: bool,
-    /// Where it is declared.
+    /// Position of the declaration.
     pub span: Span,
 }
 
-/// Where an object was declared.
+/// Position of an object's declaration.
 #[derive(Clone, Copy, Debug)]
 pub struct DeclarationOrigin {
     /// The module, by its number.
@@ -42,7 +42,7 @@ pub struct DeclarationOrigin {
     pub repeated: bool,
 }
 
-/// A graph and what the run that made it left behind.
+/// A graph and the environment of the run that made it.
 pub struct Evaluation<T: Scalar> {
     /// The objects.
     pub graph: Graph<T>,
@@ -56,7 +56,7 @@ impl<T: Scalar> Default for Evaluation<T> {
     }
 }
 
-/// How the search for a solution ended.
+/// Result of the search for a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolveStatus {
     /// All conditions hold.
@@ -65,7 +65,7 @@ pub enum SolveStatus {
     Singular,
     /// No step makes the conditions smaller.
     Stuck,
-    /// A solution would lie outside a range.
+    /// The solution would be outside a range.
     OutOfRange,
     /// The steps did not suffice.
     TooManySteps,
@@ -107,18 +107,18 @@ pub struct Solve<T> {
     pub name: Arc<str>,
     /// The place of its declaration.
     pub span: Span,
-    /// What is found.
+    /// Unknowns.
     pub unknowns: Vec<SolveUnknown<T>>,
-    /// What becomes zero.
+    /// Conditions, zero at the solution.
     pub conditions: Vec<T>,
     /// Maximum number of steps.
     pub steps: usize,
 }
 
-/// All that a run leaves behind: what expressions may refer to afterwards.
+/// Results of a run for later expressions.
 #[derive(Debug)]
 pub struct Environment<T: Scalar> {
-    /// What names mean at the end of the run.
+    /// Bindings at the end of the run.
     pub scope: Scope<T>,
     /// The design parameters, in the order of their declaration.
     pub params: Vec<Param>,
@@ -136,7 +136,7 @@ pub struct Environment<T: Scalar> {
     pub solved: IndexMap<String, (usize, SolveStatus)>,
     /// The lines printed.
     pub printed: Vec<String>,
-    /// Files that were opened, and what was written.
+    /// Files opened and written.
     pub files: RunFiles,
     /// Loaded sketches by the name that their parts begin with.
     pub sketches: Vec<String>,

@@ -52,7 +52,7 @@ fn span(
         }
         Argument::Field(field) => {
             let field = field.position();
-            // An item of a list that was given as so many arguments is an argument of its own.
+            // An item of a list given as separate arguments is an argument of its own.
             let spread = row.fields.get(field)?.variadic && positional > field + 1;
             let at = field + place.item.filter(|_| spread).unwrap_or(0);
             if let Some(arg) = args.iter().filter(|a| a.name.is_none()).nth(at).filter(|_| spread) {

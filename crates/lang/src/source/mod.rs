@@ -1,4 +1,4 @@
-//! What a run reads: files by the host's leave, libraries, parsed modules, sketches, and what names mean.
+//! Input of a run: files from the host, libraries, parsed modules, sketches, and scopes of names.
 
 pub mod env;
 pub mod fault_location;

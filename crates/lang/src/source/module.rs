@@ -32,7 +32,7 @@ pub struct Module {
     pub names: Vec<Name>,
     /// The registry's row of each symbol.
     pub rows: Vec<Option<Arc<Row>>>,
-    /// What is wrong with the text of a loaded file; reported whenever it is run.
+    /// Errors in the text of a loaded file; reported in each run.
     pub faults: Vec<Diagnostic>,
     /// True for a library that comes with the program.
     pub library: bool,
@@ -125,7 +125,7 @@ impl Modules {
         }
     }
 
-    /// Takes in an expression for a moment; it goes with [`Self::remove_expression`].
+    /// Adds an expression temporarily; removed by [`Self::remove_expression`].
     pub fn add_expression(&mut self, program: Program, registry: &Registry) -> usize {
         self.add("", program, registry, None)
     }
@@ -256,7 +256,7 @@ impl Modules {
     }
 }
 
-/// What loading a file needs.
+/// Context for loading a file.
 pub struct Loader<'a> {
     /// The files that may be read.
     pub world: &'a dyn World,

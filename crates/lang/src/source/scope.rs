@@ -1,4 +1,4 @@
-//! What names mean at a place of a run.
+//! Bindings of names during a run.
 
 use crate::source::module::{Name, RoutineAt};
 use crate::value::initialised::Known;
@@ -10,7 +10,7 @@ use moldloft_syntax::sdl::{StmtId, Type};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// What a name means.
+/// Binding of a name.
 #[derive(Clone, Debug)]
 pub enum Binding<T: Scalar> {
     /// A variable of a type; `fixed` when its dimensions were declared.
@@ -47,12 +47,12 @@ pub enum Binding<T: Scalar> {
     Routine(RoutineAt),
     /// A function of the registry that was passed as an argument.
     Function(Arc<Row>),
-    /// Its declaration failed and was reported; what uses it stays silent.
+    /// Its declaration failed and was reported; its uses are not reported.
     Poisoned,
 }
 
 impl<T: Scalar> Binding<T> {
-    /// A variable whose dimensions follow what is assigned.
+    /// A variable whose dimensions are those of the assigned value.
     pub fn variable(ty: Type, value: Value<T>) -> Self {
         Binding::Variable { ty, value, fixed: false, known: Known::default() }
     }
@@ -65,7 +65,7 @@ pub struct Multiple<T: Scalar> {
     pub ty: Type,
     /// The arguments, in order.
     pub items: Vec<Passed<T>>,
-    /// How many were read by `next`.
+    /// Number of arguments read by `next`.
     pub read: usize,
 }
 
@@ -98,14 +98,14 @@ pub struct CallFrame<T: Scalar> {
     pub prefix: Arc<str>,
     /// The loops under way, outermost first.
     pub loops: Vec<LoopIteration>,
-    /// The call that the frame belongs to, and the module it stands in.
+    /// The call of the frame, and the module that contains it.
     pub called: Option<(Span, u32)>,
 }
 
 /// A turn of a loop under way.
 #[derive(Clone, Debug)]
 pub struct LoopIteration {
-    /// The loop variable's value as it stands in names; `None` in a `while`.
+    /// The loop variable's value as used in names; `None` in a `while`.
     pub label: Option<f64>,
     /// Unique among the turns of a run.
     pub id: u64,
@@ -123,7 +123,7 @@ impl<T: Scalar> CallFrame<T> {
     }
 }
 
-/// Where a type of records is declared.
+/// Declaration of a record type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordAt {
     /// The module.
@@ -135,7 +135,7 @@ pub struct RecordAt {
 /// All that a file has of its own while it runs: a component runs in another scope than its user.
 #[derive(Debug)]
 pub struct Scope<T: Scalar> {
-    /// What names mean at file level, by their numbers.
+    /// Bindings at file level, by number of the name.
     pub globals: Vec<Option<ScopedBinding<T>>>,
     /// Subroutines and functions.
     pub routines: HashMap<Name, RoutineAt>,
@@ -158,8 +158,8 @@ impl<T: Scalar> Default for Scope<T> {
 }
 
 impl<T: Scalar> Scope<T> {
-    /// The scope of a file of which nothing was run yet: `prefix` goes before the names of its objects, and
-    /// `names` are known.
+    /// The scope of a file before its run: `prefix` is the prefix of its objects, and `names` are
+    /// known.
     pub fn of_file(prefix: Arc<str>, names: usize) -> Self {
         let mut globals = Vec::new();
         globals.resize_with(names, || None);
@@ -174,7 +174,7 @@ impl<T: Scalar> Scope<T> {
         }
     }
 
-    /// Makes ready for statements, or for an expression, that are run at file level: what names mean stays.
+    /// Prepares statements, or an expression, at file level; bindings are kept.
     pub fn enter(&mut self, names: usize) {
         let Self { globals, routines, records, .. } = std::mem::take(self);
         *self = Self { globals, routines, records, ..Self::default() };
@@ -214,17 +214,17 @@ impl<T: Scalar> Scope<T> {
         }
     }
 
-    /// What a name means at file level.
+    /// The binding of a name at file level.
     pub fn global(&self, name: Name) -> Option<&ScopedBinding<T>> {
         self.globals.get(name.0 as usize)?.as_ref()
     }
 
-    /// What a name means here.
+    /// The binding of a name in the current scope.
     pub fn lookup(&self, name: Name) -> Option<&ScopedBinding<T>> {
         self.frame().local(name).or_else(|| self.global(name))
     }
 
-    /// What a name means in the innermost frame alone.
+    /// The binding of a name in the innermost frame alone.
     pub fn own(&self, name: Name) -> Option<&ScopedBinding<T>> {
         if self.frame().global { self.global(name) } else { self.frame().local(name) }
     }
@@ -248,7 +248,7 @@ impl<T: Scalar> Scope<T> {
         }
     }
 
-    /// The whole of what a name means, as a place; that of the caller for one passed by reference.
+    /// The whole variable of a name, as a place; that of the caller for one passed by reference.
     pub fn place_of(&self, name: Name) -> Option<Place> {
         let at = self.frames.len() - 1;
         let (bound, frame) = match self.frames[at].local(name) {

@@ -31,20 +31,20 @@ pub struct SketchFile {
     pub faults: Vec<Diagnostic>,
 }
 
-/// A sketched object with what its drawing alone decides.
+/// A sketched object with the data that depend on its drawing alone.
 #[derive(Debug)]
 pub struct Drawn {
     /// The object.
     pub object: SketchObject,
     /// Its dimensioning planes.
     pub planes: Planes,
-    /// Whether it is a result of the file, and not only what others are made of.
+    /// True if it is a result of the file, not only an operand.
     pub result: bool,
     estimate: OnceLock<Option<Estimate>>,
 }
 
 impl Drawn {
-    /// What the picture says about depths, computed when it is first asked for.
+    /// Depths estimated from the picture, computed on first use.
     pub fn estimate(&self) -> Option<Estimate> {
         let drawing = &self.object.drawing;
         let compute =
@@ -70,7 +70,7 @@ pub fn is_sketch(name: &str) -> bool {
     name.ends_with(".skt") || name.ends_with(".skt.json")
 }
 
-/// What a session has read so far, and what it asked for besides.
+/// Files read by a session, and files that it requested.
 #[derive(Debug, Default)]
 struct Shelf {
     texts: BTreeMap<String, Result<String, String>>,
@@ -113,7 +113,7 @@ impl SketchFile {
         } else {
             None
         };
-        // A session cannot wait for the world, so it is run again with each file that it asks for.
+        // A session cannot wait for files, so it is run again with each file that it requests.
         for _ in 0..=MOST_FILES {
             let mut session = SketchSession::with_files(Box::new(ShelfFiles(shelf.clone())));
             let mut faults = Vec::new();
@@ -166,7 +166,7 @@ impl SketchFile {
         SketchFile { path: path.into(), file, objects: Vec::new(), faults: vec![fault] }
     }
 
-    /// The unit of length that the objects state, as models spell it; `None` when none is stated.
+    /// The unit of length of the objects, as models spell it; `None` if not stated.
     pub fn unit(&self) -> Option<String> {
         let stated = self.objects.iter().find_map(|drawn| drawn.object.units.as_ref())?;
         Some(stated.to_ascii_lowercase())

@@ -1,9 +1,9 @@
-//! Where texts come from: files of the host, or none.
+//! Source of texts: files of the host, or none.
 
 use std::sync::Arc;
 
-/// What the outside world lets a run see. The core opens no files: the host does, inside the
-/// folders that it allows.
+/// Access of a run to the outside. The core opens no files: the host does, in the permitted
+/// folders.
 pub trait World: Send + Sync {
     /// The text at `path`, named in the text of `from` (or by the user when `None`).
     ///
@@ -15,7 +15,7 @@ pub trait World: Send + Sync {
 /// A text and where it came from.
 #[derive(Clone, Debug)]
 pub struct ReadText {
-    /// The name to show, the same for the same file however it was asked for.
+    /// The displayed name, the same for each spelling of a path.
     pub name: String,
     /// The bytes.
     pub bytes: Arc<[u8]>,
@@ -24,7 +24,7 @@ pub struct ReadText {
 /// Why a text cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextReadError {
-    /// One line: what is wrong.
+    /// The error, in one line.
     pub message: String,
     /// The remedy.
     pub help: Option<String>,

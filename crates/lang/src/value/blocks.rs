@@ -7,7 +7,7 @@ use moldloft_num::Real;
 use moldloft_registry::{Array, ArrayShape, Value, Vectors};
 use std::sync::Arc;
 
-/// The extents of a block; `None` of what is none.
+/// The extents of a block; `None` for other values.
 pub(crate) fn size<T: Real>(value: &Value<T>) -> Option<[usize; 3]> {
     let Value::Block(layers) = value else { return None };
     let shape = match layers.first()? {
@@ -19,7 +19,8 @@ pub(crate) fn size<T: Real>(value: &Value<T>) -> Option<[usize; 3]> {
     Some([m, n, layers.len()])
 }
 
-/// The block that a list of surfaces of one shape spells where a block is asked; any other value as it is.
+/// The block that a list of surfaces of one shape spells in a block context; any other value
+/// unchanged.
 pub(crate) fn spelled_by<T: Real>(value: Value<T>) -> Value<T> {
     let Value::List(layers) = &value else { return value };
     let gathered = layers.iter().map(|layer| moldloft_arrays::gathered(layer).into_owned());
@@ -37,7 +38,7 @@ pub(crate) fn zeros<T: Real>([ni, nj, nk]: [usize; 3]) -> Value<T> {
     Value::Block((0..nk).map(|_| layer()).collect())
 }
 
-/// What a function makes of each layer; `None` of another value.
+/// A function applied to each layer; `None` for other values.
 pub(crate) fn by_layer<T: Real, E>(
     value: &Value<T>,
     f: impl FnMut(&Value<T>) -> Result<Value<T>, E>,
@@ -47,8 +48,8 @@ pub(crate) fn by_layer<T: Real, E>(
     Some(layers.map(Value::Block))
 }
 
-/// What an operator makes of two blocks, or of a block and a single value, layer by layer; `None` where none is a
-/// block.
+/// An operator applied to two blocks, or a block and a single value, layer by layer; `None` without
+/// a block.
 pub(crate) fn by_layers<T: Real, E>(
     a: &Value<T>,
     b: &Value<T>,

@@ -1,6 +1,7 @@
 //! Elements that masks and index arrays choose: read, and written.
 //!
-//! A mask has the shape of what it chooses from and holds 0 and 1 alone; anything else is an index: positions from 1.
+//! A mask has the shape of its array and contains only 0 and 1; any other array is an index:
+//! positions from 1.
 
 use crate::value::subarray::Selection;
 use crate::value::variables::{self, Called as _};
@@ -10,7 +11,7 @@ use moldloft_registry::{Array, ArrayShape, Value, Vectors};
 use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
 
-/// What one subscript selects.
+/// Elements selected by one subscript.
 pub(crate) enum Selected {
     Regular(Selection),
     Chosen(Vec<usize>),
@@ -39,7 +40,7 @@ pub(crate) struct Chosen {
     shape: ArrayShape,
 }
 
-/// The numbers of what stands for an index or a mask; `None` of anything else.
+/// The numbers of an index or a mask; `None` for other values.
 pub(crate) fn index_array<T: Real>(value: &Value<T>) -> Option<Array<T>> {
     match &*moldloft_arrays::gathered(value) {
         Value::Numbers(a) => Some((**a).clone()),
@@ -78,8 +79,8 @@ fn held<T: Real>(mask: &Array<T>) -> Vec<usize> {
 }
 
 impl Chosen {
-    /// What a single subscript chooses: by a mask of the whole shape a row of elements; by an index elements of a
-    /// row, or lines i of a grid.
+    /// Elements selected by a single subscript: by a mask of the whole shape a row of elements; by
+    /// an index elements of a row, or lines i of a grid.
     pub fn by<T: Real>(index: &Array<T>, shape: ArrayShape) -> Result<Self, Diagnostic> {
         if is_mask(index, shape) {
             let positions = held(index);
@@ -104,7 +105,7 @@ impl Chosen {
         Self { shape: ArrayShape::Row(positions.len()), positions }
     }
 
-    /// What two subscripts choose of a grid of lines of `n`.
+    /// Elements selected by two subscripts from a grid with lines of `n`.
     pub fn of_grid(i: &Selected, j: &Selected, n: usize) -> Self {
         let (lines, columns) = (i.positions(), j.positions());
         let shape = match (i.keeps(), j.keeps()) {

@@ -1,7 +1,9 @@
-//! What contours measure: `stations.lengths`, `stations.areas`, `stations.lines`, `stations.positions`.
+//! Measures of contours: `stations.lengths`, `stations.areas`, `stations.lines`,
+//! `stations.positions`.
 //!
-//! A section is what all its surfaces and bodies leave on it, with the images in the model's planes of symmetry that
-//! fall on the same section. Lines that meet are one; what closes bounds an area, a loop inside another a hole.
+//! A section consists of the intersections of all its surfaces and bodies, with the images in the
+//! model's planes of symmetry that are in the same section. Lines that meet are joined; closed ones
+//! bound an area, a loop inside another is a hole.
 
 use crate::model_file::header;
 use crate::run::interpreter::Interpreter;
@@ -41,7 +43,7 @@ struct LineChain<T> {
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The member `word` of a contours object; `None` where there is none of that name.
+    /// The member `word` of a contours object; `None` for other words.
     pub fn contours_member(
         &mut self,
         object: Key,
@@ -159,7 +161,7 @@ pub fn listed_shapes<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> Option<
     Some(keys)
 }
 
-/// What the shapes leave on the section at `x`.
+/// The section of the shapes at `x`.
 fn section<T: Scalar>(
     graph: &Graph<T>,
     contours: &Contours<T>,
@@ -331,7 +333,7 @@ fn flat(points: &[Vec3], normal: Vec3) -> Vec<[f64; 2]> {
     points.iter().map(|p| [p.dot(across), p.dot(along)]).collect()
 }
 
-/// Whether a point is inside a polygon, by the crossings of a ray.
+/// True if a point is inside a polygon, by the crossings of a ray.
 fn is_inside([x, y]: [f64; 2], polygon: &[[f64; 2]]) -> bool {
     let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let crossed = ends.filter(|([ax, ay], [bx, by])| {

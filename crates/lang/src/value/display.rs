@@ -4,7 +4,8 @@ use moldloft_num::Real;
 use moldloft_registry::{ArrayShape, Value};
 use moldloft_syntax::number;
 
-/// The value on one line, numbers in their shortest exact spelling. It can be read again where an array is asked.
+/// The value on one line, numbers in their shortest exact spelling. It can be read again in an
+/// array context.
 pub fn plain<T: Real>(value: &Value<T>) -> String {
     spelled(value, ", ")
 }

@@ -32,7 +32,7 @@ fn undefined<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Diagnostic {
     }
 }
 
-/// The value of `a op b` where a field or set takes part; `None` where none does.
+/// The value of `a op b` with a field or set as an operand; `None` for other operands.
 pub(crate) fn binary<T: Real>(
     op: BinaryOp,
     a: &Value<T>,
@@ -213,7 +213,7 @@ pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>
     }
 }
 
-/// What a field or set is, in a line.
+/// Description of a field or set in one line.
 pub(crate) fn described<T: Real>(value: &Value<T>) -> Option<String> {
     match value {
         Value::Field(_) => {

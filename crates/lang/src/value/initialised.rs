@@ -1,19 +1,19 @@
-//! Which elements of an array were given a value, and whether the edges of a grid meet.
+//! Initialised elements of an array, and agreement of the edges of a grid at corners.
 //!
-//! A dimensioned array begins as zeros. Library routines that build on what their caller has put
-//! there (the ends before `line`, the edges before `transfinite`) ask here, so that zeros are not
+//! A dimensioned array begins as zeros. Library routines that depend on values of their caller (the
+//! ends before `line`, the edges before `transfinite`) check this record, so that zeros are not
 //! taken for data.
 
 use crate::value::subarray::{ArraySection, Selection};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Value};
 
-/// What is known of the elements of a variable.
+/// Initialised elements of a variable.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
     /// The elements without a value; `None` when all have one.
     missing: Option<Box<Missing>>,
-    /// Where each edge of a grid was last put to begin and end: edges i = 1, i = d1, j = 1, j = d2.
+    /// Ends of each edge of a grid when last assigned: edges i = 1, i = d1, j = 1, j = d2.
     edges: Option<Box<[[Option<Vec3>; 2]; 4]>>,
 }
 
@@ -149,7 +149,7 @@ impl Known {
         for edge in 0..4 {
             for end in 0..2 {
                 let [i, j] = corner(edge, end, [m, n]);
-                // What is written along one edge says nothing of the end of the other there.
+                // The assignment of one edge does not determine the end of the other there.
                 let other = match edge {
                     0 | 1 => 2 + end,
                     _ => end,

@@ -1,4 +1,5 @@
-//! What values own: `.x`, `.t`, `.length`, `.area`, the edges and corners of surfaces, and the like.
+//! Members of values: `.x`, `.t`, `.length`, `.area`, the edges and corners of surfaces, and
+//! others.
 
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{USUAL_ACCURACY, solid_measures, surface_measures};
@@ -92,7 +93,8 @@ fn part_of_surface<T: Real>(surface: &SurfaceRef<T>, name: &str) -> Option<Value
     Some(Value::Point(Box::new(corner)))
 }
 
-/// How the value was found: `.status`, `.residual`, `.iterations`, `.start`, `.alternatives`.
+/// Report of the search behind a value: `.status`, `.residual`, `.iterations`, `.start`,
+/// `.alternatives`.
 fn of_found<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
     let found = value.found()?;
     let row = |all: &[f64]| {
@@ -113,10 +115,10 @@ fn of_found<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
     })
 }
 
-/// The places where the facets of a set are not quite what was asked for.
+/// Members for imperfect regions of a set's facets.
 const FLAWS: [&str; 3] = ["undecided", "blunt", "touching"];
 
-/// The members of what was found by a search.
+/// Members of values found by a search.
 const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
 
 /// The names of the members that a value has.
@@ -191,8 +193,8 @@ pub fn not_finite() -> Diagnostic {
 /// The integral of the normal of a closed surface is this share of its area at most.
 const CLOSED: f64 = 1e-7;
 
-/// True when every edge is a point, lies folded on itself, or is its opposite edge: where the normals of an open tube
-/// cancel, its ends do not.
+/// True if every edge is a point, is folded on itself, or coincides with its opposite edge. The
+/// vector area does not suffice: it vanishes for an open tube too.
 fn is_closed<T: Scalar>(surface: &dyn Surface<T>) -> bool {
     let along = |k: usize| k as f64 / EDGE_PLACES as f64;
     let edge = |axis: usize, end: f64| -> Vec<Vec3> {

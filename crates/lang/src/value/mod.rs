@@ -1,4 +1,5 @@
-//! Values of the language: what variables hold, parts of arrays, members, operators, and their display.
+//! Values of the language: types of variables, parts of arrays, members, operators, and their
+//! display.
 
 pub(crate) mod blocks;
 pub(crate) mod chosen;

@@ -15,7 +15,7 @@ pub struct NumberPath {
 }
 
 impl NumberPath {
-    /// Reads what stands after the object's name: `.field`, `.field[item]`, `.field.x`.
+    /// Parses the part after the object's name: `.field`, `.field[item]`, `.field.x`.
     pub fn parse(row: &Row, text: &str) -> Option<Self> {
         let text = text.strip_prefix('.')?;
         let end = text.find(['.', '[']).unwrap_or(text.len());
@@ -52,7 +52,7 @@ impl NumberPath {
                     *items = list.into();
                 }
                 (Value::Number(x), None, None) => *x = f(*x),
-                // {a, b, c} of numbers may stand for a list or a vector.
+                // {a, b, c} of numbers may be a list or a vector.
                 (Value::Vector(v), k, c) if k.is_some() != c.is_some() => {
                     let mut xyz = v.to_array();
                     let x = xyz.get_mut(k.or(c)?)?;
@@ -67,7 +67,7 @@ impl NumberPath {
     }
 }
 
-/// Seeds the literals of an object that derivatives are asked by.
+/// Seeds the literals of an object for differentiation.
 pub fn seed<T: Scalar>(
     row: &Row,
     args: &mut [Value<T>],

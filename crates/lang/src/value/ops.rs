@@ -112,8 +112,7 @@ fn vectors<T: Real>(array: Array<Vec3<T>>) -> Value<T> {
     Value::Vectors(Arc::new(Planes::new(array.shape, array.items)))
 }
 
-/// What the operator does to two numbers, a number and a vector, and so on; `None` where it is
-/// not defined.
+/// Rules of an operator by operand classes, such as a number and a vector; `None` if not defined.
 struct Rules<T> {
     nn: Option<fn(T, T) -> T>,
     nv: Option<fn(T, Vec3<T>) -> Vec3<T>>,
@@ -143,7 +142,7 @@ pub(crate) fn power<T: Real>(a: T, b: T) -> T {
     }
 }
 
-/// True for what makes a chain of operators one of sets.
+/// True for an operand that makes a chain of operators one of sets.
 pub(crate) fn is_set<T: Real>(value: &Value<T>) -> bool {
     matches!(value, Value::Set(_))
 }
@@ -177,7 +176,7 @@ fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
     })
 }
 
-/// True of what `and` and `or` combine element by element.
+/// True for operands that `and` and `or` combine element by element.
 pub(crate) fn is_array<T: Real>(value: &Value<T>) -> bool {
     matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_) | Value::Block(_))
 }

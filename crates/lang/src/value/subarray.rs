@@ -6,8 +6,8 @@ use moldloft_diag::Diagnostic;
 use moldloft_registry::ArrayShape;
 use smallvec::SmallVec;
 
-/// What a subscript selects from a dimension: `count` positions from `start`, `step` apart, counted
-/// from 0; and whether the dimension stays (a range) or goes (an index).
+/// Part of a dimension that a subscript selects: `count` positions from `start`, `step` apart,
+/// counted from 0; and whether the dimension is kept (a range) or dropped (an index).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection {
     /// The first position.
@@ -46,7 +46,7 @@ impl Selection {
         (self.step == 1 || self.count == 1).then(|| self.start..self.start + self.count)
     }
 
-    /// What `inner` selects from what this selects.
+    /// The selection `inner` applied to the result of this one.
     pub fn of(self, inner: Selection) -> Selection {
         Selection {
             start: self.position(inner.start),
@@ -77,7 +77,7 @@ impl Selection {
     }
 }
 
-/// What all subscripts select.
+/// The selections of all subscripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArraySection {
     /// Of a row.
@@ -121,7 +121,7 @@ impl ArraySection {
         })
     }
 
-    /// The extents of what is selected; none for a single element.
+    /// The extents of the selection; none for a single element.
     pub fn extents(self) -> ([usize; 3], usize) {
         let mut extents = ([0; 3], 0);
         for part in self.parts().into_iter().filter(|s| s.keeps) {
@@ -131,7 +131,7 @@ impl ArraySection {
         extents
     }
 
-    /// The shape of what is selected; `None` for a single element, and for a block.
+    /// The shape of the selection; `None` for a single element, and for a block.
     pub fn shape(self) -> Option<ArrayShape> {
         match self.extents() {
             ([n, ..], 1) => Some(ArrayShape::Row(n)),
@@ -140,7 +140,8 @@ impl ArraySection {
         }
     }
 
-    /// What `inner` selects from what this selects; `None` when it has other dimensions.
+    /// The selection `inner` applied to the result of this one; `None` if the number of dimensions
+    /// differs.
     pub fn of(self, inner: ArraySection) -> Option<ArraySection> {
         let (mut parts, inner) = (self.parts(), inner.parts());
         if parts.iter().filter(|part| part.keeps).count() != inner.len() {

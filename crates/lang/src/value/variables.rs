@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Ints are smaller: from here on neighbours share their digits.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
 
-/// What is known of the variable that a value is stored into.
+/// The variable that a value is stored into.
 pub struct Taken<'a> {
     /// The declared type.
     pub ty: Type,
@@ -64,7 +64,7 @@ impl<T: Real> Called for Value<T> {
     }
 }
 
-/// The word of a type and what it holds.
+/// The name of a type and its content.
 pub fn described(ty: Type) -> &'static str {
     match ty {
         Type::Int => "a whole number",
@@ -171,7 +171,8 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
         | (Type::Psurface, value @ Value::Surface(_))
         | (Type::Field, value @ Value::Field(_))
         | (Type::Set, value @ Value::Set(_)) => value,
-        // A plane stands for its half-space, a number for a constant, a field for its solid side.
+        // A plane is converted to its half-space, a number to a constant, a field to its solid
+        // side.
         (Type::Field, value @ (Value::Plane(_) | Value::Number(_))) => {
             match moldloft_field::primitive_of(&value) {
                 Some(f) => moldloft_field::field_value(f),
@@ -278,7 +279,7 @@ pub fn has_room<T>(ty: Type, count: f64, budget: &Budget) -> Result<u64, Diagnos
 /// The first value of a variable with declared dimensions `dims`.
 ///
 /// # Errors
-/// When dimensions, type and value do not go together; that there is room for it is known.
+/// When dimensions, type and value do not match. The caller has checked the memory.
 pub fn initial<T: Real>(
     ty: Type,
     dims: &[usize],
@@ -605,7 +606,7 @@ pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>
     })
 }
 
-/// The value of a component of vectors; `None` when there is none.
+/// The value of a component of vectors; `None` for other values.
 pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
     Some(match value {
         Value::Vector(v) => Value::Number(v[c]),
@@ -643,7 +644,7 @@ pub fn inside_mut<'v, T: Real>(
     })
 }
 
-/// What stands in a place of a variable whose value is `root`.
+/// The value at a place of a variable whose value is `root`.
 ///
 /// # Errors
 /// When it has no such part.
@@ -662,7 +663,7 @@ pub fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Dia
     }
 }
 
-/// The type of what stands in a place of a variable of type `ty` and value `root`.
+/// The type of the value at a place of a variable of type `ty` and value `root`.
 pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
     let Some(value) = inside(root, &place.path) else { return ty };
     let ty = match (ty, place.path.steps()) {
@@ -738,12 +739,12 @@ pub fn shape_text<T: Real>(value: &Value<T>) -> String {
     shape_of(value).to_string()
 }
 
-/// The type and extents of what stands in a place.
+/// The type and extents of the value at a place.
 pub fn shape_at<T: Real>(root: &Value<T>, place: &Place) -> String {
     at_place(root, place).map_or_else(|_| shape_text(root), |value| shape_text(&value))
 }
 
-/// The extents of what can be indexed.
+/// The extents of a value that can be indexed.
 pub fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
     let of = |shape: ArrayShape| match shape {
         ArrayShape::Row(n) => vec![n],

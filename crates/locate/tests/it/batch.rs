@@ -1,4 +1,4 @@
-//! Many nearest points at once: none wrong.
+//! Many nearest points at once.
 
 use crate::common::{Random, Sphere, brute, bumpy};
 use moldloft_locate::{
@@ -120,7 +120,7 @@ impl<'a> Twin<'a> {
 }
 
 /// Random points above, below and beside the surface, and near it: no other point of it is nearer.
-/// `MOLDLOFT_SOAK=1` asks for a million points.
+/// `MOLDLOFT_SOAK=1` makes a million points.
 #[test]
 fn no_foot_is_wrong() {
     let s = bumpy(20, 7);

@@ -53,7 +53,7 @@ fn flat(corner: Vec3, a: Vec3, b: Vec3) -> BSplineSurface<f64> {
         .unwrap()
 }
 
-/// Stations lie on both shapes, neighbours are near each other, ends are what they say.
+/// Stations are on both shapes, neighbours are near each other, and ends are as declared.
 fn sound(crossing: &Crossing<'_>, found: &Branches) {
     for branch in &found.branches {
         for s in &branch.stations {
@@ -145,7 +145,7 @@ fn cylinders_pierce_each_other_in_two_closed_branches_or_one() {
         // The same from the other side.
         assert_eq!(count(&of_two(&b, &a)), [2, 0, 0]);
     }
-    // Set off so far that the small one comes out at the side: one branch.
+    // Offset so far that the small one protrudes at the side: one branch.
     let b = Cylinder { centre: v(0.0, 0.7, 0.2), radius: 0.5, half: 3.0, axis: 0 };
     assert_eq!(count(&of_two(&a, &b)), [1, 0, 0]);
     // Beside it, and ending inside.
@@ -185,7 +185,7 @@ fn waves_are_cut_in_islands() {
     let on_edge =
         |b: &&Branch| b.ends.iter().all(|e| *e == BranchEnd::Edge { unknown: 2, value: 1.0 });
     assert_eq!(found.branches.iter().filter(|b| !b.closed()).filter(on_edge).count(), 3);
-    // Just under the tops: 13 small islands, larger than what is promised.
+    // Just under the tops: 13 small islands, larger than the guaranteed size.
     let z = 0.2 - 0.2 * 0.5 * (5.0 * std::f64::consts::PI * 0.02).powi(2);
     assert_eq!(count(&with_plane(&s, plane(v(0.0, 0.0, z), v(0.0, 0.0, 1.0)))), [13, 0, 0]);
 }

@@ -1,4 +1,4 @@
-//! Searches against what geometry knows.
+//! Searches against closed forms.
 
 use crate::common::{Circle, Cylinder, Line, Random, Sphere, brute, bumpy};
 use moldloft_locate::curve_pairs::{all_curve_curve, curve_curve};

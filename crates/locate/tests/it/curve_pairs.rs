@@ -1,4 +1,4 @@
-//! Where curves meet, against polylines as fine as it takes.
+//! Intersections of curves, against sufficiently fine polylines.
 
 use crate::common::{Line, Random};
 use moldloft_locate::curve_pairs::{all_curve_curve, curve_curve};
@@ -151,7 +151,7 @@ fn curves_that_do_not_meet_are_as_far_apart_as_their_nearest_places() {
         let (p, q): (Vec<Vec3>, Vec<Vec3>) = ts.map(|t| (at(&a, t), at(&b, t))).unzip();
         let each = p.iter().flat_map(|x| q.iter().map(|y| x.distance(*y)));
         let least = each.fold(f64::INFINITY, f64::min);
-        // The polylines' places lie within half a step of it.
+        // The polylines' points are within half a step of it.
         assert!(gap <= least + 1e-14 && least <= gap + 0.1, "{a:?} {b:?} {gap} {least}");
         let report = curve_curve(&a, &b, None, 0.0).unwrap_err();
         assert_eq!((report.status, report.residual), (LocateStatus::NoSolution, gap));

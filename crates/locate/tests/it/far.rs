@@ -70,7 +70,7 @@ fn feet_of_far_points_are_sharp() {
         for far in [1e3, 1e12, 1e155, 1e300] {
             let x = c.jet(nearest_on_curve(&c, d * far, None).at[0], Order::Zero)[0];
             let exact = Vec3::of(1.0, 2.0, 3.0) + flat * 2.0;
-            // What the centre's own place is of the distance turns the direction.
+            // The direction is rotated by the ratio of the centre's coordinates to the distance.
             let turn = 20.0 / far;
             assert!(x.distance(exact) < 1e-9 + turn, "{far}: {x:?} {exact:?}");
             let exact = Vec3::of(1.0, 2.0, 3.0) + d * 2.0;

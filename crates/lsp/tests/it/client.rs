@@ -22,7 +22,7 @@ impl Client {
 
     /// Begins with these parameters.
     pub fn start_in(begin: Value) -> Self {
-        // Where nothing was ever laid out.
+        // A folder without the libraries.
         let temporary = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join(format!("lsp-{}", std::process::id()));
         std::fs::create_dir_all(&temporary).expect("a folder for temporary files");
@@ -76,7 +76,7 @@ impl Client {
         self.send(&json!({"jsonrpc": "2.0", "id": id, "method": method, "params": params}));
         loop {
             let answer = self.next();
-            // What is reported of runs in the meantime is not asked for.
+            // Reports of runs in the meantime are skipped.
             if answer.get("id").is_some() {
                 assert_eq!(answer["id"], id, "{answer}");
                 return answer;

@@ -1,4 +1,5 @@
-//! What helps while one writes: signatures, corrections, colours, names of arguments, folds, words and files.
+//! Help during editing: signatures, quick fixes, colours, names of arguments, folds, words and
+//! files.
 
 use crate::client::{Client, URI, words};
 use serde_json::{Value, json};
@@ -12,7 +13,7 @@ fn marked(text: &str) -> (String, u64, u64) {
     (text.replacen('|', "", 1), line, character)
 }
 
-/// What the signature says at `|`: the head and the active argument.
+/// The signature at `|`: label and active argument.
 fn signature(client: &mut Client, text: &str) -> Option<(String, Option<String>)> {
     let (text, line, character) = marked(text);
     client.change(2, json!([{"text": text}]));
@@ -190,7 +191,7 @@ fn arguments_without_a_name_show_it_where_the_value_does_not() {
         })
         .collect();
     assert_eq!(found, [(1, 17, "degree ="), (4, 18, "share =")]);
-    // Of a part of the text only what is there.
+    // Only the part in the range.
     let range = json!({"start": {"line": 2, "character": 0}, "end": {"line": 9, "character": 0}});
     let ask = json!({"textDocument": {"uri": URI}, "range": range});
     assert_eq!(client.ask("textDocument/inlayHint", ask).as_array().unwrap().len(), 1);

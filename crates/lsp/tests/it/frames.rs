@@ -1,4 +1,4 @@
-//! What an editor sends that is no message: it is answered, and the server goes on.
+//! Invalid input of an editor: it is answered, and the server continues.
 
 use crate::client::{Client, URI};
 use moldloft_testing::{Random, rounds};
@@ -55,7 +55,7 @@ fn what_is_no_message_is_answered() {
         raw(&mut client, header.as_bytes());
         raw(&mut client, b"\r\n");
         assert_eq!(refusal(&mut client), -32700, "{header}");
-        // What followed the wrong header is passed over.
+        // The content after the wrong header is skipped.
         let id = 800 + header.len();
         client.send(&json!({"jsonrpc": "2.0", "id": id, "method": "no/such", "params": {}}));
         while client.next()["id"] != id {}
@@ -115,7 +115,7 @@ fn damaged_messages_leave_the_server_alive() {
                 break;
             }
         }
-        // What ends the server in an orderly way is not meant here.
+        // An orderly end of the server is not tested here.
         if body.windows(6).any(|w| w == b"\"exit\"") || body.windows(8).any(|w| w == b"shutdown") {
             continue;
         }

@@ -1,4 +1,4 @@
-//! A session with one text: what each method answers, what is reported as one types.
+//! A session with one text: answers of each method, and reports while typing.
 
 use crate::client::{Client, URI, words};
 use serde_json::{Value, json};
@@ -159,7 +159,7 @@ fn diagnostics_come_as_one_types() {
     assert!(!status.success(), "an end without shutdown is a failure");
 }
 
-/// Programs that do not come to an end in a good while, each in its own way.
+/// Programs that do not end in a reasonable time, in different ways.
 const ENDLESS: [&str; 4] = [
     "float x = 1;\nwhile (1) { x = x + 1; }\n",
     "float x = 1;\nfarray a[1000000];\nwhile (1) { a = sin(a) + x; }\n",
@@ -191,7 +191,7 @@ fn endless_programs_do_not_occupy_the_server() {
         std::thread::sleep(Duration::from_millis(300));
         let mut found = client.change(4, json!([{"text": "print y;\n"}]));
         if found[0]["code"] == "too-many-steps" {
-            // What came to the limit before the change had been reported.
+            // A run that reached the limit before the change was reported.
             found = client.published();
         }
         assert_eq!(found[0]["code"], "unknown-name", "{found:?}");

@@ -170,7 +170,7 @@ fn a_rename_changes_all_files_and_they_run_as_before() {
         changed.sort_unstable();
         touched.sort_unstable();
         assert_eq!(changed, touched, "{name} {new}: {after:?}");
-        // The oracle is the language: no name is left behind, none is met twice.
+        // The language is the oracle: no name is left, none collides.
         let other = Folder::new(&after.iter().map(|(n, t)| (&**n, &**t)).collect::<Vec<_>>());
         let mut second = other.client();
         for (name, text) in &after {

@@ -21,8 +21,8 @@ pub struct HexBlock {
     pub name: String,
     /// Vertices along u, v and w, two or more each.
     pub size: [usize; 3],
-    /// Vertex of (i, j, k) at `[(i * size[1] + j) * size[2] + k]`. Where an edge or a face is a
-    /// point or a line, vertices recur.
+    /// Vertex of (i, j, k) at `[(i * size[1] + j) * size[2] + k]`. Vertices recur at collapsed
+    /// edges and faces.
     pub vertices: Vec<u32>,
     /// The six faces.
     pub faces: [BlockFace; 6],
@@ -40,7 +40,7 @@ impl HexBlock {
         self.size.map(|n| n - 1)
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub fn cell_count(&self) -> usize {
         self.divisions().iter().product()
     }
@@ -153,7 +153,7 @@ impl<T: Real> Blocks<T> {
         &self.blocks
     }
 
-    /// How many cells there are in all blocks.
+    /// Number of cells in all blocks.
     pub fn cell_count(&self) -> usize {
         self.blocks.iter().map(HexBlock::cell_count).sum()
     }
@@ -182,7 +182,7 @@ impl<T: Real> Blocks<T> {
         sum
     }
 
-    /// Where blocks meet, by the identity of their vertices, ordered by the first sides; and the
+    /// Interfaces of blocks, by the identity of their vertices, ordered by the first sides; and the
     /// parts of faces that bound the whole.
     pub fn interfaces(&self) -> (Vec<Interface>, Vec<Boundary>) {
         super::interface::find(&self.blocks)

@@ -1,4 +1,4 @@
-//! Where structured blocks meet: rectangles of faces whose cells are one, and those that meet nothing.
+//! Interfaces of structured blocks: rectangles of common cell faces; and faces without a neighbour.
 
 use super::HexBlock;
 use std::collections::{HashMap, HashSet};
@@ -8,12 +8,12 @@ use std::collections::{HashMap, HashSet};
 pub struct Interface {
     /// The two faces: (block, face 0..6), the earlier first.
     pub sides: [(usize, usize); 2],
-    /// Where it begins in each block, (i, j, k).
+    /// Start in each block, (i, j, k).
     pub from: [[usize; 3]; 2],
-    /// Where it ends in each block; in the first no index is less than in `from`.
+    /// End in each block; in the first no index is less than in `from`.
     pub to: [[usize; 3]; 2],
-    /// For each axis u, v, w of the first block, the axis of the second that it runs along, and
-    /// whether against it. The axis through the face goes on into the second block.
+    /// For each axis u, v, w of the first block, the corresponding axis of the second, and whether
+    /// it is reversed. The axis through the face continues into the second block.
     pub axes: [(usize, bool); 3],
 }
 
@@ -24,13 +24,13 @@ pub struct Boundary {
     pub block: usize,
     /// Its face 0..6.
     pub face: usize,
-    /// Where it begins, (i, j, k).
+    /// Start, (i, j, k).
     pub from: [usize; 3],
-    /// Where it ends; no index is less than in `from`.
+    /// End; no index is less than in `from`.
     pub to: [usize; 3],
 }
 
-/// How the parameters of one face run on another: swapped, then each reversed or not.
+/// Relation of the parameters of two faces: swapped, then each reversed or not.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct FaceOrientation {
     swap: bool,
@@ -122,8 +122,8 @@ impl<'a> BlockFaces<'a> {
         }
     }
 
-    /// The panel on the second face that lies `step` panels from `start` and has there, turned so,
-    /// the vertices of `own`.
+    /// The panel on the second face that is `step` panels from `start` and has, in this
+    /// orientation, the vertices of `own`.
     fn partner(
         &self,
         own: Place,
@@ -185,10 +185,10 @@ impl<'a> BlockFaces<'a> {
     }
 }
 
-/// All interfaces of `blocks`, ordered by their first sides; and what meets nothing.
+/// All interfaces of `blocks`, ordered by their first sides; and the boundary.
 ///
-/// Panels are one by the identity of their vertices. Where more than two have the same, none of
-/// them meets another: such a place is not an interface.
+/// Panels are matched by the identity of their vertices. More than two with the same vertices are
+/// not an interface.
 pub fn find(blocks: &[HexBlock]) -> (Vec<Interface>, Vec<Boundary>) {
     let mut faces = BlockFaces::new(blocks);
     let mut found = Vec::new();

@@ -12,18 +12,18 @@ pub struct BadCell {
     pub scaled_jacobian: f64,
     /// The Jacobian of the cell's trilinear map there, in units of volume.
     pub jacobian: f64,
-    /// Where in space.
+    /// Position in space.
     pub at: [f64; 3],
-    /// Where in the block's own parameters u, v, w, by cells of equal size.
+    /// Position in the block's own parameters u, v, w, with cells of equal size.
     pub parameters: [f64; 3],
 }
 
-/// How good the cells of one block are.
+/// Quality of the cells of one block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockQuality {
     /// The block.
     pub name: String,
-    /// How many cells it has.
+    /// Number of cells.
     pub cells: usize,
     /// Its volume.
     pub volume: f64,
@@ -37,16 +37,16 @@ pub struct BlockQuality {
     pub largest_aspect: f64,
 }
 
-/// What there is to say of a volume mesh.
+/// Report of a volume mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlocksReport {
     /// Each block.
     pub blocks: Vec<BlockQuality>,
-    /// How many vertices the cells use.
+    /// Number of vertices that the cells use.
     pub vertices: usize,
-    /// How many cells there are.
+    /// Number of cells.
     pub cells: usize,
-    /// How many pairs of faces are joined.
+    /// Number of joined pairs of faces.
     pub interfaces: usize,
     /// The whole volume.
     pub volume: f64,
@@ -59,7 +59,7 @@ impl BlocksReport {
     }
 }
 
-/// What is summed over cells, in their order.
+/// Sums over cells, in their order.
 #[derive(Clone, Copy)]
 struct VolumeTally {
     volume: f64,

@@ -1,5 +1,6 @@
-//! The fuzz targets without libFuzzer: each over texts and files of its kind and thousands of damaged copies, in the ordinary
-//! tests, by the stable compiler. Coverage guides `fuzz/` itself; what it finds belongs in `fuzz/corpus`, which is run here.
+//! The fuzz targets without libFuzzer: each over texts and files of its kind and thousands of
+//! damaged copies, in the ordinary tests, with the stable compiler. `fuzz/` itself is guided by
+//! coverage; its findings belong in `fuzz/corpus`, which is run here.
 
 use moldloft::mesh::Mesh;
 use moldloft_testing::{Random, rounds};
@@ -53,7 +54,7 @@ fn files(folder: &str, ending: &str) -> Vec<Vec<u8>> {
     found
 }
 
-/// What the damage begins with.
+/// Originals of the damaged copies.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let texts = |all: &[&str]| all.iter().map(|t| t.as_bytes().to_vec()).collect::<Vec<_>>();
     let mut found = files(&format!("fuzz/corpus/{target}"), "");
@@ -267,7 +268,7 @@ fn programs() {
     hold("sdl_run", 60, 6_000);
 }
 
-/// What is read of a mesh is a mesh: its faces name its vertices.
+/// A mesh that was read is consistent: its faces refer to existing vertices.
 #[test]
 fn meshes_that_are_read_are_whole() {
     let seeds = readers_seeds();

@@ -1,6 +1,6 @@
 //! The examples of the facade run; the fuzz targets hold.
 
-// The name under which the fuzz targets ask for their macro.
+// The name under which the fuzz targets import their macro.
 extern crate self as libfuzzer_sys;
 
 #[allow(dead_code, reason = "its `main` is that of the example")]
@@ -12,7 +12,7 @@ mod fuzz;
 #[path = "../../examples/hull_to_gdf.rs"]
 mod hull_to_gdf;
 
-// Behind the module that asks for it by its path.
+// After the module that imports it by its path.
 /// The macro of libFuzzer, for one function from bytes.
 #[macro_export]
 macro_rules! fuzz_target {

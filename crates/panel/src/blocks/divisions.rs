@@ -15,18 +15,18 @@ const WHOLE: f64 = 1e-9;
 /// Cells along an axis of which nobody says anything.
 const DEFAULT_DIVISIONS: usize = 8;
 
-/// Divisions of each block, and what was noticed.
+/// Divisions of each block, and the notes about them.
 pub(crate) struct BlockDivisions {
     pub divisions: Vec<[usize; 3]>,
     pub remarks: Vec<BlockNote>,
 }
 
-/// Which axes of which blocks (number 3 b + axis), and which stretches of roots (numbers above
-/// those), have one number of divisions.
+/// Axes of blocks (number 3 b + axis), and stretches of roots (numbers above those), with equal
+/// numbers of divisions.
 pub(crate) struct DivisionClasses {
     equal: UnionFind,
     intervals: HashMap<RootInterval, usize>,
-    /// An axis, a share of it, and the number of the stretch that runs along that share.
+    /// An axis, a fraction of it, and the number of the stretch along that fraction.
     shares: Vec<(usize, f64, usize)>,
 }
 
@@ -126,7 +126,7 @@ impl DivisionClasses {
                 }
             }
         }
-        // What the others of a chain say, until nothing is new.
+        // Propagate along chains until nothing changes.
         let mut remarks = Vec::new();
         for round in 0..=count {
             let mut changed = false;

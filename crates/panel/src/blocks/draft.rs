@@ -13,7 +13,7 @@ pub(crate) fn solid_of<T: Scalar>(object: &Object<T>) -> Option<&SolidRef<T>> {
     }
 }
 
-/// The grid of a solid with so many cells.
+/// The grid of a solid with given numbers of cells.
 pub fn grid<T: Real>(solid: &SolidRef<T>, divisions: [usize; 3]) -> Vec<Vec3<T>> {
     let [us, vs, ws] =
         divisions.map(|n| (0..=n).map(|i| i as f64 / n as f64).collect::<Vec<f64>>());

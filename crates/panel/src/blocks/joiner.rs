@@ -1,4 +1,4 @@
-//! Which vertices of blocks are one.
+//! Identity of the vertices of blocks.
 
 use super::draft::{BlockDraft, FaceId, RootInterval, face_axes, face_id, grid, interval};
 use super::marks::{Marks, runs};
@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 /// Blocks whose shared vertices disagree by more than this share of the model's size are reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
-/// Where a vertex is, by identity.
+/// Identity of a vertex.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum VertexIdentity {
     Point(Key),
@@ -270,7 +270,7 @@ impl<'a, 'g> BlockJoiner<'a, 'g> {
         }
     }
 
-    /// The vertices of all layers at (i, j), as those that stand for them.
+    /// Representatives of the vertices of all layers at (i, j).
     pub fn roots(&mut self, b: usize, [i, j]: [usize; 2]) -> Vec<u32> {
         let count = self.drafts[b].faces.layers.as_ref().map_or(0, |l| l.surfaces.len());
         let [_, nv, nw] = self.divisions[b];

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Divisions nearer than this to a whole number are whole.
 const WHOLE: f64 = 1e-9;
 
-/// Where pieces begin and end on each root, in order of its parameter.
+/// Ends of pieces on each root, in order of its parameter.
 pub(crate) struct Marks {
     of: HashMap<Root, Vec<Mark<f64>>>,
 }
@@ -25,7 +25,7 @@ impl Marks {
             }
         }
         for marks in of.values_mut() {
-            // At one place the name of a point object says more than none.
+            // At one position a mark with a point object takes precedence.
             marks.sort_by(|a, b| a.t.total_cmp(&b.t).then(b.point.cmp(&a.point)));
             marks.dedup_by(|next, kept| {
                 next.t == kept.t && (next.point.is_none() || next.point == kept.point)
@@ -34,14 +34,14 @@ impl Marks {
         Self { of }
     }
 
-    /// A mark, by the name of the point object there if it has none itself.
+    /// A mark with the point object at its position, if it has none itself.
     fn named(&self, root: Root, mark: Mark<f64>) -> Mark<f64> {
         let there = self.of[&root].iter().find(|m| m.t == mark.t);
         mark.point.map_or(there.copied().unwrap_or(mark), |_| mark)
     }
 
-    /// The parts of `pieces` between all marks: each with the share of the whole at which it ends,
-    /// and whether it goes on in the next one's piece.
+    /// The parts of `pieces` between all marks: each with the fraction of the whole at its end, and
+    /// whether it continues in the next one's piece.
     pub fn parts(&self, pieces: &[Piece<f64>]) -> Vec<EdgePart> {
         let mut parts = Vec::new();
         let mut begin = 0.0;

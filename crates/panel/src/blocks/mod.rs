@@ -1,9 +1,9 @@
 //! From solids to volume meshes: blocks of hexahedra from their own parameters, joined by identity.
 //!
-//! Vertices of different blocks become one when they lie at the same place of the same surface
+//! Vertices of different blocks are identical if they are at the same position of the same surface
 //! object, of the same root curve between the same ends, at the same point object, or on lines
-//! along w that follow one law between vertices that are one. Divisions are solved through all
-//! blocks: a number given for one block holds for every block that shares the edge, and so on.
+//! along w of the same law between identical vertices. Divisions are solved through all blocks: a
+//! number given for one block holds for every block that shares the edge, and so on.
 
 mod divisions;
 mod draft;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// The most cells of a model.
 const MOST_CELLS: u64 = 20_000_000;
 
-/// Which vertices of volume blocks there are and who computes them; independent of the scalar.
+/// The vertices of volume blocks and the blocks that compute them; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Blocking {
     plans: Vec<BlockPlan>,
@@ -57,7 +57,7 @@ impl Blocking {
                 Some(BlockDraft { object, solid, faces: solid.faces() })
             })
             .collect();
-        // Who meets whom is found on undivided blocks first: then the divisions follow.
+        // Adjacency is determined on undivided blocks first; the divisions follow from it.
         let rough = vec![[1; 3]; drafts.len()];
         let mut joiner = BlockJoiner::new(&drafts, &rough);
         joiner.join_all();
@@ -93,7 +93,7 @@ impl Blocking {
         Ok(Self { plans, vertices: number.len(), remarks })
     }
 
-    /// What was noticed at the joins.
+    /// Notes about the joins.
     pub fn remarks(&self) -> &[BlockNote] {
         &self.remarks
     }

@@ -1,4 +1,4 @@
-//! What is noticed at the joins of blocks.
+//! Notes about the joins of blocks.
 
 use moldloft_num::Vec3;
 
@@ -20,9 +20,9 @@ pub enum BlockNote {
     Apart {
         /// The blocks.
         blocks: [String; 2],
-        /// How far apart the two positions are.
+        /// Distance of the two positions.
         distance: f64,
-        /// Where.
+        /// Position.
         at: Vec3,
     },
 }

@@ -1,4 +1,4 @@
-//! Pictures of simple sheets: what covers what, equal bytes, refused requests.
+//! Pictures of simple sheets: hidden surfaces, equal bytes, refused requests.
 
 use super::*;
 use moldloft_mesh::{PatchInfo, TopologyBuilder};
@@ -132,7 +132,7 @@ fn lines_on_surfaces_stay_within_the_outline() {
             StyledPolyline { points: points.collect(), colour: [0; 3], width: 1.5, on_surface };
         let with = pixels(&render(&wall, &[line], &options).unwrap());
         let without = pixels(&render(&wall, &[], &options).unwrap());
-        // Where the background was.
+        // The former background.
         let outside = |p: &[u8; 3]| p.iter().all(|&c| c > 200);
         let beside = with.iter().zip(&without).filter(|(p, q)| outside(q) && p[0] < 100).count();
         (beside, with.iter().filter(|p| p[0] < 100).count())
@@ -153,7 +153,7 @@ fn names_are_written_beside_their_points() {
     assert_eq!(red(Vec::new()), 0);
     let one = red(vec![name("P")]);
     assert!(one > 5, "{one}");
-    // Four places, none over another; the fifth name has no room.
+    // Four positions without overlap; there is none for the fifth name.
     let four = red(vec![name("P"); 4]);
     assert_eq!(red(vec![name("P"); 5]), four);
     assert!(four > one);

@@ -70,7 +70,7 @@ pub fn space(
             Space::periodic(degree, knots, period)
         }
         (_, Some(knots)) => {
-            // Sorted knots are asked for, with the first that is not.
+            // Knots must be sorted; the error names the first that is not.
             if let Some(k) = knots.windows(2).position(|w| w[1] < w[0]) {
                 return Err(FairError::Unsorted { index: k + 1 });
             }

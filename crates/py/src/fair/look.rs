@@ -1,4 +1,4 @@
-//! What a surface looks like: curvatures and reflections on a grid.
+//! Appearance of a surface: curvatures and reflections on a grid.
 
 use super::arguments::refused;
 use crate::arrays;
@@ -10,8 +10,8 @@ use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyArray3, ToPyArray};
 use pyo3::prelude::*;
 
-/// A surface at a grid of parameters: normals, curvatures, and how light plays on it. Where it is
-/// singular all numbers are NaN.
+/// A surface at a grid of parameters: normals, curvatures, and reflections. All numbers are NaN at
+/// singular points.
 #[pyclass(frozen, module = "moldloft._core")]
 pub struct Look {
     shape: [usize; 2],
@@ -19,7 +19,7 @@ pub struct Look {
     looks: Vec<Option<One>>,
 }
 
-/// So many are worth another thread.
+/// Number of points from which work is done in another thread.
 const LARGE: usize = 4_000;
 
 impl Look {

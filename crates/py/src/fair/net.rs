@@ -263,7 +263,7 @@ impl Net {
     }
 }
 
-/// What the four rims keep: at both ends of u, then of v.
+/// Conditions at the four rims: at both ends of u, then of v.
 fn rims(words: &[String; 4]) -> PyResult<[[EndContinuity; 2]; 2]> {
     let rim = |k: usize| match words[k].as_str() {
         "corners" => Ok(EndContinuity::Free),
@@ -281,7 +281,7 @@ pub struct Web {
     degree: usize,
 }
 
-/// A curve before and after, and how far these are apart: certified, and found by sampling.
+/// A curve before and after, and their distance: certified, and by sampling.
 type PairOfCurves = (Spline, Spline, f64, f64);
 
 #[pymethods]

@@ -165,7 +165,7 @@ pub fn point_spacing(word: &str, direction: [f64; 3]) -> PyResult<PointSpacing> 
     words::spacing(word).map_err(refused)
 }
 
-/// What a condition asks for: its word and vectors.
+/// A condition from its word and vectors.
 fn demand((word, t, v, second): &PlacedCondition) -> PyResult<(f64, Demand)> {
     let v = Vec3::from(*v);
     let demand = match word.as_str() {
@@ -273,7 +273,7 @@ pub fn data<'py>(
     Ok((spline(fit.points), spline(fit.original), dict))
 }
 
-/// Which of the user's conditions contradict each other or the tolerance.
+/// Error for the user's conditions that contradict each other or the tolerance.
 pub fn contradiction(
     conditions: &[usize],
     ends: bool,

@@ -77,7 +77,7 @@ impl Spline {
             let vectors: Vec<Vec3> = samples.iter().map(|s| s.derivatives[k] * scale).collect();
             dict.set_item(name, rows(py, &vectors))?;
         }
-        // Whether the curve is plane is identified by all of it.
+        // Whether the curve is plane depends on all of it.
         let normal = shape::plane_normal(&self.samples(4));
         let curvature = |s: &Sample| match normal {
             Some(n) => s.signed_curvature(n),
@@ -94,7 +94,7 @@ impl Spline {
 
 #[pymethods]
 impl Spline {
-    /// `form`: "floating", "clamped" or "closed" uniform knots where none are given.
+    /// `form`: "floating", "clamped" or "closed" uniform knots, if none are given.
     #[new]
     #[pyo3(signature = (points, degree, form, knots=None, weights=None, period=None))]
     fn new(
@@ -378,7 +378,7 @@ fn told_of(points: &[Vec3], finding: DataFinding) -> Reported {
     }
 }
 
-/// What stands out among data at any spacing: kind, point, vector, sentence.
+/// Findings among data at any spacing: kind, point, vector, sentence.
 #[pyfunction]
 pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Reported>> {
     let points = vectors(&points)?;
@@ -386,8 +386,8 @@ pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResul
     Ok(found.into_iter().map(|f| told_of(&points, f)).collect())
 }
 
-/// What stands out along lines through numbered points (each its points and whether it is closed), but
-/// for marked points: the line, and the rest as for `data_findings`.
+/// Findings along lines through numbered points (each its points and whether it is closed), except
+/// at marked points: the line, and the rest as for `data_findings`.
 #[pyfunction]
 pub fn line_findings(
     points: PyReadonlyArray2<'_, f64>,
@@ -400,7 +400,7 @@ pub fn line_findings(
     Ok(found.into_iter().map(|(line, f)| (line, told_of(&points, f))).collect())
 }
 
-/// Whether points are exact from break to break; see `moldloft::fair::is_exact`.
+/// True if the points between breaks are exact; see `moldloft::fair::is_exact`.
 #[pyfunction]
 pub fn is_exact(
     points: PyReadonlyArray2<'_, f64>,
@@ -429,7 +429,7 @@ fn check_lines(points: &[Vec3], lines: &[(Vec<usize>, bool)]) -> PyResult<()> {
     }
 }
 
-/// How large an error of each point would be found.
+/// The smallest error of each point that would be found.
 #[pyfunction]
 pub fn detectable<'py>(
     py: Python<'py>,

@@ -23,11 +23,11 @@ pub struct PyFacets {
     loose: LinesAndPoints,
 }
 
-/// So many triangles are worth another thread.
+/// Number of triangles from which work is done in another thread.
 const LARGE: usize = 20_000;
 
 impl PyFacets {
-    /// What takes long for many triangles, in another thread then, so that Ctrl-C is heard.
+    /// Work that is long for many triangles, in another thread then, so that Ctrl-C is handled.
     fn of_facets<R: Send + 'static>(
         slf: &Bound<'_, Self>,
         work: impl FnOnce(&Self) -> R + Send + 'static,
@@ -161,8 +161,8 @@ impl PyFacets {
         Ok(Self::new(simple, self.over))
     }
 
-    /// The volumes of the connected parts of the solids' surface, how many bodies these are, and where bodies
-    /// only touch.
+    /// The volumes of the connected parts of the solids' surface, the number of bodies, and the
+    /// contacts of bodies.
     #[allow(clippy::type_complexity)]
     fn shells<'py>(
         slf: &Bound<'py, Self>,
@@ -208,7 +208,7 @@ impl PyFacets {
         Ok((PyArray1::from_vec(slf.py(), centres), worst))
     }
 
-    /// How many pairs of triangles cut each other.
+    /// Number of intersecting pairs of triangles.
     fn crossings(slf: &Bound<'_, Self>) -> PyResult<usize> {
         Self::of_facets(slf, |facets| crossing_faces(&facets.mesh, None).len())
     }

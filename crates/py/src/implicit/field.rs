@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// So many points are worth another thread.
+/// Number of points from which work is done in another thread.
 pub const LARGE: usize = 20_000;
 
 /// An implicit function.
@@ -24,7 +24,7 @@ pub struct PyField {
     pub slots: Slots,
 }
 
-/// How many points a thread takes at a time.
+/// Number of points that a thread evaluates at a time.
 const CHUNK: usize = 1 << 14;
 
 impl PyField {
@@ -354,7 +354,7 @@ impl PyField {
         self.inner.is_sheet()
     }
 
-    /// What it was made as, with its dimensions.
+    /// Constructor with dimensions.
     fn form<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let form = self.inner.form();
         let dict = PyDict::new(py);

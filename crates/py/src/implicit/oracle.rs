@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where the first exception of a function is kept until the call ends.
+/// Storage of a function's first exception until the call ends.
 type Slot = Arc<Mutex<Option<PyErr>>>;
 
 /// The slots of all functions in an expression.
@@ -34,7 +34,7 @@ impl Slots {
         self.0.is_empty()
     }
 
-    /// The first exception; afterwards there is none.
+    /// Returns and clears the first exception.
     pub fn take(&self) -> Option<PyErr> {
         let mut taken = self.0.iter().filter_map(|s| lock(s).take());
         let first = taken.next();
@@ -57,7 +57,7 @@ pub struct PythonOracle {
     slot: Slot,
 }
 
-/// Step of the differences that stand for a gradient, as a share of the coordinates.
+/// Step of the differences for a gradient, relative to the coordinates.
 const STEP: f64 = 1e-6;
 
 impl PythonOracle {

@@ -338,7 +338,7 @@ impl PySet {
         Self::of_all(&sets, Set::intersection_of)
     }
 
-    /// -1 in the solid, 0 on the surface, 1 in air; the points lie on the surfaces of `known`.
+    /// -1 in the solid, 0 on the surface, 1 in air; the points are on the surfaces of `known`.
     fn members<'py>(
         &self,
         py: Python<'py>,
@@ -362,7 +362,7 @@ impl PySet {
         Ok(PyArray1::from_vec(py, out))
     }
 
-    /// The number of the leaf that decides at each point, -1 where there is none.
+    /// The number of the deciding leaf at each point, -1 without one.
     fn winners<'py>(
         &self,
         py: Python<'py>,
@@ -411,7 +411,7 @@ impl PySet {
             let over = if empty { unit() } else { region(set, given(corners))? };
             let options = FacetOptions { limit, budget, ..FacetOptions::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
-            // Only what is given is taken over: what a caller times or counts is what was done.
+            // Only the given facets are reused: time and counts are those of the work done.
             let pieces = if plain {
                 let facets = moldloft::field::refacet(set, &over, &options, before.as_deref())?;
                 Pieces::Solid(Arc::new(facets))
@@ -595,7 +595,7 @@ impl PySet {
         Ok(PyBytes::new(py, &png))
     }
 
-    /// The box around the set that is used when none is given.
+    /// The default box around the set.
     fn around(&self, py: Python<'_>) -> PyResult<([f64; 3], [f64; 3])> {
         let over = self.long(py, |set, _| region(set, None))?;
         Ok((over.low.to_array(), over.high.to_array()))

@@ -10,8 +10,8 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline};
 
-/// An interpolating spline: the twice differentiable piecewise cubic through the points, with
-/// knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
+/// The twice differentiable piecewise cubic interpolating spline through points, with knots at the
+/// cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
 ///
 /// With the default ends two points give a line, three a parabola, four or more a spline without
 /// knots at the second and the last but one point (not-a-knot). Neighbouring points must differ.
@@ -24,13 +24,17 @@ use moldloft_spline::{End, Ends, InterpolatingSpline};
                CCurve d({A, B, C, D}, ends = \"clamped\", start = {3, 1, 0}, end = {4, -2, 1});"
 )]
 pub struct CCurve<T: Real> {
-    /// The points it passes through, two or more.
+    /// Points of the curve, at least 2; neighbouring points must differ.
     #[field(min_items = 2)]
     points: Vec<Point<T>>,
-    /// 3 for the cubic spline, 1 for a polyline.
+    /// 3: cubic spline. 1: polyline, without end conditions. 2: the same as 3, for at most three
+    /// points.
     #[field(default = 3, min = 1, max = 3)]
     degree: usize,
-    /// End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+    /// Conditions at both ends: "notaknot", "natural" (zero second derivative), "bessel" (slope of
+    /// the parabola through the three nearest points), "quadratic" (the end piece is a parabola),
+    /// "clamped" (slopes `start` and `end`) or "periodic" (closed; the last point equals the first,
+    /// at least 4 points).
     #[field(default = "notaknot")]
     ends: EndRule,
     /// Slope dC/dt at the start, for clamped ends.

@@ -19,8 +19,8 @@ impl<T: Real, C> Ended<T, C> {
     }
 }
 
-/// The trace of a polyline through points, side k of which ends at `shares[k]`: the lines between the point
-/// objects, where all points are objects and each differs from the next.
+/// The trace of a polyline through points, with the fractions `shares` at the ends of its sides:
+/// the lines between the point objects, if all points are objects and each differs from the next.
 pub(crate) fn polyline<T: Real>(points: &[Point<T>], shares: Vec<T>) -> Trace<T> {
     let sides = points.windows(2).zip(shares);
     let pieces = sides.map(|(ends, until)| Piece::straight(ends[0].key?, ends[1].key?, until));

@@ -9,12 +9,12 @@ foil_kind!(
     /// A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
     /// between 3, 4 or 5 points.
     ///
-    /// Three points: nose, thickness point and tail of half a section, which runs from nose to
-    /// tail. Four: tail, thickness point, nose and lower tail of a symmetric section. Five: a lower
-    /// thickness point before the lower tail; the camber is half the sum of the two signed
-    /// thicknesses. Sections of four and five points run from the tail along the upper side to the
-    /// nose at t = 1/2, and back along the lower side. Only the distance of a thickness point from
-    /// the chord matters: it is half the nominal thickness.
+    /// Three points: nose, thickness point and tail of half a section, from nose to tail. Four:
+    /// tail, thickness point, nose and lower tail of a symmetric section. Five: a lower thickness
+    /// point before the lower tail; the camber is half the sum of the two signed thicknesses.
+    /// Sections of four and five points extend from the tail along the upper side to the nose at t
+    /// = 1/2, and back along the lower side. Only the distance of a thickness point from the chord
+    /// matters: it is half the nominal thickness.
     ///
     /// The parameter is the square root of the position along the chord, so that the nose is smooth; the
     /// speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the

@@ -70,7 +70,7 @@ impl<T: Real> ParallelCurve<T> {
         let mut places = Vec::with_capacity(ends.len() * (CUSP_TRIALS + 1));
         for span in ends.windows(2) {
             let at = |k: usize| span[0] + (span[1] - span[0]) * k as f64 / CUSP_TRIALS as f64;
-            // Breaks are looked at from both sides, both ends from inside.
+            // Breaks are tested from both sides, both ends from inside.
             let inside = |t: f64| match t {
                 0.0 | 1.0 => t,
                 _ => t.clamp(span[0].next_up(), span[1].next_down()),

@@ -21,7 +21,7 @@ fn placed<T: Real>(
 /// Type 0: Cartesian offset (a, b, c). Type 1: cylindrical, with a the distance from the z axis, b
 /// the angle from x toward y, c the height. Type 2: spherical, with a the distance, b the
 /// longitude, c the latitude. The point defaults to the frame's origin. A point given as `frame`
-/// stands for world axes at that point.
+/// means the world axes at that point.
 #[derive(Kind)]
 #[kind(
     class = Point,

@@ -1,4 +1,4 @@
-//! Arguments of searches: a shape, or a point on it that says where to begin.
+//! Arguments of searches: a shape, or a point on it as the start of the iteration.
 
 use moldloft_num::{Plane, Real, Vec3};
 use moldloft_registry::{CallError, Class, CurveRef, FieldRef, FromValue, SurfaceRef, Value};
@@ -12,7 +12,7 @@ fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
 pub struct Along<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
-    /// Where to begin.
+    /// Start of the iteration.
     pub start: Option<f64>,
 }
 
@@ -60,7 +60,7 @@ pub struct Onto<T: Real> {
 }
 
 impl<T: Real> Onto<T> {
-    /// Where to begin.
+    /// Start of the iteration, real parts.
     pub fn from(&self) -> Option<[f64; 2]> {
         self.start.map(|uv| uv.map(|x| x.re()))
     }
@@ -84,7 +84,7 @@ impl<T: Real> FromValue<T> for Onto<T> {
     }
 }
 
-/// What things are intersected with or projected to.
+/// Targets of intersections and projections.
 #[derive(Clone, Debug)]
 pub enum Target<T: Real> {
     /// A plane.

@@ -120,7 +120,7 @@ pub(super) fn piercing<T: Real>(
     Ok((t, found(&solution.report, advice), [u, v]))
 }
 
-/// The foot of a point on a curve. With `ends` a foot at an end is as good as any.
+/// The foot of a point on a curve. With `ends`, an end counts as a foot.
 pub(super) fn foot<T: Real>(
     along: &Along<T>,
     point: Vec3<T>,

@@ -1,4 +1,4 @@
-//! The shape of an intersection: pieces near it, and the place of each point on both shapes.
+//! The curve of an intersection: pieces near it, and the position of each point on both shapes.
 
 use super::equations::PlainField;
 use moldloft_locate::PlainSurface;
@@ -10,7 +10,7 @@ use moldloft_num::{
 };
 use moldloft_registry::{FieldRef, SurfaceRef};
 
-/// What the surface is cut by.
+/// The second shape of a cut.
 #[derive(Clone)]
 pub(super) enum Second<T: Real> {
     Plane(Plane<T>),
@@ -68,9 +68,9 @@ pub(super) const NODES: usize = 8;
 /// Powers of the length along a piece.
 pub(super) const RUN: usize = NODES + 1;
 
-/// A stretch of the intersection with a cubic near it, both with a parameter y from -1 to 1: the
-/// place is the point of the intersection in the plane across the cubic. The length up to it is a
-/// polynomial to rounding, so that neither it nor its derivatives depend on where pieces end.
+/// A part of the intersection with a cubic near it, both with a parameter y from -1 to 1: the point
+/// is the intersection with the normal plane of the cubic. The length up to it is a polynomial to
+/// rounding, so that neither it nor its derivatives depend on the ends of pieces.
 #[derive(Clone, Debug)]
 pub(super) struct CutPiece<T> {
     /// Length along the snake at which it begins, and its own length.
@@ -82,7 +82,7 @@ pub(super) struct CutPiece<T> {
     pub run: [T; RUN],
     /// The unknowns in powers of y, nearly: where iterations begin.
     pub places: [Unknowns; NODES],
-    /// True where these are the unknowns to rounding, so that none needs to be solved for.
+    /// True if these are the unknowns to rounding, so that no iteration is needed.
     pub exact: bool,
     /// True where the intersection may bend at its beginning: at a joint or a seam of a surface.
     pub joint: bool,
@@ -110,7 +110,7 @@ pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
     [value, slope]
 }
 
-/// Where the unknowns nearly are.
+/// Approximate unknowns at `y`.
 pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
     let mut q = places[NODES - 1];
     for p in places[..NODES - 1].iter().rev() {
@@ -120,7 +120,7 @@ pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
 }
 
 impl<T: Real> CutPiece<T> {
-    /// Where the length from the beginning of the piece is `run`.
+    /// Position in the piece at the length `run` from its start.
     pub fn at_length(&self, run: T) -> T {
         let plain = self.run.map(|x| x.re());
         let goal = run.re();
@@ -152,20 +152,21 @@ pub(super) struct Cut<T: Real> {
     pub closed: bool,
 }
 
-/// The surface and what it is cut by.
+/// The surface and the second shape of a cut.
 #[derive(Clone)]
 pub(super) struct Both<T: Real> {
     pub first: SurfaceRef<T>,
     pub second: Second<T>,
 }
 
-/// Both shapes at a place of the cut: where it is, unit tangent, derivatives by the length.
+/// Both shapes at a point of the cut: position, unit tangent, derivatives with respect to the
+/// length.
 pub(super) struct CutJet<T> {
     pub x: Vec3<T>,
     pub tangent: Vec3<T>,
-    /// Of u and v.
+    /// First derivatives of u and v.
     rate: [T; 2],
-    /// Of the second order, and that of the place itself.
+    /// Second derivatives of u and v, and of the position.
     bend: [T; 2],
     pub curvature: Vec3<T>,
 }
@@ -261,7 +262,7 @@ impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
 }
 
 impl<T: Real> Both<T> {
-    /// All unknowns at `y` of a piece, of which `q` are the plain ones, with what they owe to the
+    /// All unknowns at `y` of a piece, from the real ones `q`, with derivatives with respect to the
     /// model's parameters.
     pub fn unknowns(&self, guide: &Guide, q: Unknowns, y: T) -> Option<[T; 4]> {
         if T::PARTS == 1 {
@@ -281,8 +282,8 @@ impl<T: Real> Both<T> {
         }
     }
 
-    /// Derivatives by the length at a place, in the direction of `d`: with N = n1 x n2 for normals
-    /// that are no unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
+    /// Derivatives with respect to the length at a point, in the direction of `d`: with N = n1 x n2
+    /// for normals that are not unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
     pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<CutJet<T>> {
         let j = self.first.jet(u, v, order);
         let k = match &self.second {
@@ -316,7 +317,7 @@ impl<T: Real> Both<T> {
         if order != Order::Second {
             return Some(found);
         }
-        // How the normal S_u x S_v changes along the tangent.
+        // Change of the normal S_u x S_v along the tangent.
         let turn = |s: &SurfJet<T>, [a, b]: [T; 2]| {
             (s.uu * a + s.uv * b).cross(s.v) + s.u.cross(s.uv * a + s.vv * b)
         };
@@ -342,7 +343,7 @@ impl<T: Real> Both<T> {
 }
 
 impl<T: Real> Cut<T> {
-    /// The piece with the share `t` of the length, and the length into it.
+    /// The piece at the fraction `t` of the length, and the length into it.
     fn share(&self, t: T) -> (&CutPiece<T>, T) {
         let s = self.total * t;
         let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
@@ -352,8 +353,8 @@ impl<T: Real> Cut<T> {
 
     /// (u, v, 0) with derivatives by t.
     ///
-    /// The parameter is the share of the length, so derivatives are those by the length, from the
-    /// normals of both shapes: they do not depend on where the pieces end.
+    /// The parameter is the fraction of the length, so derivatives are those with respect to
+    /// length, from the normals of both shapes: they do not depend on the ends of pieces.
     fn place(&self, t: T, order: Order) -> CurveJet<T> {
         let first = PlainSurface(&*self.both.first);
         let second = self.both.second.plain();
@@ -387,7 +388,7 @@ impl<T: Real> Curve<T> for Cut<T> {
         super::on_surface::on_surface_jet(&self.both.first, self.place(t, order), order)
     }
 
-    /// Place by place, as single ones.
+    /// Point by point, independently.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         let first = PlainSurface(&*self.both.first);
         let second = self.both.second.plain();
@@ -398,7 +399,7 @@ impl<T: Real> Curve<T> for Cut<T> {
         }
     }
 
-    /// Where it crosses joints and seams of the surfaces.
+    /// Crossings of joints and seams of the surfaces.
     fn breaks(&self) -> Vec<f64> {
         let share = |p: &CutPiece<T>| p.begin.re() / self.total.re();
         self.pieces[1..].iter().filter(|p| p.joint).map(share).collect()

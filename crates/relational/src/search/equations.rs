@@ -61,7 +61,7 @@ impl<T: Real> LevelOf<T> {
         }
     }
 
-    /// What [`LevelOf::plain`] holds on to.
+    /// The field behind [`LevelOf::plain`].
     pub fn plain_field(&self) -> Option<PlainField<'_, T>> {
         match self {
             LevelOf::Field(field) => Some(PlainField(field)),
@@ -162,12 +162,12 @@ impl<T: Real> Implicit<T, 2> for Between<'_, T> {
 pub enum Moving<T: Real> {
     /// It stays.
     Fixed(Vec3<T>),
-    /// It runs along a curve.
+    /// It moves along a curve.
     Curve(CurveRef<T>),
 }
 
 impl<T: Real> Moving<T> {
-    /// Where it is at `t`.
+    /// Position at `t`.
     pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         match self {
             Moving::Fixed(p) => p.map(J::fixed),
@@ -273,7 +273,7 @@ pub struct OnRay<'a, T: Real> {
 }
 
 impl<T: Real> OnRay<'_, T> {
-    /// Where the ray begins and which way it goes.
+    /// Start and direction of the ray.
     pub fn ray<J: Jet<T>>(&self, t: J) -> [Vec3<J>; 2] {
         let p = self.point.at(t);
         let d = match self.rays {

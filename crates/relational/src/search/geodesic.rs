@@ -1,10 +1,10 @@
 //! Geodesics between two magnets.
 //!
-//! A path X(t) = S(w(t)) is a geodesic run evenly when its second derivative is normal to the
-//! surface: S_u . X'' = S_v . X'' = 0. X is the polynomial through its places at Chebyshev's nodes, and
-//! the equations are asked for at the inner ones (collocation; Trefethen 2000, Spectral Methods in
-//! MATLAB, chapters 6 and 7). They need no more than second derivatives of the surface for Newton's
-//! method, and so for the exact derivatives of its solution.
+//! A path X(t) = S(w(t)) of constant speed is a geodesic if its second derivative is normal to the
+//! surface: S_u . X'' = S_v . X'' = 0. X is the polynomial through its points at Chebyshev nodes,
+//! and the equations hold at the inner ones (collocation; Trefethen 2000, Spectral Methods in
+//! MATLAB, chapters 6 and 7). Newton's method, and the exact derivatives of its solution, need
+//! second derivatives of the surface only.
 
 use crate::arguments::{Magnet, common_surface};
 use crate::snake::OnSurface;
@@ -15,10 +15,10 @@ use moldloft_registry::{
     Build, CallError, Context, CurveRef, Kind, SearchReport, SearchStatus, SurfaceRef, Value,
 };
 
-/// Numbers of spans between nodes that are tried until the path no longer changes.
+/// Successive numbers of spans between nodes, until the path has converged.
 const SPANS: [usize; 5] = [8, 16, 24, 36, 54];
 
-/// More of them for paths of several turns, and how many there are for a turn at least.
+/// Further numbers for paths of several turns, and minimum number of spans per turn.
 const MORE_SPANS: [usize; 3] = [80, 120, 180];
 const SPANS_A_TURN: f64 = 12.0;
 
@@ -28,7 +28,7 @@ const SETTLED: f64 = 1e-11;
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// How far outside of the surface a path may run, in u and v.
+/// Maximum distance of a path beyond the surface, in u and v.
 const OUTSIDE: f64 = 1e-9;
 
 /// The shortest path on a surface between two magnets, more exactly a geodesic: a curve of zero
@@ -37,8 +37,8 @@ const OUTSIDE: f64 = 1e-9;
 /// Of several geodesics it is the one found by Newton's method from the straight line of the
 /// parameter plane: on surfaces with little curvature between the magnets, the shortest. On a
 /// closed surface those across its seam are tried too, and the shortest is the result (of equal
-/// ones, the one inside the seam); `turns_u` and `turns_v` select another. Its parameter on the
-/// surface changes from 1 to 0 at the seam.
+/// ones, the one inside the seam); `turns_u` and `turns_v` select another. At the seam the
+/// parameter on the surface jumps between 0 and 1.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -59,7 +59,7 @@ pub struct GeoSnake<T: Real> {
     /// path with 0, 1 or -1.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,
-    /// The same for the seam v = 0.
+    /// Number of forward crossings of the seam v = 0; see `turns_u`.
     #[field(min = -10, max = 10)]
     turns_v: Option<i32>,
 }
@@ -90,7 +90,7 @@ impl<T: Real> Build<T> for GeoSnake<T> {
     }
 }
 
-/// A surface that goes on beyond its seams.
+/// A surface continued across its seams.
 struct SeamlessSurface<'s, T: Real> {
     surface: &'s SurfaceRef<T>,
     round: [bool; 2],
@@ -102,8 +102,8 @@ impl<T: Real> SeamlessSurface<'_, T> {
     }
 }
 
-/// The turns by which ways lead over the seams: those asked for, else none and the way round the
-/// other side.
+/// Candidate turns across the seams: the given ones; by default none, and one in the opposite
+/// direction.
 fn ways<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -135,13 +135,13 @@ fn ways<T: Real>(
     Ok(us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v])).collect())
 }
 
-/// A way has to be shorter by this share to count as such.
+/// Relative difference by which a path must be shorter to be preferred.
 const SHORTER: f64 = 1e-6;
 
-/// What was found: how far the last refinement moved the places, steps, places.
+/// Change in the last refinement, number of iterations, and parameters of the nodes.
 type Solved = (f64, usize, Vec<[f64; 2]>);
 
-/// The shortest of some ways, with its turns.
+/// The shortest of the paths with the given turns.
 fn shortest<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -152,7 +152,7 @@ fn shortest<T: Real>(
     for &turns in ways {
         let end = [to[0] + turns[0], to[1] + turns[1]];
         match solved(sheet, [from, end], turns != [0.0; 2]) {
-            // Over a crease at the seam there is no smooth way.
+            // A crease at the seam excludes a smooth path.
             Ok(found) if found.0 > CREASED && ways.len() > 1 && turns != [0.0; 2] => {}
             Ok(found) => {
                 let length = length(sheet, &found.2);
@@ -241,7 +241,7 @@ fn equations<T: Real>(
     let mut rest = Vec::with_capacity(2 * inner);
     let mut matrix = if with_matrix { vec![T::zero(); 4 * inner * inner] } else { Vec::new() };
     for k in 1..m - 1 {
-        // Of the differences of places: the largest entries belong to the nearest nodes.
+        // From differences of positions: the largest entries belong to the nearest nodes.
         let own = jets[k].p;
         let bend = (0..m)
             .filter(|&j| j != k)
@@ -293,7 +293,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |a, x| a.max(x.abs()))
 }
 
-/// The plain places at the nodes, of a way over a seam or not.
+/// The real parameters at the nodes, for a path across a seam or not.
 fn solved<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
@@ -432,8 +432,8 @@ impl<T: Real> GeodesicPath<T> {
         let ends = [from, [last[0] + turns[0], last[1] + turns[1]]];
         let places = derived(sheet, ends, plain).ok_or_else(super::outcome::tangent)?;
         let [from, to] = ends;
-        // p at node k is what is beyond the line over sin^2 / 4; its coefficients follow from the
-        // orthogonality of sines.
+        // The polynomial p at node k is the deviation from the line over sin^2 / 4; its
+        // coefficients follow from the orthogonality of sines.
         let coefficient = |j: usize| {
             (1..n).fold([T::zero(); 2], |sum, k| {
                 let (t, theta) = (node(k, n), angle(k, n));
@@ -456,8 +456,8 @@ impl<T: Real> GeodesicPath<T> {
     }
 }
 
-/// The places with what they owe to the model's parameters: one step of Newton's method in T, of
-/// which the real part is left out.
+/// Parameters of the nodes with derivatives with respect to the model's parameters: one step of
+/// Newton's method in T, without its real part.
 fn derived<T: Real>(
     sheet: &SeamlessSurface<T>,
     [from, to]: [[T; 2]; 2],
@@ -488,7 +488,7 @@ impl<T: Real> CurveFormula for GeodesicPath<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
-        // In y = cos(theta) of the nodes, which runs from 1 to -1.
+        // In y = cos(theta) of the nodes, from 1 to -1.
         let y = t * -2.0 + 1.0;
         let s = -t + 1.0;
         let bump = t * s;

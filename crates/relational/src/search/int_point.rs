@@ -16,8 +16,8 @@ use moldloft_registry::{
 /// The point that three planes, surfaces or zero sets of fields have in common.
 ///
 /// With magnets instead of surfaces it is the point found by Newton's method from there. Without
-/// them all points are sought: the one nearest to `near`, by default nearest to the middle of the
-/// surfaces' parameters, is the result, and the others are reported.
+/// them all points are searched: the result is the one nearest to `near`, by default to the middle
+/// of the surfaces' parameters, and the others are reported.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -73,7 +73,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
             });
         }
         let near = self.near.map(|p| p.xyz.re());
-        // The surfaces first; which comes when does not change what they have in common.
+        // Surfaces first; the order does not affect the intersection.
         shapes.sort_by_key(|shape| !matches!(shape, IntersectedShape::Surface(_)));
         let point = match starts.len() {
             0 => planes(&shapes, near)?,
@@ -131,7 +131,7 @@ fn planes<T: Real>(
         let length = back.norm();
         if length <= 1e-15 * (1.0 + x.norm()) || length >= last && length <= 1e-9 * (1.0 + x.norm())
         {
-            // One step in T: what the place owes to the model's parameters.
+            // One step in T adds the derivatives with respect to the model's parameters.
             let back = step(Vec3::lifted(x))?;
             return Ok(Point::free(Vec3::lifted(x) - back.map(|b| b - b.re())));
         }
@@ -174,7 +174,7 @@ fn common<T: Real, const N: usize>(
         (_, Some(field)) => Other::Level(field),
         _ => Other::Surface(&surfaces[k]),
     });
-    // A magnet says where to begin on its surface; on the others it is the place nearest to it.
+    // A magnet is the start on its surface; on the others the start is the point nearest to it.
     let begin = starts.iter().zip(&surfaces).find_map(|(start, surface)| {
         let [u, v] = (*start)?;
         Some(moldloft_num::Surface::jet(surface, u, v, Order::Zero).p)

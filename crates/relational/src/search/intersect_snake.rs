@@ -1,4 +1,4 @@
-//! Snakes along which a surface meets a plane or another surface.
+//! Intersections of a surface with a plane, another surface or a field.
 
 use super::arguments::{Onto, Target};
 use super::cut::{Both, Cut, CutJet, Second};
@@ -15,20 +15,21 @@ use moldloft_registry::{
     SurfaceRef, Value,
 };
 
-/// The intersection of a surface with a plane or another surface, as a snake on the first; its
-/// parameter is the fraction of its length.
+/// The intersection of a surface with a plane, another surface or the zero set of a field, as a
+/// snake on the surface. Its parameter is the fraction of its length.
 ///
-/// A magnet selects the branch nearest to it; a bare surface, the branch nearest to its middle (of
-/// the surface declared first). Other branches are reported. The snake has the direction n1 x n2,
-/// the product of both normals, from edge to edge; or runs from the magnet `start` to the magnet
-/// `end`, which must be on the intersection and keep their identity, so that patches join. A closed
-/// branch begins at the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface
-/// declared first: cuts of two surfaces by each other are one curve. Each of its points is on both
-/// shapes, to rounding. It crosses the seam of a closed surface, where its parameter on the surface
-/// changes from u = 1 to u = 0.
+/// A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of its
+/// parameters (of the surface declared first). Other branches are reported. The direction of the
+/// snake is n1 x n2, the product of both normals. It extends from edge to edge, or from the magnet
+/// `start` to the magnet `end`, which must be on the intersection and keep their identity, so that
+/// patches join. A closed branch begins at the point nearest to the magnet or, without one, to
+/// S(0.3, 0.4) of the surface declared first: the cuts of two surfaces by each other are the same
+/// curve. Each point is on both shapes to rounding. At the seam of a closed surface the parameter
+/// jumps between 0 and 1.
 ///
-/// All branches longer than 2 % of the size with a transversal point are found. Shapes that only
-/// touch have no intersection.
+/// All branches are found that are longer than 2 % of the size and somewhere cross at an angle
+/// larger than the shapes turn within that length; of two branches closer than that all along, one
+/// may be missed. Shapes that only touch have no intersection.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -44,7 +45,7 @@ pub struct IntSnake<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
-    /// Start: a magnet or ring of the intersection.
+    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,
@@ -76,7 +77,7 @@ pub struct IntCurve<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet on it), or the field with the zero set.
     target: Target<T>,
-    /// Start: a magnet or ring of the intersection.
+    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
     start: Option<Magnet<T>>,
     /// End.
     end: Option<Magnet<T>>,
@@ -214,7 +215,7 @@ impl<T: Real> Implicit<T, 4> for AtEdge<'_, T> {
     }
 }
 
-/// Where a branch ends at an edge, with derivatives.
+/// End of a branch at an edge, with derivatives.
 fn edge_point<T: Real>(
     first: &SurfaceRef<T>,
     second: &Second<T>,
@@ -362,14 +363,14 @@ fn traced<T: Real>(
     Ok((shape, found))
 }
 
-/// What tells the branches of two shapes apart, and where a closed one begins: alike for both cuts of two surfaces,
-/// each by the other.
+/// Data that select a branch of two shapes and the start of a closed one; the same for both cuts of
+/// two surfaces by each other.
 struct BranchReference<T> {
     /// The shape, 0 or 1, that decides: of two named surfaces the one declared first, unless the other alone is given by
     /// a magnet.
     side: usize,
-    /// The magnet, or a place beside the symmetries that surfaces have, so that as a rule one place of a closed branch is
-    /// the nearest.
+    /// The magnet, or a point off the usual symmetries of surfaces, so that the nearest point of a
+    /// closed branch is unique as a rule.
     place: Vec3<T>,
 }
 
@@ -549,7 +550,7 @@ fn set_up<T: Real>(
         let q = both.unknowns(&piece.guide, stop.station.q, T::from(y))?;
         both.along(q, stop.station.tangent, order)
     };
-    // How far the snake's own ends are beyond those of its pieces, as far as they move.
+    // Distance of the snake's ends beyond those of its pieces, as far as they depend on parameters.
     let mut offsets = [T::zero(); 2];
     for (k, place) in places.iter().enumerate() {
         if let Some(place) = place {
@@ -564,8 +565,8 @@ fn set_up<T: Real>(
         let slope = d.re().dot(stops[0].station.tangent);
         offsets = [(level - level.re()) * (-1.0 / slope); 2];
     } else if whole {
-        // The branch begins where (X - M) . T is zero, the derivative of which by the length is
-        // 1 + (X - M) . k with the curvature k.
+        // The branch begins where (X - M) . T is zero; the derivative of this with respect to the
+        // length is 1 + (X - M) . k with the curvature k.
         let end = at_end(0, Order::Second).ok_or_else(failed)?;
         let away = end.x - reference;
         let slope = 1.0 + away.re().dot(end.curvature.re());
@@ -581,7 +582,7 @@ fn set_up<T: Real>(
     Ok(Cut { trace: Trace::own(), both, pieces, total, size: crossing.size, closed: whole })
 }
 
-/// Stations nearer than this share of the way to the next are moved onto a joint.
+/// Stations within this fraction of the distance to the next are moved onto a joint.
 const NEAR_JOINT: f64 = 0.1;
 
 /// The stations of a branch, with others at the joints of the surfaces between them, so that pieces
@@ -629,7 +630,7 @@ fn with_joints<T: Real>(
                 continue;
             }
             let stop = PieceEnd { station: s, joint: Some((k, x)) };
-            // A station very near it gives way, but for the ends and other joints.
+            // Stations very near to it are removed, except ends and other joints.
             let tiny = 1e-7 * crossing.size;
             let last = stops.len() - 1;
             let movable = last > 0
@@ -724,8 +725,8 @@ fn cut_before(branch: &mut Branch, station: &TracePoint) {
     }
 }
 
-/// The share of the chord between two stations at which it is nearest to a place, and how far away;
-/// at a crease both stations are one place.
+/// Position of the nearest point on the chord between two stations, as a fraction, and its
+/// distance; at a crease the stations coincide.
 fn nearest_on_chord(a: &TracePoint, b: &TracePoint, x: Vec3) -> (f64, f64) {
     let chord = b.x - a.x;
     let length = chord.norm_sq();

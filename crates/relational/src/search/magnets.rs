@@ -53,7 +53,7 @@ pub(super) fn foot<T: Real>(
     Ok((uv, found(&solution.report, ANOTHER)))
 }
 
-/// How far on both sides of a knuckle its place is looked at.
+/// Offset in the parameter on both sides of a knuckle.
 pub(super) const BESIDE: f64 = 1e-9;
 
 fn foot_refined<T: Real>(
@@ -82,7 +82,7 @@ fn foot_refined<T: Real>(
     refined(&system, at, T::zero()).ok_or_else(tangent)
 }
 
-/// Where the line through a point meets the surface.
+/// Intersection of the surface and the line through a point.
 pub(super) fn on_ray<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,
@@ -226,7 +226,7 @@ impl<T: Real> Build<T> for XYZMagnet<T> {
         (p[a], p[b]) = (self.value1, self.value2);
         let mut d = [T::zero(); 3];
         d[3 - a - b] = T::one();
-        // From the middle of the surface, so that of several the middle one counts as nearest.
+        // From the middle of the surface, which selects the middle one of several.
         p[3 - a - b] = T::from(
             self.surface.surface.jet(T::from(0.5), T::from(0.5), Order::Zero).p.re()[3 - a - b],
         );

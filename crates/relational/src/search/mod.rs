@@ -1,6 +1,6 @@
-//! Constructions that need a search: projections, intersections and nearest points. The searches
-//! are those of `moldloft_locate`, on real parts; their results get derivatives by the implicit
-//! function theorem, and a report that goes with the value.
+//! Projections, intersections and nearest points. The searches of `moldloft_locate` use real parts;
+//! derivatives of the results follow by the implicit function theorem. A report is attached to the
+//! value.
 
 mod arguments;
 mod beads;

@@ -15,9 +15,9 @@ pub(super) fn on_surface_jet<T: Real>(
     jet
 }
 
-/// The parameters at which a way in the parameter plane of a surface crosses its breaks, together
-/// with the way's own, ascending. The nodes are so near each other that between two the way crosses
-/// a line once at most.
+/// The parameters at which a path in the parameter plane of a surface crosses its breaks, together
+/// with the path's own breaks, ascending. The nodes are close enough for the path to cross a line
+/// at most once between two of them.
 pub(super) fn crossings(
     lines: &[Vec<f64>; 2],
     own: Vec<f64>,

@@ -1,4 +1,4 @@
-//! From reports of searches to what a value carries, and to faults.
+//! Conversion of reports of searches to those of values, and to errors.
 
 use moldloft_locate::{LocateReport, LocateStatus};
 use moldloft_registry::{CallError, SearchReport, SearchStatus};

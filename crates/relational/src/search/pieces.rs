@@ -6,22 +6,22 @@ use super::cut::{
 use moldloft_locate::march::{Crossing, TracePoint, Unknowns};
 use moldloft_num::{Order, Real, Vec3};
 
-/// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
-/// that they do not depend on where the stations are.
+/// Maximum relative error of the speed along a piece: lengths are then exact to rounding, and
+/// independent of the stations.
 const SPEED_ACCURACY: f64 = 1e-12;
 
-/// The unknowns along a piece may be off by this share of the size in space: so they lie on both
+/// Maximum error of the unknowns along a piece, relative to the size in space: points are on both
 /// shapes to rounding.
 const PLACE_ACCURACY: f64 = 1e-13;
 
 /// A stretch between stations is halved this many times at most.
 const MOST_HALVINGS: u32 = 8;
 
-/// Where a fit is compared besides at its ends.
+/// Points besides the ends at which a fit is checked.
 const CHECKS: [f64; 3] = [-0.95, -0.1, 0.9];
 
-/// A place at which pieces end: a station, and the joint of a surface that it lies on, as the number
-/// of an unknown and its value there.
+/// End of pieces: a station and, at a joint of a surface, the number of the unknown and its value
+/// there.
 #[derive(Clone, Copy)]
 pub(super) struct PieceEnd {
     pub station: TracePoint,
@@ -34,7 +34,7 @@ impl From<TracePoint> for PieceEnd {
     }
 }
 
-/// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
+/// True for the two stations at a seam: the same point, with an unknown that is 0 here and 1 there.
 pub(super) fn at_seam(a: &TracePoint, b: &TracePoint) -> bool {
     (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
 }
@@ -64,7 +64,7 @@ pub(super) struct PieceFit {
     exact: bool,
 }
 
-/// The length per y at a point of the intersection across from the guide's: with (X - c) . c' = 0,
+/// Derivative of the length with respect to y at the point of the intersection opposite to the guide's: with (X - c) . c' = 0,
 /// X' . c' = c' . c' - (X - c) . c''. `None` where the point is so far from the guide that it moves
 /// back as the guide goes on; the tangent may have either sense.
 fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> Option<T> {
@@ -96,7 +96,7 @@ fn between(a: &TracePoint, b: &TracePoint, y: f64) -> Unknowns {
 type Matrix = [[f64; NODES]; NODES];
 
 impl PieceFit {
-    /// The stretch between two stops, and whether its speed and its places are polynomials.
+    /// The part between two stops, and whether its speed and its unknowns are polynomials.
     fn new(
         crossing: &Crossing<'_>,
         matrix: &Matrix,
@@ -123,7 +123,8 @@ impl PieceFit {
         let there = |y: f64, q: &Unknowns| {
             crossing.distance(q, &guess(&places, y)) <= PLACE_ACCURACY * crossing.size
         };
-        // At its ends the place is the cubic's and the tangent its own, unless the surface is creased.
+        // At its ends the position is the cubic's and the tangent its own, unless the surface has a
+        // crease.
         let along =
             |k: usize, y: f64| ends[k].joint.is_some() || near(y, on_guide(&guide, y)[1].norm());
         let mut good = along(0, -1.0) && along(1, 1.0);
@@ -139,7 +140,8 @@ impl PieceFit {
     }
 }
 
-/// The unknowns in powers of y, from those in the middle: so rounding is a share of what changes.
+/// Coefficients of the unknowns in powers of y, relative to the middle, so that rounding is
+/// relative to the variation.
 fn powers(matrix: &Matrix, at: &[Unknowns; NODES]) -> [Unknowns; NODES] {
     let base = at[NODES / 2];
     let each: [[f64; NODES]; 4] = std::array::from_fn(|k| {
@@ -157,7 +159,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
     let mut all: Vec<PieceFit> = Vec::with_capacity(stops.len());
     let mut seam = false;
     for pair in stops.windows(2) {
-        // Nothing lies between the two stations at a seam or a crease.
+        // At a seam or a crease the stations coincide.
         let [a, b] = [&pair[0].station, &pair[1].station];
         if at_seam(a, b) || a.x == b.x {
             seam = true;
@@ -196,8 +198,8 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
     Some(all)
 }
 
-/// A piece, and how its ends move along it: the place that is at a joint of the surface is another
-/// one when the model's parameters change. `joint` gives it.
+/// A piece, with the motion of its ends along it: the point at a joint of the surface changes with
+/// the model's parameters. `joint` gives it.
 pub(super) fn laid<T: Real>(
     both: &Both<T>,
     fit: &PieceFit,
@@ -222,8 +224,8 @@ pub(super) fn laid<T: Real>(
     let mut length = polynomial(&run, 1.0)[0];
     run[0] = -polynomial(&run, -1.0)[0];
     length += run[0];
-    // How far the joint is beyond the end of the piece, as far as it is due to the parameters. On its
-    // own side of the joint: the surface may be bent there.
+    // Distance of the joint beyond the end of the piece, as far as it depends on parameters; on its
+    // own side of the joint, since the surface may have a crease there.
     let beyond = |k: usize| -> Option<T> {
         let at = fit.ends[k].joint.filter(|_| T::PARTS > 1)?;
         let place = joint(&fit.ends[k].station.q, at)?;

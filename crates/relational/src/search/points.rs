@@ -70,7 +70,7 @@ impl<T: Real> Build<T> for ProjPoint<T> {
     }
 }
 
-/// The most steps of a descent, and how near to the level and across it the foot is, as a share of the way.
+/// Maximum number of steps of a descent, and its relative tolerances in the level and across.
 const STEPS: usize = 200;
 const NEAR: f64 = 1e-13;
 
@@ -133,7 +133,7 @@ fn foot_system<T: Real>(field: &FieldRef<T>, p: Vec3, x: Vec3) -> ([T; 16], f64,
     (a, l, f, g)
 }
 
-/// How the foot of a moving point moves: its derivative, given the point's.
+/// Derivative of the foot for that of the point.
 pub(super) fn foot_rate<T: Real>(
     field: &FieldRef<T>,
     point: Vec3<T>,

@@ -24,10 +24,11 @@ const LEAST_STEP: f64 = 1e-9;
 /// A foot may not move farther than this in u or v during a step: then it has jumped.
 const LONGEST_MOVE: f64 = 0.15;
 
-/// A Newton step this short, as a share of the size, leaves an error of its square: below rounding.
+/// Length of a Newton step, relative to the size, after which the error (its square) is below
+/// rounding.
 const CLOSE: f64 = 1e-8;
 
-/// Places read from a table may be off by this share of the size.
+/// Maximum error of positions from a table, relative to the size.
 const TABLE_ACCURACY: f64 = 1e-13;
 
 /// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
@@ -176,7 +177,7 @@ impl<T: Real> Curve<T> for OntoMirror<T> {
     moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }
 
-/// The keys of magnets that stand at the ends of a path.
+/// Keys of magnets at the ends of a path.
 fn end_keys<T: Real>(
     path: &ProjectedPath<T>,
     magnets: &[Magnet<T>],
@@ -219,14 +220,14 @@ struct ProjectionSample {
     rate: [f64; 3],
 }
 
-/// The way of the projection in the parameter plane of the surface.
+/// The path of the projection in the parameter plane of the surface.
 struct ProjectedPath<T: Real> {
     surface: SurfaceRef<T>,
     point: Moving<T>,
     rays: Option<Rays<T>>,
     size: f64,
     nodes: Vec<ProjectionSample>,
-    /// Made when a place is asked for first.
+    /// Computed on first use.
     table: OnceLock<Table<3>>,
 }
 
@@ -455,7 +456,7 @@ impl<T: Real> ProjectedPath<T> {
         table.at(t).unwrap_or_else(|| self.sought(t).0)
     }
 
-    /// (u, v, 0) at `t` with derivatives; over a seam it goes from 1 to 0.
+    /// (u, v, 0) at `t` with derivatives; at a seam it jumps between 1 and 0.
     fn place(&self, t: T, order: Order) -> CurveJet<T> {
         let mut jet = self.run_on(t, order);
         let [u, v] = within(self.surface.closed(), [jet[0].x, jet[0].y]);
@@ -492,7 +493,7 @@ impl<T: Real> Curve<T> for Projected<T> {
         super::on_surface::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
     }
 
-    /// Place by place, as single ones: none depends on the others.
+    /// Each evaluated separately; they are independent of each other.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         for (out, &t) in out.iter_mut().zip(ts) {
             let [w, ..] = self.path.place(T::from(t), Order::Zero);
@@ -500,7 +501,7 @@ impl<T: Real> Curve<T> for Projected<T> {
         }
     }
 
-    /// Those of the curve, and where the projection crosses those of the surface.
+    /// Breaks of the curve, and crossings of the projection with those of the surface.
     fn breaks(&self) -> Vec<f64> {
         let own = match &self.path.point {
             Moving::Curve(curve) => curve.breaks(),

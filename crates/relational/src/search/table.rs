@@ -1,15 +1,15 @@
-//! Unknowns along a curve as polynomials, where these are the solutions to rounding: a table that
-//! places are read from instead of being solved for.
+//! Unknowns along a curve as polynomials, where these agree with the solutions to rounding: a table
+//! to read instead of solving.
 
 use moldloft_num::Real;
 
-/// Points that a polynomial goes through.
+/// Number of interpolation points of a polynomial.
 const NODES: usize = 10;
 
 /// Stretches are halved this many times at most.
 const MOST_HALVINGS: u32 = 5;
 
-/// Where polynomials are compared with solutions, in a stretch from -1 to 1.
+/// Positions in a piece, from -1 to 1, at which polynomials are compared with solutions.
 const CHECKS: [f64; 4] = [-1.0, -0.3, 0.62, 1.0];
 
 /// N unknowns along a parameter from 0 to 1.
@@ -47,14 +47,14 @@ impl<const N: usize> Table<N> {
         self.spans.iter().map(|span| (span.from, span.until, span.terms.is_none()))
     }
 
-    /// The table of `solved` between the ascending `ends`, 0 and 1 included. `same` says whether two
-    /// values are one place.
+    /// The table of `solved` between the ascending `ends`, 0 and 1 included. `same` compares two
+    /// values.
     pub fn new(
         ends: &[f64],
         solved: impl Fn(f64) -> Option<[f64; N]>,
         same: impl Fn(&[f64; N], &[f64; N]) -> bool,
     ) -> Self {
-        // From values at the nodes to terms.
+        // From values at the nodes to coefficients.
         let matrix: [[f64; NODES]; NODES] = std::array::from_fn(|j| {
             let share = if j == 0 { 1.0 } else { 2.0 } / NODES as f64;
             std::array::from_fn(|k| share * Real::cos(j as f64 * angle(k)))

@@ -88,7 +88,7 @@ pub fn edge<T: Real>(surface: SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef
 pub struct UVSnake<T: Real> {
     /// The surface.
     surface: SurfaceRef<T>,
-    /// Constant parameter, "u" or "v"; the snake runs along the other.
+    /// Constant parameter, "u" or "v".
     parameter: Arc<str>,
     /// Value of the constant parameter.
     value: T,

@@ -31,7 +31,7 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
         let mut spans = vec![0.0];
         spans.extend(&breaks);
         spans.push(1.0);
-        // All lines of the surface are sought at the same parameters of the path.
+        // All lines of the surface are searched at the same parameters of the path.
         let known: RefCell<HashMap<u64, [f64; 2]>> = RefCell::default();
         let path = |t: f64| {
             *known.borrow_mut().entry(t.to_bits()).or_insert_with(|| {

@@ -57,7 +57,7 @@ impl<T: Real> Build<T> for BSurf<T> {
 /// sum w_ij N_i(u) N_j(v) (Piegl and Tiller 1997, equation 4.11).
 ///
 /// Knot vectors list every knot, end knots included: nu + degree_u + 1 of them, ascending; they are
-/// scaled to run from 0 to 1. Without them they are clamped and uniform, without weights all are 1.
+/// scaled to [0, 1]. By default knots are clamped and uniform, and weights are 1.
 #[derive(Kind)]
 #[kind(
     class = Surface,

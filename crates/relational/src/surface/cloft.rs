@@ -270,7 +270,7 @@ impl<T: Real> Loft<T> {
                 let share = |p: &Vec3<S>| (p[axis] - first) / (last - first);
                 let mut knots: Vec<S> = points.iter().map(share).collect();
                 if first.re() == last.re() {
-                    // Which two masters are wrong is identified by the knots.
+                    // The knots identify the two masters at fault.
                     knots = points.iter().map(|p| p[axis] - first).collect();
                 }
                 InterpolatingSpline::with_knots(&knots, points, ends)

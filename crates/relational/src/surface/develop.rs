@@ -15,7 +15,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, V
 /// rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
 /// = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 ///
-/// The rulings run from the ruling of both starts to that of both ends; cones about an end of a
+/// The rulings extend from the ruling of both starts to that of both ends; cones about an end of a
 /// curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and
 /// no edge has the divisions of its curve: build neighbours on an EdgeSnake of this surface. With
 /// `along` = "c1" (or "c2") u is the parameter of that curve and meshes join along it; a fan about
@@ -64,7 +64,6 @@ pub enum Phase {
     Fan {
         /// True if s is constant.
         first: bool,
-        /// Where.
         end: f64,
     },
     /// The curves are coplanar: any pairing is developable, so equal parameters are paired.

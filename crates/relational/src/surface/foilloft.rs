@@ -12,11 +12,11 @@ foil_kind!(
     /// Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
     /// laid between the points of the curves at u. A wing, a keel, a blade.
     ///
-    /// With three curves (nose, thickness, tail) v runs from nose to tail; with four (upper tail,
+    /// With three curves (nose, thickness, tail) v goes from nose to tail; with four (upper tail,
     /// thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the
     /// upper tail to the nose at v = 1/2, and back. Sections of the 6-series have the form of the
-    /// thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose
-    /// and tail must be distinct.
+    /// thickness ratio at u. If all curves meet in a point, the wing ends in it; elsewhere nose and
+    /// tail must be distinct.
     #[derive(Kind)]
     #[kind(
         class = Surface,
@@ -86,7 +86,7 @@ impl<T: Real> Column for FoilLoft<T> {
         }
     }
 
-    /// Edges run along nose and tail where the section ends there.
+    /// Edges are nose and tail if the section ends there.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.edges();
         if !self.closed {

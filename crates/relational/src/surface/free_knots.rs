@@ -105,7 +105,7 @@ impl<T: Real> SurfaceFormula for FreeNet<T> {
         let [u_knots, v_knots] = self.knots.each_ref().map(plain);
         let columns = v_knots.knots.len() - v_knots.degree - 1;
         let weight = move |[u, v]: [f64; 2]| {
-            // Jets of no order would do: these carry slopes that are not looked at.
+            // These jets carry slopes that are not used; jets of order zero do not exist.
             let [(first_u, by_u), (first_v, by_v)] =
                 [u_knots.basis(Uni1 { f: u, t: 0.0 }), v_knots.basis(Uni1 { f: v, t: 0.0 })];
             let row = |i: usize| {

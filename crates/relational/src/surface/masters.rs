@@ -105,8 +105,8 @@ impl<T: Real> Masters<T> {
         }
     }
 
-    /// The edges of a surface that is straight from each master to the next, at even steps of v:
-    /// as [`Masters::edges`], and the other two run along the segments between the masters' ends.
+    /// The edges of a surface that is straight from each master to the next, at uniform steps of v:
+    /// as [`Masters::edges`], with the segments between the masters' ends as the other two.
     pub fn straight_edges(&self) -> Edges<T> {
         let mut edges = self.edges();
         let steps = self.0.len() - 1;

@@ -7,8 +7,8 @@ use moldloft_num::{Order, Real, SurfJet, Surface};
 use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 use smallvec::SmallVec;
 
-/// Surfaces side by side as one: piece k of N is run from u = (k - 1) / N to k / N (from v, with
-/// `along` = "v"), or between the breaks given.
+/// Adjacent surfaces as one: piece k of N has u from (k - 1) / N to k / N (v, with `along` = "v"),
+/// or between the given breaks.
 ///
 /// Each piece begins where the one before ends: edge u = 1 of the one is edge u = 0 of the other,
 /// point by point at equal v, within the model's tolerance. A piece is never reversed. Meshes join

@@ -20,16 +20,15 @@ use moldloft_registry::{
 use moldloft_spline::{BSplineCurve, CircularArc};
 use std::sync;
 
-/// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
-/// the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
+/// The fillet of a ball that rolls along two surfaces: circular arcs from its contact with the
+/// first, at v = 0, to its contact with the second, at v = 1; tangent to both.
 ///
-/// The centre of the ball is on the intersection of both surfaces offset by the radius; it runs
-/// from edge to edge or round a closed path, and u is the fraction of the length of that path. The
-/// direction and the choice among several paths follow IntSnake: a magnet selects the ball with the
-/// nearest contact. With `radii` the radius is a function of u (coefficients of a clamped uniform
-/// B-spline of degree at most 3): the centre is then in the plane across the path of a ball of
-/// `radius`, and arcs pass through both points of contact, tangent to both surfaces. A ball larger
-/// than a radius of curvature of either surface on its side is an error.
+/// The centre of the ball is on the intersection of both surfaces offset by `radius`, which extends
+/// from edge to edge or is closed; u is the fraction of its length. The direction and the selection
+/// among several paths follow IntSnake: a magnet selects the ball with the nearest contact. With
+/// `radii` the radius is a function of u: the centre is in the normal plane of the path for the
+/// constant `radius`, and the arcs pass through both contacts, tangent to both surfaces. A radius
+/// larger than a radius of curvature of either surface on its side is an error.
 ///
 /// `ContactSnake` gives the lines of contact on both surfaces, which are the edges v = 0 and v = 1.
 /// Parts of the surfaces bounded by them (`SubSurf`, `TrimSurf`) join the fillet exactly.
@@ -46,18 +45,19 @@ use std::sync;
 pub struct RollFillet<T: Real> {
     /// The first surface, or a magnet on it near the intended contact.
     surface1: Onto<T>,
-    /// The second surface, or a magnet of it.
+    /// The second surface, or a magnet on it near the intended contact.
     surface2: Onto<T>,
-    /// The radius of the ball.
+    /// Radius of the ball, greater than 0.
     #[field(min = 0)]
     radius: T,
     /// Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the other.
     #[field(default = 1, min = -1, max = 1)]
     side1: i32,
-    /// The same for the second surface.
+    /// Side of the ball for the second surface; see `side1`.
     #[field(default = 1, min = -1, max = 1)]
     side2: i32,
-    /// Radii along u: the coefficients of a B-spline.
+    /// Radii along u, greater than 0: coefficients of a clamped uniform B-spline of degree 3 (for n
+    /// < 4 coefficients: n - 1). Default: constant `radius`.
     radii: Option<Vec<T>>,
 }
 
@@ -162,7 +162,7 @@ fn spine<T: Scalar>(
 /// A ball that touches two surfaces.
 struct Ball<T: Real> {
     surfaces: [SurfaceRef<T>; 2],
-    /// Which parameters of both run round.
+    /// For both surfaces, true if u or v is closed.
     round: [[bool; 2]; 2],
     sides: [f64; 2],
     /// Path of the centre of a ball of `radius`.

@@ -194,8 +194,7 @@ impl<T: Real> SubPatch<T> {
 const AT_SEAM: f64 = 1e-9;
 
 impl<T: Real> SubPatch<T> {
-    /// True when both sides end where they begin: at one point object, or at the seam of a closed
-    /// surface that both run round.
+    /// True if both sides are closed: at one point object, or around the seam of a closed surface.
     pub fn is_closed(&self) -> bool {
         let SideLayout::Between(sides) = &self.layout else { return false };
         let round = seam::joined_sides(&self.surface);

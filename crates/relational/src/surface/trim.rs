@@ -85,7 +85,8 @@ const DIVISIONS: usize = 12;
 /// Maximum number of reductions of the turn until the area is right.
 const MAX_ROUNDS: usize = 6;
 
-/// The most points in the box of a part that is divided by curvature alone, and of one whose fineness is asked for.
+/// Maximum number of points in the box of a part that is divided by curvature alone, and of one
+/// with a given fineness.
 const MOST_POINTS: usize = 50_000;
 const MOST_FINE_POINTS: usize = 2_000_000;
 
@@ -235,7 +236,7 @@ fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T>
     CurveRef::snake(shape, surface.clone(), nesting)
 }
 
-/// A surface and the part of it that is kept.
+/// A surface with its trimmed region.
 struct Trimmed<T: Real> {
     surface: SurfaceRef<T>,
     hems: Vec<BorderCurve<T>>,
@@ -451,7 +452,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Call
             .in_field(TrimSurf::<T>::LOOPS))
     };
     let mut cycles = Vec::new();
-    // The loop so far, where it began and where it has come to.
+    // The open loop: its parts, its start and its end.
     let mut open: Option<(Vec<(usize, bool)>, Place<T>, Place<T>)> = None;
     for (k, snake) in snakes.iter().enumerate() {
         let [from, to] = [place(snake, 0.0), place(snake, 1.0)];

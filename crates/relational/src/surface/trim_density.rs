@@ -225,12 +225,13 @@ impl Stretch {
         between(&self.sum[k], &self.at[k], x)
     }
 
-    /// Lines along u and along v at whose crossings the points of the interior are: on the breaks and about 1 apart between
-    /// them, but not so many that there are more than `most` crossings. Where a surface folds its curvature has no bound.
+    /// Parameter lines in u and v whose intersections are the points of the interior: at the breaks
+    /// and about 1 apart between them, wider if there were more than `most` intersections, since
+    /// the curvature at a fold is unbounded.
     pub fn lines(&self, most: usize) -> [Vec<f64>; 2] {
         let reach = [0, 1].map(|k| self.sum[k][self.sum[k].len() - 1].max(1.0));
         let coarser = (reach[0] * reach[1] / most as f64).sqrt().max(1.0);
-        // The shorter way keeps a line or more.
+        // The shorter direction keeps at least one line.
         let shorter = reach[0].min(reach[1]);
         let coarser =
             if coarser > shorter { reach[0].max(reach[1]) / most as f64 } else { coarser };

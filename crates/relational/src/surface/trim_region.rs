@@ -23,7 +23,7 @@ const FOLD: f64 = 8.0 * MEETING;
 /// The most folds of a loop that are unfolded.
 const MAX_FOLDS: usize = 32;
 
-/// The share of the sides beside an unfolded corner that its vertices take.
+/// Fraction of the sides at an unfolded corner that its vertices occupy.
 const UNFOLDED: f64 = 1e-3;
 
 /// The parameter plane for triangulation, and the lines of points of the interior.
@@ -139,7 +139,7 @@ fn unfold<T: Real>(
     }
     let (polygon, places) = (&mut polygons[a.polygon], &cycles[a.polygon]);
     let count = polygon.len();
-    // The vertices from the end of one side to the start of the other, either way round.
+    // The vertices from the end of one side to the start of the other, in either direction.
     let between = |from: LoopSide, to: LoopSide| (from.at, (to.at + count - from.at) % count);
     let extent = |(from, steps): (usize, usize)| {
         let first = places[(from + 1) % count].map(T::re);

@@ -37,7 +37,7 @@ pub fn fault(text: &str) -> CallError {
     }
 }
 
-/// The scene of a text in which literal k of value x stands for `number(k, x)`.
+/// The scene of a text in which literal k of value x is replaced by `number(k, x)`.
 pub fn run<T: Scalar>(
     text: &str,
     number: &mut dyn FnMut(usize, f64) -> T,

@@ -15,8 +15,8 @@ const CHINES: &str = "AbsPoint S1(0, 0, 1.5); AbsPoint S2(0.4, 0, 0.6); AbsPoint
     PolyCurve b({b1, b2}); Line c1(T1, T2); Line c2(T2, T3); PolyCurve c({c1, c2});
     CLoftSurf hull({a, b, c});";
 
-/// Length of the chords between `count` equal steps of the parameter, each of which runs in the sense
-/// of the tangents at its ends, of equal length to the curvature.
+/// Length of the chords between `count` equal steps of the parameter, each in the direction of the
+/// tangents at its ends, corrected for curvature.
 fn unfolded_length(curve: &CurveRef<f64>, count: usize, what: &str) -> f64 {
     let jets: Vec<_> =
         (0..=count).map(|k| curve.jet(k as f64 / count as f64, Order::First)).collect();
@@ -45,7 +45,7 @@ fn a_waterline_from_the_bow_crosses_the_chine_once() {
     unfolded_length(w, 4000, "waterline");
     let (a, b) = (w.jet(0.0, Order::First), all.jet(1.0, Order::First));
     assert!(a[0].distance(b[0]) < 1e-12 && (a[1] + b[1]).norm() < 1e-11, "{a:?} {b:?}");
-    // Of the upper and the lower strake, each a parabola loft by chords: from dense bisection.
+    // For the upper and the lower strake, each a parabola loft by chords: from dense bisection.
     let mut length = 0.0;
     let hull = scene.surface("hull");
     let mut last: Option<Vec3> = None;
@@ -133,7 +133,7 @@ fn cutter(random: &mut Random, text: &mut String) {
     }
 }
 
-/// How far from zero, as a length: from a plane or along z from a surface given by its graph.
+/// Signed distance from a plane, or along z from a surface given by its graph.
 fn height(scene: &Scene<f64>, x: Vec3) -> f64 {
     match scene.value("cutter") {
         moldloft_registry::Value::Plane(p) => p.distance(x),
@@ -233,7 +233,7 @@ fn cuts_of_creased_surfaces_do_not_fold() {
         let near = |x: f64, y: f64, what: &str| {
             assert!((x - y).abs() < 1e-8 * all, "round {round}, {what}: {x} and {y}\n{text}");
         };
-        // The shorter way of a closed one may be meant.
+        // For a closed one the shorter path may be the result.
         if open {
             near(length("part"), all * (q - p), "part");
             near(length("back"), all, "back");

@@ -236,7 +236,7 @@ fn curves_made_from_others() {
     near(at(scene.curve("big"), 0.25), 3.0, 4.0, 0.0, 1e-14);
     near(at(scene.curve("up"), 1.0), 0.0, 0.0, -2.0, 1e-15);
     for t in [0.0, 0.2, 0.6, 1.0] {
-        // To the right of the way of a circle run against the clock is outside.
+        // The right-hand side of a clockwise circle is outside.
         assert!((at(scene.curve("out"), t).norm() - 2.5).abs() < 1e-14);
         let jet = scene.curve("in").jet(t, Order::Second);
         assert!((jet[0].norm() - 1.5).abs() < 1e-14);
@@ -376,7 +376,7 @@ fn parallels_of_curves_with_multiple_ends_have_the_limit_there() {
             }
         }
     }
-    // On a straight way every side does; inside of a bend the curvature has no bound.
+    // For a straight curve any distance is valid; inside a bend the curvature is unbounded.
     let scene = scene(
         "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(3, 0, 0); BCurve c({A, B, C, C}, 3);
          OffsetCurve right(c, 0.25, \"z=0\"); OffsetCurve left(c, -0.25, \"z=0\"); BCurve d({A, A, A, C}, 3);

@@ -1,4 +1,4 @@
-//! Points in one place, on one line, in one plane: every kind's example is finite or refused by name.
+//! Coincident, collinear and coplanar points: every kind's example is finite or refused by name.
 
 use crate::common::{Scene, attempt};
 use moldloft_num::{Curve, Order, Surface, Vec3};
@@ -6,10 +6,10 @@ use moldloft_registry::Value;
 use moldloft_testing::{Random, soak};
 use std::fmt::Write;
 
-/// A way in which points degenerate.
+/// A degeneration of points.
 type Degeneration = fn(&mut Vec<Vec3>, &mut Random);
 
-/// Of the first or last `count` points, counted from that end, the first takes the others' places.
+/// Replaces the first `count` points by the first of them.
 fn gathered(points: &mut [Vec3], count: usize) {
     let count = count.min(points.len());
     let first = points[0];
@@ -100,7 +100,7 @@ fn moved(text: &str, places: &[(std::ops::Range<usize>, Vec3)], points: &[Vec3])
     made + &text[at..]
 }
 
-/// Both ends of (0, 1), what is next to them, breaks and what lies between.
+/// Both ends of (0, 1), values next to them, breaks and values between.
 fn parameters(breaks: &[f64]) -> Vec<f64> {
     let mut all =
         vec![0.0, f64::EPSILON, 1e-9, 0.31, 0.5, 0.77, 1.0 - 1e-9, 1.0_f64.next_down(), 1.0];

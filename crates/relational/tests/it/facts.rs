@@ -1,4 +1,5 @@
-//! What shapes state of themselves: breaks and kinks against jumps found by bisection, facts and batches handed on by images.
+//! Facts of shapes: breaks and kinks against jumps found by bisection; facts and batches forwarded
+//! by images.
 
 use crate::common::scene;
 use moldloft_num::{Curve, Order, Pace, Rational, SurfJet, Surface, Vec3};
@@ -10,14 +11,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// So near to 0 and 1 derivatives may have no bound.
 const MARGIN: f64 = 1e-5;
 
-/// A change of a derivative across this width of the parameter, as a share of its size, is a jump.
+/// A change of a derivative within this interval of the parameter, relative to its size, is a jump.
 const WIDTH: f64 = 1e-11;
 const JUMP: f64 = 1e-5;
 
-/// A break is found within this of its place.
+/// Accuracy of a break that was found.
 const FOUND: f64 = 1e-8;
 
-/// The places at which a function jumps, by bisection of equal cells; what is small beside `least` is rounding.
+/// Jumps of a function, by bisection of equal cells; changes small relative to `least` are
+/// rounding.
 fn jumps(f: impl Fn(f64) -> Vec3, least: f64, cells: usize) -> Vec<f64> {
     // No break of an example is at a multiple of this.
     let at = |k: usize| MARGIN + (1.0 - 2.0 * MARGIN) * k as f64 / (cells as f64 + 1e-3);
@@ -162,7 +164,7 @@ impl Surface<f64> for Counted {
     }
 }
 
-/// Images of a surface, and what they take besides it.
+/// Images of a surface, and their further arguments.
 const IMAGES: [(&str, &str, bool); 6] = [
     ("MirrSurf", "\"y=0\"", true),
     ("RotatSurf", "axis, 0.7", true),
@@ -217,7 +219,7 @@ fn images_hand_on_facts_and_batches() {
         );
         assert_eq!(image.rational().paces == base.rational().paces, rational, "{name}");
 
-        // Batches give what single points give, and cost a batch of the base.
+        // Batches equal single points, and cost as much as a batch of the base.
         let single: Vec<Vec3> = uv.iter().map(|[u, v]| image.jet(*u, *v, Order::Zero).p).collect();
         let lines: Vec<Vec<SurfJet<f64>>> = ts
             .iter()

@@ -126,7 +126,7 @@ fn jets_equal_central_differences() {
     }
 }
 
-/// Numbers that tell what a value is.
+/// Numbers that characterise a value.
 fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
     let points: Vec<Vec3<T>> = match value {
         Value::Point(p) => {
@@ -167,13 +167,14 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
         Value::Numbers(a) => return a.items.clone(),
         Value::List(items) => return items.iter().flat_map(samples).collect(),
         Value::Contours(c) => {
-            // How far a point is from each section.
+            // Distance of a point from each section.
             let p = Vec3::of(0.3, -1.2, 0.8);
             return c.values.iter().map(|&value| c.family.height(value, p)).collect();
         }
         Value::Number(x) => return vec![*x],
-        // Vertices of the rim: how many there are inside may change. Where curvature spaces them they slide along it, too,
-        // so that those at stated parameters are taken, and the measures of the surface itself.
+        // Vertices of the rim: the number of inner ones may vary. Vertices spaced by curvature
+        // slide along it, so that those at given parameters are compared, and the measures of the
+        // surface itself.
         Value::Body(m) => match &m.border {
             Some(border) => {
                 let even = (0..=5).map(|k| T::from(f64::from(k) / 5.0)).collect::<Vec<_>>();
@@ -275,7 +276,7 @@ fn grid_equals_jets<T: Real>(name: &str, surface: &SurfaceRef<T>, accuracy: f64)
             };
             assert!(near(jet.p, points[k]), "{name} at {u}, {v}: {:?} {:?}", jet.p, points[k]);
             assert!(near(jet.p, only[k]), "{name} at {u}, {v}, points only");
-            // Where a surface is nearly singular its normal is rounding.
+            // If a surface is nearly singular its normal is dominated by rounding.
             let area = jet.u.re().cross(jet.v.re()).norm();
             if area > 1e-3 {
                 assert!(
@@ -368,7 +369,7 @@ fn is_at(scene: &Scene<f64>, key: Option<Key>, p: Vec3, what: &str) {
     }
 }
 
-/// Where a point is: an object, a corner of a surface or an end of a curve.
+/// Position of a point: an object, a corner of a surface or an end of a curve.
 fn place(scene: &Scene<f64>, key: Key) -> Vec3 {
     let value = |key: Key| &scene.0[key.0 as usize].value;
     match key.named() {

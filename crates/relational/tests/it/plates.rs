@@ -1,5 +1,5 @@
-//! Surfaces beside others, plates, foil lofts, tangent patches, joins and fits whose numbers are
-//! known, and what they refuse.
+//! Surfaces beside others, plates, foil lofts, tangent patches, joins and fits with known numbers,
+//! and their errors.
 
 use crate::common::{fault, scene};
 use moldloft_num::trace::{Edge, Root};
@@ -198,7 +198,7 @@ fn plates_are_not_stretched() {
             for n in &normals[1..] {
                 near(*n, normals[0], 1e-9);
             }
-            // Rulings are straight and run along both curves.
+            // Rulings are straight lines between both curves.
             let low = s.jet(u, 0.0, Order::First);
             let high = s.jet(u, 1.0, Order::First);
             let still = [low.u, high.u].iter().filter(|d| d.norm() < 1e-12).count();
@@ -224,7 +224,7 @@ fn plates_that_do_not_exist_are_refused() {
          DevSurf none(a, b);",
     );
     assert!(["rulings-cross", "no-rulings"].contains(&crossed.id), "{crossed:?}");
-    // A fan about an end of the curve whose parameter is asked for.
+    // A fan about an end of the curve whose parameter is u.
     let text = "AbsPoint G(0, 0, 0); AbsPoint H(2, 0.2, 0); AbsPoint I(6, 2.5, 0.5);
          AbsPoint J(-0.5, 0.3, 2); AbsPoint K(3.5, 0.2, 2); AbsPoint L(6.5, 2.2, 2.5); BCurve c({G, H, I});
          BCurve d({J, K, L}); DevSurf side(c, d, ALONG);";
@@ -234,7 +234,7 @@ fn plates_that_do_not_exist_are_refused() {
     for u in GRID {
         near(at(made.surface("side"), u, 1.0), made.curve("d").jet(u, Order::Zero)[0], 1e-15);
     }
-    // Curves that bend against each other: rulings would have to run back along one of them.
+    // Curves of opposite curvature: rulings would have to reverse along one of them.
     let back = crate::common::fault(
         "AbsPoint G(0, 0, 0); AbsPoint H(3, 0.4, -0.2); AbsPoint I(6, 2.5, 0.5);
          AbsPoint J(-0.5, 0.3, 2); AbsPoint K(3, 2.3, 1.8); AbsPoint L(6.5, 3.2, 2.5); BCurve c({G, H, I});
@@ -305,7 +305,7 @@ fn a_ball_in_a_corner_leaves_a_cylinder() {
         RollFillet S(floor, wall, 0.5, side2 = 1); RollFillet cone(floor, wall, 0.5, radii = {0.25, 0.75});";
     let scene = scene(text);
     let fillet = scene.surface("S");
-    // The normals are z and -y: the centre runs along y = 1.5, z = 0.5.
+    // The normals are z and -y: the centre is on y = 1.5, z = 0.5.
     let turned = at(fillet, 0.0, 0.0).x > 2.0;
     for (u, v) in places() {
         let angle = 0.5 * std::f64::consts::PI * v;
@@ -315,7 +315,8 @@ fn a_ball_in_a_corner_leaves_a_cylinder() {
             Vec3::of(x, 1.5 + 0.5 * angle.sin(), 0.5 - 0.5 * angle.cos()),
             1e-12,
         );
-        // Planes across the way of the centre, so x is the same; the radius goes from 1/4 to 3/4.
+        // The planes are normal to the path of the centre, so x is the same; the radius is from 1/4
+        // to 3/4.
         let r = 0.25 + 0.5 * u;
         let p = Vec3::of(x, 2.0 - r + r * angle.sin(), r - r * angle.cos());
         near(at(scene.surface("cone"), u, v), p, 1e-12);
@@ -366,7 +367,8 @@ fn a_ball_rolls_round_a_mast() {
         assert!((ring - 0.5).abs() < 1e-11, "{u} {v} {p:?}");
     }
     assert_eq!(fillet.edges().edges[1], Edge::SameAs(3));
-    // Where it touches: on the deck a circle of radius 1.5, on the mast one half above the deck.
+    // Contacts: on the deck a circle of radius 1.5, on the mast one at half the height above the
+    // deck.
     let touching = crate::common::scene(&format!(
         "{} ContactSnake ring(S, 1); ContactSnake foot(S, 2);",
         make(0.5)

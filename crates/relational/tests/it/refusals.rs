@@ -1,4 +1,4 @@
-//! What makes no shape is refused with an id and a place.
+//! Invalid shapes are refused with an id and a position.
 
 use crate::common::{attempt, fault};
 use moldloft_num::trace::Key;
@@ -46,7 +46,7 @@ fn each_fault_has_its_id_and_its_place() {
             0,
             None,
         ),
-        // Sweeps ask the model, which is not here.
+        // Sweeps need the model, which is not available here.
         ("ProcCurve o(b, D);", "no-model", 1, None),
         ("ProcSurf o(b, m);", "no-model", 1, None),
         ("LineSnake c(p, x);", "wrong-surface", 1, None),

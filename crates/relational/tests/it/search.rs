@@ -45,7 +45,7 @@ fn projections_onto_a_cylinder() {
     assert_eq!(status(&p), SearchStatus::EdgeClamped);
     let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProxMagnet q(P, S);"), "q");
     assert_eq!(status(&p), SearchStatus::Ok);
-    // Along y the line goes through both sides: the nearer is taken, the other is reported.
+    // The line along y meets both sides: the nearer is the result, the other is reported.
     let p = point(&format!("{TUBE} AbsPoint P(1, 9, 1); ProjMagnet q(P, S, \"y=0\");"), "q");
     near(p.xyz, 1.0, 3f64.sqrt(), 1.0);
     assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
@@ -116,7 +116,7 @@ fn what_does_not_meet_is_told() {
         (format!("{TUBE} {line} XYZBead k(l, \"w\", 2);"), "unknown-axis"),
         (format!("{TUBE} XYZMagnet k(S, \"x\", 1, \"x\", 2);"), "same-axis"),
         (format!("{TUBE} AbsPoint P(1, 2.5, 4); ProjMagnet q(P, S, \"z=0\");"), "no-intersection"),
-        // From y = 1 the projection down runs to the silhouette at y = 2.
+        // From y = 1 the downward projection extends to the silhouette at y = 2.
         (
             format!(
                 "{TUBE} AbsPoint P(1, 1, 4); AbsPoint Q(1, 2.5, 4); Line l(P, Q); ProjSnake s(l, S, \"z=0\");"
@@ -187,7 +187,7 @@ fn projected_snakes_lie_on_the_surface_and_have_their_jets() {
     }
 }
 
-/// What is compared of the objects called `names`: points, and places and tangents of curves.
+/// Compared values of the objects called `names`: points, and positions and tangents of curves.
 fn measured<T: Scalar>(
     text: &str,
     names: &[&str],
@@ -333,8 +333,9 @@ fn derivatives_of_intersection_snakes_are_exact() {
     check_derivatives(text, &["p", "q", "s", "o"], 1e-6);
 }
 
-/// Where an intersection bends much, its length is not that of a polynomial between stations; the
-/// derivatives by the length must not show where those are. And a crease that the cut crosses moves.
+/// At strong curvature the length of an intersection is not that of a polynomial between stations;
+/// the derivatives with respect to length must not depend on the stations. Also, a crease that the
+/// cut crosses moves.
 #[test]
 fn derivatives_of_intersections_are_exact_at_sharp_bends_and_creases() {
     // A saddle, and planes just above and below its middle; a hill, and one under its top.
@@ -383,7 +384,7 @@ fn closed_intersections_need_no_magnet_and_run_across_seams() {
         let [start, _, _] = c.jet(0.0, Order::Zero);
         let end = c.end(1.0);
         assert!(start.distance(end) < 1e-11);
-        // It begins at the place nearest to S(0.3, 0.4): straight across from it.
+        // It begins at the point nearest to S(0.3, 0.4): straight across from it.
         let a = 0.4 * std::f64::consts::TAU;
         let (y, z) = (2.0 * a.cos(), 2.0 * a.sin());
         assert!(start.distance(Vec3::of(1.5, y, z)) < 1e-9, "{start:?}");
@@ -447,7 +448,7 @@ fn three_shapes_have_common_points() {
     let p = point(&format!("{TUBE} XPlane x(1.5); YPlane y(1); IntPoint q(S, x, y);"), "q");
     near(p.xyz, 1.5, 1.0, 3f64.sqrt());
     assert_eq!(status(&p), SearchStatus::Ok);
-    // The whole tube: two, of which a magnet or a point chooses.
+    // The whole tube: two branches, one of which a magnet or a point selects.
     let two = format!("{PIPE} XPlane x(1.5); YPlane y(1);");
     let p = point(&format!("{two} IntPoint q(x, S, y);"), "q");
     assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
@@ -539,11 +540,11 @@ fn geodesics_are_straight_on_what_unrolls_and_great_circles_on_spheres() {
         "{TUBE} AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.8, 0.9); GeoSnake g(p, q, turns_u = 1);"
     );
     assert_eq!(fault(&turned).id, "no-seam");
-    // Along the rim of a cup the way leaves it.
+    // At the rim of a cup the path leaves it.
     let cup = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(1, 0, 0); AbsPoint B(3, 0, 2);
         Line m(A, B); RevSurf S(m, axis, 0, 3); AbsMagnet p(S, 0.001, 0.1); AbsMagnet q(S, 0.001, 0.9); GeoSnake g(p, q);";
     assert_eq!(fault(cup).id, "leaves-surface");
-    // Between opposite places of a sphere, of which three quarters are there, is no end of great circles.
+    // Opposite points of three quarters of a sphere have infinitely many great circles.
     let opposite = "AbsPoint O(0, 0, 0); AbsPoint X(3, 0, 0); AbsPoint Y(-3, 0, 0); AbsPoint Z(0, 3, 0); Line axis(O, X);
         Arc half(X, Z, Y); RevSurf S(half, axis, 0, 4.71238898038469); AbsMagnet p(S, 0.3, 0.1);
         AbsMagnet q(S, 0.7, 0.766666666666666667); GeoSnake g(p, q);";
@@ -613,7 +614,7 @@ fn geodesics_run_over_the_seams_of_what_is_closed() {
         let place = Vec3::of(0.6 * r * angle.cos(), 0.6 * r * angle.sin(), 0.8 * r);
         assert!(x.distance(place) < 1e-9, "{t} {x:?} {place:?}");
     }
-    // Closed both ways: the shortest over both seams of a ring, normal to it all along.
+    // Closed in both directions: the shortest across both seams of a ring, normal to it all along.
     let ring = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(4, 0, 0); AbsPoint C(3, 0, 0);
         AbsPoint D(3, 0, 1); Arc c(A, C, D, type = 6); RevSurf S(c, axis); AbsMagnet p(S, 0.95, 0.95);
         AbsMagnet q(S, 0.07, 0.08); GeoSnake g(p, q);";

@@ -1,4 +1,4 @@
-//! Lofts, sweeps, fillets and patches whose numbers are known, and what they refuse.
+//! Lofts, sweeps, fillets and patches with known numbers, and their errors.
 
 use crate::common::{fault, scene};
 use moldloft_num::trace::Edge;
@@ -243,7 +243,7 @@ fn a_curved_fillet_takes_on_curvature() {
         let parent = pipe.jet(w.x, w.y, Order::First);
         let n = parent.normal();
         assert!(jet.normal().cross(n).norm() < 1e-12);
-        // Of a unit cylinder: minus the square of the part round it.
+        // For a unit cylinder: minus the square of the circumferential part.
         let radial = Vec3::<f64>::of(n.x, n.y, 0.0);
         let round = Vec3::of(-radial.y, radial.x, 0.0);
         let expected = -jet.v.dot(round).powi(2) / jet.v.norm_sq();

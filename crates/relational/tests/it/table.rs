@@ -2,8 +2,8 @@
 
 use moldloft_relational::parts::Table;
 
-/// A smooth way near the edge of a surface is read to rounding everywhere; one with a corner is
-/// solved for around that only.
+/// A smooth path near the edge of a surface is read to rounding everywhere; one with a corner is
+/// solved near the corner only.
 #[test]
 fn smooth_ways_need_no_search() {
     let way = |t: f64| [0.97 + 0.02 * (3.0 * t).sin(), 0.4 + 0.3 * (2.0 * t).cos(), 7.0 * t];

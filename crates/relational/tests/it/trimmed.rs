@@ -106,7 +106,8 @@ fn parts_across_a_kink() {
     let area = 2f64.sqrt() * 1.75;
     assert!((exact(&part).area - area).abs() < 1e-12, "{:?}", exact(&part));
     assert!((part.of_triangles.area - area).abs() < 1e-3 * area, "{}", part.of_triangles.area);
-    // The z moment jumps over the kink: its derivative by the place of the corner at u = 0.625.
+    // The z moment jumps at the kink: its derivative with respect to the position of the corner at
+    // u = 0.625.
     let moment = |u: f64, seed: bool| -> (f64, f64) {
         let scene = run::<Dual4>(text, &mut |_, x| {
             let here = x == 0.625;

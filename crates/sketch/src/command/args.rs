@@ -29,7 +29,7 @@ impl<'a> Args<'a> {
         self.tokens.get(1)
     }
 
-    /// How many are left.
+    /// Number of remaining tokens.
     pub fn len(&self) -> usize {
         self.tokens.len()
     }
@@ -48,7 +48,7 @@ impl<'a> Args<'a> {
         )
     }
 
-    /// Whether the next token is this keyword: in full, or at least three letters of it.
+    /// True if the next token is this keyword: in full, or at least three letters of it.
     pub fn at(&self, keyword: &str) -> bool {
         self.peek().is_some_and(|t| {
             let word = t.text.to_ascii_uppercase();
@@ -77,12 +77,12 @@ impl<'a> Args<'a> {
         found
     }
 
-    /// Whether the token after `k` others is this keyword.
+    /// True if the token after `k` others is this keyword.
     pub fn tokens_at(&self, k: usize, keyword: &str) -> bool {
         self.tokens.get(k).is_some_and(|t| t.text.eq_ignore_ascii_case(keyword))
     }
 
-    /// Whether the token after `k` others is a number.
+    /// True if the token after `k` others is a number.
     pub fn number_at(&self, k: usize) -> bool {
         matches!(self.tokens.get(k).map(|t| &t.kind), Some(CommandTokenKind::Number(..)))
     }
@@ -119,7 +119,7 @@ impl<'a> Args<'a> {
         }
     }
 
-    /// Whether a number is next.
+    /// True if a number is next.
     pub fn at_number(&self) -> bool {
         matches!(self.peek().map(|t| &t.kind), Some(CommandTokenKind::Number(..)))
     }

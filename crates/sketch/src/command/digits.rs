@@ -3,7 +3,7 @@
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 
-/// Three significant digits: what a picture can tell.
+/// Three significant digits, the accuracy of a picture.
 pub(super) fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return 0.0;

@@ -68,7 +68,7 @@ impl SketchSession {
             return self.suggest(&object, name, axis, (p, q));
         }
         let value = args.value(object.units.as_deref())?;
-        // What is typed holds: FORWARD says so, REVERSED the contrary.
+        // The direction as typed: FORWARD confirms it, REVERSED inverts it.
         args.take("FORWARD");
         let turned = args.take("REVERSED");
         let range = args.range()?;
@@ -224,7 +224,7 @@ impl SketchSession {
         self.report_counts()
     }
 
-    /// A derived dimension without a value: it only shows what the others make it.
+    /// A derived dimension without a value: it shows the result of the others.
     fn measured(
         &mut self,
         object: &SketchObject,
@@ -247,8 +247,8 @@ impl SketchSession {
         Ok(())
     }
 
-    /// Whether a command that begins with this word is the value that an open question asks for: a number, or an
-    /// expression in quotes.
+    /// True if a command that begins with this word is the value for an open question: a number, or
+    /// an expression in quotes.
     pub(super) fn is_value(&self, first: &CommandToken) -> bool {
         let asked = matches!(self.question, Some(Question::Dimension { .. }));
         asked && matches!(first.kind, CommandTokenKind::Number(..) | CommandTokenKind::Text)
@@ -442,7 +442,7 @@ impl SketchSession {
             let old = object.units.clone().filter(|u| *u != unit);
             let given = !object.dimensions.is_empty() || !object.variables.is_empty();
             match old {
-                // Lengths are not relabelled: converted when that is said, else refused.
+                // Lengths are not relabelled: they are converted on request, otherwise refused.
                 Some(old) if given && !convert => {
                     return Err(CommandError::text(
                         format!("the numbers of {} are in {old}", object.name),

@@ -64,7 +64,7 @@ impl SketchSession {
     }
 
     pub(super) fn point(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        // POINT 7 1 2 has a label, POINT 1 2 has none.
+        // POINT 7 1 2 has a label, POINT 1 2 does not.
         let at_word = args.second().is_some_and(|t| t.text.eq_ignore_ascii_case("AT"));
         let labelled = at_word || args.len() >= 3;
         let id = if labelled { Some(args.point()?) } else { None };
@@ -102,7 +102,7 @@ impl SketchSession {
         Ok(())
     }
 
-    /// The active object; an unnamed one is begun when there is none (manual: NONAME).
+    /// The active object; without one an unnamed object is begun (manual: NONAME).
     fn active_or_noname(&mut self) -> Result<&mut SketchObject, CommandError> {
         if self.state.active.is_none() {
             self.insert(SketchObject::new("NONAME", None));
@@ -585,7 +585,7 @@ pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<DrawnLin
     })
 }
 
-/// `SET UP`, `SET NAMES`: what the letters mean.
+/// `SET UP`, `SET NAMES`: meaning of the letters.
 pub(super) fn set_letters(
     drawing: &mut Drawing,
     up: Option<CoordinateAxis>,

@@ -1,4 +1,4 @@
-//! What went wrong with a command: the code of 1983, what and where, and the next step.
+//! Errors of commands: the code of 1983, fault and position, and the next step.
 
 use super::subject::ReplySubject;
 
@@ -8,11 +8,11 @@ pub struct CommandError {
     /// The number of the 1983 table (manual, appendix E), or one of ours from 310, 701-703; 0 for
     /// faults of the text.
     pub code: u16,
-    /// What and where.
+    /// Fault and position.
     pub text: String,
-    /// What to do next.
+    /// Next step.
     pub next: String,
-    /// What it is about, as data.
+    /// Subject, as data.
     pub about: Box<ReplySubject>,
 }
 
@@ -23,7 +23,7 @@ impl CommandError {
         CommandError { code, text: text.into(), next: next.into(), about }
     }
 
-    /// The same with what it is about.
+    /// The error with a subject.
     #[must_use]
     pub fn about(self, about: ReplySubject) -> CommandError {
         CommandError { about: Box::new(about), ..self }
@@ -35,7 +35,7 @@ impl CommandError {
     }
 }
 
-/// What an error of a code is about that has no narrower kind of its own.
+/// Kind of an error without a narrower one, by its code.
 fn kind(code: u16) -> &'static str {
     match code {
         101 => "no-points",

@@ -231,7 +231,7 @@ impl SketchSession {
         Ok([args.value(units)?, args.value(units)?, args.value(units)?])
     }
 
-    /// MOVE, ROTATE, MIRROR, SCALE of what has no drawing to change, or by any angle.
+    /// MOVE, ROTATE, MIRROR, SCALE of objects without a drawing, or by any angle.
     pub(super) fn place(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let name = args.name("the name of an object")?;
         let object = self.known(&name)?.clone();

@@ -17,7 +17,7 @@ use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
 impl SketchSession {
-    /// All objects with what follows from them.
+    /// All objects with their derived data.
     pub fn objects(&mut self) -> Vec<ObjectData> {
         let objects: Vec<Arc<SketchObject>> = self.state.objects.values().map(Arc::clone).collect();
         objects.iter().map(|o| self.data(o)).collect()
@@ -232,7 +232,7 @@ impl SketchSession {
         self.draw_strokes(&strokes)
     }
 
-    /// Refuses lines that are too many, or lie too far off.
+    /// Refuses too many lines, and lines too far away.
     fn check_page(&self, size: f64, lines: usize) -> Result<(), CommandError> {
         let points = self.active()?.drawing.points.len() + 2 * lines;
         if size > 1e9 || points > super::session::MAX_POINTS {
@@ -350,7 +350,7 @@ impl SketchSession {
         let object = self.active_arc()?;
         let extension = format.to_ascii_lowercase();
         let file = file.unwrap_or_else(|| format!("{}.{extension}", object.name));
-        // The name of a file says what is in it.
+        // The extension of a file determines its format.
         let suffix = file.rsplit_once('.').map(|s| s.1.to_ascii_uppercase()).unwrap_or_default();
         let suffix = if suffix == "STP" { "STEP".to_owned() } else { suffix };
         match (format.as_str(), suffix.as_str()) {
@@ -467,7 +467,7 @@ impl SketchSession {
     }
 }
 
-/// The commands for what an object has more than before: points, lines, variables, curves.
+/// Commands for the additions to an object: points, lines, variables, curves.
 fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
     let mut out = Vec::new();
     let (a, b) = (&before.drawing, &now.drawing);

@@ -133,7 +133,7 @@ impl SketchSession {
         }
     }
 
-    /// Reports what is not connected to the reference, with suggestions.
+    /// Reports the parts without connection to the reference, with suggestions.
     pub(super) fn loose_lines(
         &self,
         object: &SketchObject,
@@ -239,8 +239,8 @@ impl SketchSession {
         Ok(())
     }
 
-    /// What a change of values has done to an otherwise finished object: planes that passed each
-    /// other, faces that are no longer flat, curves that no longer fit.
+    /// Effects of a change of values on an otherwise finished object: planes that passed each
+    /// other, faces that are not flat, curves that do not fit.
     pub(super) fn report_validity(&mut self) -> Result<(), CommandError> {
         self.report_validity_of(false)
     }
@@ -700,7 +700,7 @@ impl SketchSession {
         Ok(())
     }
 
-    /// The window on the page, as wide as all points when none was set.
+    /// The window on the page; by default that of all points.
     pub(super) fn window(&self) -> [f64; 4] {
         self.state.picture.window.unwrap_or_else(|| self.page())
     }

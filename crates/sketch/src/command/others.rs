@@ -11,7 +11,8 @@ use std::sync::Arc;
 pub(crate) type OtherNumbers = BTreeMap<String, f64>;
 
 impl SessionState {
-    /// The numbers of other objects that the expressions of one read. One that reads this object in its turn has none.
+    /// Numbers of other objects that the expressions of one refer to. An object with a reference
+    /// back to this one has none.
     pub fn others(&self, object: &SketchObject) -> OtherNumbers {
         let mut known = BTreeMap::from([(key(object), BTreeMap::new())]);
         self.read_by(object, &mut known)
@@ -27,7 +28,7 @@ impl SessionState {
             let Some((of, number)) = name.split_once('.') else { continue };
             let Some(other) = self.called(of) else { continue };
             if !known.contains_key(of) {
-                // Under way: what it reads may not read it.
+                // In progress: excludes circular references.
                 known.insert(of.to_owned(), OtherNumbers::new());
                 let read = self.read_by(other, known);
                 known.insert(of.to_owned(), numbers(other, &read));

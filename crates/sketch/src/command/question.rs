@@ -1,4 +1,4 @@
-//! What the program asks, until it is answered.
+//! Open questions of the program.
 
 use crate::object::SketchFace;
 use crate::{CoordinateAxis, PointId};
@@ -10,6 +10,6 @@ pub(crate) enum Question {
     Dimension { name: String, axis: CoordinateAxis, p: PointId, q: PointId, value: f64 },
     /// Is this candidate a face?
     Face { object: String, left: Vec<Vec<Vec<PointId>>>, taken: Vec<SketchFace> },
-    /// Which of several solids?
+    /// Selection of one of several solids.
     Solid { object: String, faces: Vec<Vec<SketchFace>> },
 }

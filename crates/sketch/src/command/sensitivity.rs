@@ -38,7 +38,7 @@ impl SketchSession {
     /// [`gradient`] of an object of the session.
     ///
     /// # Errors
-    /// As there, or the name of an object that there is none of.
+    /// As there; an unknown object's name is the error.
     pub fn gradient(&self, object: &str, by: &[String]) -> Result<SolidGradient, String> {
         let object = self.object(object).ok_or(object)?;
         gradient(object, &Planes::of(&object.drawing), by, &self.state.others(object))

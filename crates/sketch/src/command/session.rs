@@ -15,7 +15,7 @@ use moldloft_num::Real;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a session reads of the world.
+/// Access of a session to files.
 pub trait Files: Send + Sync {
     /// The text of a file.
     ///
@@ -43,12 +43,12 @@ impl Files for NullFiles {
     }
 }
 
-/// Bytes that a command asks the host to write.
+/// A file to be written by the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutFile {
-    /// The name that was asked for.
+    /// Name as given in the command.
     pub name: String,
-    /// What to write.
+    /// Content.
     pub bytes: Vec<u8>,
 }
 
@@ -59,13 +59,13 @@ pub struct CommandReply {
     pub severity: Severity,
     /// The code of 1983, for errors that have one.
     pub code: Option<u16>,
-    /// What is said; may have several lines.
+    /// Text of the reply; may have several lines.
     pub text: String,
     /// The next step, for errors and questions.
     pub next: Option<String>,
     /// A file to write.
     pub file: Option<OutFile>,
-    /// What it is about, as data.
+    /// Subject, as data.
     pub about: ReplySubject,
 }
 
@@ -106,7 +106,7 @@ impl CommandReply {
         }
     }
 
-    /// Whether the command was refused.
+    /// True if the command was refused.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
@@ -121,7 +121,7 @@ impl From<CommandError> for CommandReply {
     }
 }
 
-/// What the picture shows.
+/// State of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
     pub labels: bool,
@@ -131,7 +131,7 @@ pub(crate) struct Picture {
     pub types: bool,
     /// `SKETCH`, `TOP`, `FRONT`, `SIDE` or the name of a projection.
     pub view: String,
-    /// A face that stands out.
+    /// Highlighted face.
     pub face: Option<crate::FaceId>,
     /// The window on the page: left, bottom, right, top.
     pub window: Option<[f64; 4]>,
@@ -153,7 +153,7 @@ pub(crate) struct SessionState {
 /// The objects around a feature: all, the active one, and the name of the feature.
 pub(crate) type Outside = (IndexMap<String, Arc<SketchObject>>, Option<String>, String);
 
-/// What follows from a drawing, kept while it is the same.
+/// Data derived from a drawing, kept while it is the same.
 pub(crate) struct DrawingCache {
     drawing: Arc<crate::Drawing>,
     reference: Option<PointId>,
@@ -168,7 +168,7 @@ impl DrawingCache {
     }
 }
 
-/// An object with what follows from it, kept while it is the same.
+/// An object with its derived data, kept while it is the same.
 pub(crate) struct Worked {
     pub object: Arc<SketchObject>,
     pub view: Arc<DrawingCache>,
@@ -179,7 +179,7 @@ pub(crate) struct Worked {
 }
 
 impl Worked {
-    /// The valid body, or why there is none.
+    /// The valid body, or the reason for its absence.
     pub fn body(&self) -> Result<&SketchSolid<f64>, &NoBody> {
         let make = || body(&self.object, &self.view.planes, &self.layout);
         self.body.get_or_init(make).as_ref()
@@ -211,7 +211,7 @@ pub(super) struct Transaction {
 pub struct SketchSession {
     pub(crate) state: SessionState,
     undo: Vec<SessionState>,
-    /// How many states were too old to be kept.
+    /// Number of states discarded as too old.
     forgotten: usize,
     redo: Vec<SessionState>,
     history: Vec<String>,
@@ -223,9 +223,9 @@ pub struct SketchSession {
     worked: Vec<Arc<Worked>>,
     depth: usize,
     over: bool,
-    /// What SAVE and EXPORT wrote in the line that is running, which the host has not seen yet.
+    /// Files written by SAVE and EXPORT in the current line, not passed to the host yet.
     pub(crate) written: BTreeMap<String, Vec<u8>>,
-    /// What the journal takes in place of the command that is running.
+    /// Text for the journal instead of the current command.
     pub(crate) recorded: Option<String>,
     /// Replies of the command that is running.
     pub(crate) out: Vec<CommandReply>,
@@ -248,9 +248,9 @@ const LOOKS: [&str; 12] = [
     "END",
     "EXPORT",
 ];
-/// Commands that change what a body is made of and look at nothing themselves.
+/// Commands that can invalidate a body and do not check it themselves.
 const LOSES: [&str; 7] = ["WELD", "DELETE", "TYPE", "ALIGN", "UNALIGN", "LINE", "POLYLINE"];
-/// Undo goes back this far.
+/// Maximum number of undo steps.
 const MAX_UNDO: usize = 500;
 /// Points, lines and faces that all states of the way back hold together, at most.
 const MAX_PARTS: usize = 2_000_000;
@@ -368,7 +368,7 @@ impl SketchSession {
                 let changed = !same(&before, &self.state);
                 // The commands of a file were recorded one by one.
                 let nested = matches!(verb, "RUN" | "INPUT");
-                // What was drawn from a file is recorded as such: the file may be gone later.
+                // Drawing from a file is recorded as commands, since the file may not exist later.
                 let text = self.recorded.take().unwrap_or_else(|| command.text.clone());
                 let steps = matches!(verb, "UNDO" | "REDO");
                 // Questions and answers count too: an answer means nothing without its question.
@@ -382,7 +382,7 @@ impl SketchSession {
                 }
             }
             Err(fault) => {
-                // What a file did before its command was refused is taken back as well.
+                // Changes by a file before its refused command are undone too.
                 self.state = before;
                 self.recorded = None;
                 self.undo.truncate(marks.0.saturating_sub(self.forgotten));
@@ -393,7 +393,7 @@ impl SketchSession {
         replies
     }
 
-    /// Says so where the active object had a body before a command and has none now.
+    /// Reports that the active object has lost its body by a command.
     fn report_lost(&mut self, before: &SessionState) {
         let Some(key) = self.state.active.clone() else { return };
         let (Some(old), Some(new)) = (before.objects.get(&key), self.state.objects.get(&key))
@@ -417,7 +417,7 @@ impl SketchSession {
         }
     }
 
-    /// A state that UNDO goes back to.
+    /// Adds a state for UNDO.
     pub(super) fn push_undo(&mut self, before: SessionState) {
         self.undo.push(before);
         self.forget();
@@ -541,12 +541,12 @@ impl SketchSession {
         &self.journal[..self.settled()]
     }
 
-    /// Whether a question waits for an answer.
+    /// True if a question is open.
     pub fn asks(&self) -> bool {
         self.question.is_some()
     }
 
-    /// Whether the last line ended in `&`, so that the next one goes on with it.
+    /// True if the last line ended in `&`, so that the next one continues it.
     pub fn begun(&self) -> bool {
         !self.begun.is_empty()
     }
@@ -556,7 +556,7 @@ impl SketchSession {
         &self.history
     }
 
-    /// Whether QUIT was given.
+    /// True after QUIT.
     pub fn over(&self) -> bool {
         self.over
     }
@@ -697,7 +697,7 @@ impl SketchSession {
         self.active().map(|_| ())
     }
 
-    /// What follows from the drawing of an object.
+    /// Derived data of an object's drawing.
     pub(crate) fn view(&mut self, object: &SketchObject) -> Arc<DrawingCache> {
         let reference = object.reference().map(|r| r.point);
         let same = |v: &&Arc<DrawingCache>| {
@@ -845,7 +845,7 @@ pub(crate) fn lay_out<T: Real>(
     solve(object, &view.planes, overrides, &|| view.estimate().cloned())
 }
 
-/// Whether nothing was changed: objects are shared until they are.
+/// True if nothing was changed: unchanged objects are shared.
 pub(super) fn same(a: &SessionState, b: &SessionState) -> bool {
     a.active == b.active
         && a.sketch83 == b.sketch83

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl SketchSession {
-    /// Where the points of a fully dimensioned object are, or what is missing.
+    /// Positions of the points of a fully dimensioned object, or the missing dimensions.
     pub(super) fn placed(
         &mut self,
         object: &SketchObject,
@@ -311,7 +311,8 @@ impl SketchSession {
         loop {
             let (view, layout) = self.laid_out(&out);
             let found = suggestions(&out, &view, &layout).into_iter().flatten();
-            // What a picture says of the next one changes with each; a drawing that is exact says all at once.
+            // A picture's suggestion changes with each dimension; an exact drawing gives all at
+            // once.
             let many = if out.drawing.exact { usize::MAX } else { 1 };
             let found: Vec<Suggestion> = found.take(many).collect();
             if found.is_empty() {
@@ -504,7 +505,7 @@ impl SketchSession {
         self.faces_if_complete()
     }
 
-    /// Finds faces when everything is determined; else says what is missing.
+    /// Finds faces if everything is determined; otherwise reports the missing dimensions.
     fn faces_if_complete(&mut self) -> Result<(), CommandError> {
         let object = self.active()?.clone();
         let complete = self.laid_out(&object).1.complete();
@@ -661,8 +662,8 @@ impl SketchSession {
         };
         let object = self.known(&name)?.clone();
         let key = name.to_lowercase();
-        // By expressions, by other angles than quarter turns, about other places than the origin, and
-        // for what has no drawing: a feature.
+        // By expressions, by angles other than quarter turns, about points other than the origin,
+        // and for objects without a drawing: a feature.
         let quarters = |k: usize| args.number_of(k).is_some_and(|a| (a / 90.0).fract() == 0.0);
         let drawn = object.feature.is_none()
             && match verb {
@@ -732,7 +733,7 @@ fn pairs(loops: &[Vec<PointId>]) -> impl Iterator<Item = (PointId, PointId)> {
     loops.iter().flat_map(|c| (0..c.len()).map(|k| (c[k], c[(k + 1) % c.len()])))
 }
 
-/// Whether a candidate shares an edge with a face.
+/// True if a candidate shares an edge with a face.
 fn touches(face: &SketchFace, loops: &[Vec<PointId>]) -> bool {
     pairs(loops).any(|(p, q)| runs(face, p, q) || runs(face, q, p))
 }
@@ -745,8 +746,8 @@ fn oriented(loops: Vec<Vec<PointId>>, taken: &[SketchFace]) -> SketchFace {
     if clash { face.reversed() } else { face }
 }
 
-/// Where faces fail to close: points with two lines, loops that are nearly plane, the lines that had
-/// fewer than two candidates before others fell with them.
+/// Parts at which faces fail to close: points with two lines, loops that are nearly plane, and the
+/// first lines with fewer than two candidates.
 fn open_text(positions: &[Vec3], edges: &[[usize; 2]], ids: &[PointId], fitted: &Fitted) -> String {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); positions.len()];
     for &[a, b] in edges {

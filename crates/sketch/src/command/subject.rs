@@ -1,8 +1,8 @@
-//! What a reply is about, as data beside its sentence.
+//! Subject of a reply, as data beside its text.
 
 use crate::{CoordinateAxis, FaceId, LineId, PointId};
 
-/// What a reply is about: the kind of the statement, and the parts of the object that it names.
+/// Subject of a reply: its kind, and the parts of the object that it names.
 ///
 /// ```
 /// use moldloft_sketch::{PointId, SketchSession};
@@ -15,7 +15,8 @@ use crate::{CoordinateAxis, FaceId, LineId, PointId};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReplySubject {
-    /// What is said, a stable word such as `missing-dimension`; every error has one, what is only a sentence none.
+    /// Kind of the reply, a stable word such as `missing-dimension`; every error has one, plain
+    /// text is "".
     pub kind: &'static str,
     /// Points, in the order of the sentence; of a chain from its start to its end.
     pub points: Vec<PointId>,
@@ -31,7 +32,7 @@ pub struct ReplySubject {
     pub value: Option<f64>,
     /// The place in space.
     pub place: Option<[f64; 3]>,
-    /// The dimension that would supply what is missing.
+    /// The dimension that would supply a missing one.
     pub suggestion: Option<Suggestion>,
 }
 
@@ -46,7 +47,7 @@ pub struct Suggestion {
     pub q: PointId,
     /// The distance, to three digits.
     pub value: f64,
-    /// Whether the picture leaves the depth open, so that the value is a guess.
+    /// True if the picture does not determine the depth, so that the value is a guess.
     pub open: bool,
 }
 
@@ -92,7 +93,7 @@ impl ReplySubject {
     }
 }
 
-/// What an error about all missing dimensions is about: their points, and the first suggestion.
+/// Subject of an error about all missing dimensions: their points, and the first suggestion.
 pub(super) fn all_missing(lines: Vec<(String, ReplySubject)>) -> ReplySubject {
     let mut all = ReplySubject::of("missing-dimension");
     for (_, about) in lines {

@@ -1,5 +1,5 @@
-//! Commands and answers as data, for programs and canvases: edits that are written as the commands they are,
-//! what they changed, many moves as one step, and what is missing.
+//! Commands and answers as data, for programs and canvases: edits written as commands, their
+//! changes, several moves as one step, and missing dimensions.
 
 use super::CommandError;
 use super::info::suggestions;
@@ -50,14 +50,14 @@ pub enum SketchCommand {
     Type {
         /// The line.
         line: LineId,
-        /// What changes along it.
+        /// Coordinates that change along it.
         free: Free,
     },
     /// A dimension.
     Dimension {
         /// Its name; a new one when `None`.
         name: Option<String>,
-        /// What it measures.
+        /// Measured quantity.
         measure: MeasuredQuantity,
         /// Its value.
         value: DimensionExpr,
@@ -76,7 +76,7 @@ pub enum SketchCommand {
         /// The value.
         value: DimensionExpr,
     },
-    /// A point removed, with what mentions it.
+    /// Deletes a point with its lines, faces, curves and dimensions.
     DeletePoint(PointId),
     /// A line removed.
     DeleteLine(LineId),
@@ -132,14 +132,14 @@ impl std::fmt::Display for SketchCommand {
     }
 }
 
-/// What happened to an object.
+/// Change of an object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjectChange {
     /// Its name.
     pub name: String,
-    /// Whether it is new.
+    /// True if it is new.
     pub added: bool,
-    /// Whether it is gone.
+    /// True if it was deleted.
     pub removed: bool,
     /// Points that are new or elsewhere on the page.
     pub drawn: Vec<PointId>,
@@ -153,21 +153,21 @@ pub struct ObjectChange {
     pub numbers: Vec<String>,
     /// Faces that are new, gone, or whose corners moved.
     pub faces: Vec<FaceId>,
-    /// Whether the finished body is another.
+    /// True if the finished body changed.
     pub body: bool,
 }
 
 /// The answer to a typed command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandReport {
-    /// What is said.
+    /// Replies.
     pub replies: Vec<CommandReply>,
-    /// What changed, by object.
+    /// Changes by object.
     pub changes: Vec<ObjectChange>,
 }
 
 impl SketchSession {
-    /// Runs a command that is data, and says what it changed.
+    /// Runs a command given as data, and returns its changes.
     ///
     /// ```
     /// use moldloft_sketch::{PointId, SketchCommand, SketchSession};
@@ -181,7 +181,7 @@ impl SketchSession {
         self.report(&command.to_string())
     }
 
-    /// Runs a line, and says what it changed.
+    /// Runs a line, and returns its changes.
     pub fn report(&mut self, line: &str) -> CommandReport {
         let before = self.state.clone();
         let replies = self.run_line(line);
@@ -205,7 +205,7 @@ impl SketchSession {
         Ok(())
     }
 
-    /// Ends a run of edits, and says what all of them changed.
+    /// Ends a series of edits, and returns the changes of all of them.
     pub fn commit(&mut self) -> Vec<ObjectChange> {
         let Some(Transaction { before, journal }) = self.transaction.take() else { return vec![] };
         let own = self.journal.split_off(journal);
@@ -239,13 +239,13 @@ impl SketchSession {
         }
     }
 
-    /// How many lines of the journal are settled: those of a run of edits that has not ended are not.
+    /// Number of settled lines of the journal, without those of an open series of edits.
     pub(super) fn settled(&self) -> usize {
         self.transaction.as_ref().map_or(self.journal.len(), |t| t.journal)
     }
 
-    /// For each part of an object that no dimension connects with its reference, the dimension that the picture
-    /// suggests; `None` where it suggests none.
+    /// For each part of an object without connection to the reference, the suggested dimension;
+    /// `None` without a suggestion.
     pub fn suggestions(&mut self, name: &str) -> Option<Vec<Option<Suggestion>>> {
         let object = self.object(name)?.clone();
         let (view, layout) = self.laid_out(&object);
@@ -255,7 +255,7 @@ impl SketchSession {
     /// The solids that fit the wireframe of an object, likeliest first, whether their faces are accepted or not.
     ///
     /// # Errors
-    /// What GENERATE FACES would say.
+    /// Results of GENERATE FACES without a change of the object.
     pub fn candidates(&mut self, name: &str) -> Result<Vec<SketchSolid<f64>>, CommandError> {
         let object = self.known(name)?.clone();
         let outer = std::mem::take(&mut self.out);
@@ -271,8 +271,8 @@ impl SketchSession {
         Ok(out)
     }
 
-    /// Where the dimensions of an object stand: on the page as drawn, or in a view of the body (`TOP`, `FRONT`, `SIDE`
-    /// or the name of a projection). `None` when there is no such object or view.
+    /// Positions of an object's dimensions: on the page as drawn, or in a view of the body (`TOP`,
+    /// `FRONT`, `SIDE` or the name of a projection). `None` for an unknown object or view.
     ///
     /// ```
     /// use moldloft_sketch::SketchSession;

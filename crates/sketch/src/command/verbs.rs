@@ -8,11 +8,11 @@ use std::sync::LazyLock;
 pub struct Verb {
     /// The word.
     pub name: &'static str,
-    /// The heading it stands under.
+    /// Heading in HELP.
     pub group: &'static str,
     /// Its forms.
     pub forms: Vec<&'static str>,
-    /// What it does.
+    /// Description.
     pub does: &'static str,
 }
 
@@ -25,9 +25,9 @@ impl Verb {
 
 /// Every verb once, in the order of the help.
 ///
-/// The table `verbs.txt` is the only place where they are described: HELP, completion and the
-/// command reference of `docs/sketch.md` read it. REVERSE stands there twice, as a command and as an
-/// answer; only the first counts here.
+/// The table `verbs.txt` is their only description: HELP, completion and the command reference of
+/// `docs/sketch.md` use it. REVERSE occurs twice, as a command and as an answer; only the first
+/// counts here.
 pub static VERBS: LazyLock<Vec<Verb>> = LazyLock::new(|| {
     let mut verbs: Vec<Verb> = Vec::new();
     for verb in table() {
@@ -77,7 +77,7 @@ pub fn reference() -> String {
     out
 }
 
-/// The verb that a word stands for, and a note when it was read generously.
+/// The verb of a word, and a note if it was completed or corrected.
 ///
 /// Exact, or a unique beginning, or the first three letters (manual, appendix D: interpreters look at
 /// the first two or three characters only, so that later misspelling does no harm).

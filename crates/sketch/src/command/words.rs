@@ -2,7 +2,7 @@
 
 use super::CommandError;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommandTokenKind {
     /// A word: a letter, then letters, digits, `_`, `.`.
@@ -16,7 +16,7 @@ pub enum CommandTokenKind {
 /// A word, number or text of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandToken {
-    /// What it is.
+    /// Kind.
     pub kind: CommandTokenKind,
     /// As written, without quotes.
     pub text: String,
@@ -38,12 +38,12 @@ pub struct Command {
 /// A line divided into commands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parsed {
-    /// The commands, or why one is none.
+    /// The commands, or the reason why one is invalid.
     pub commands: Vec<Result<Command, CommandError>>,
 }
 
-/// Whether the command goes on in the next line: the last thing before any comment is `&`.
-/// Returns the text without it.
+/// If the command continues in the next line (the last character before any comment is `&`), the
+/// text without it.
 pub fn continued(line: &str) -> Option<&str> {
     let mut quote = None;
     let mut end = line.len();

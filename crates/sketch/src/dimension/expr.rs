@@ -12,7 +12,7 @@ pub const FUNCTIONS: [&str; 27] = [
     "clamp", "where", "min", "max",
 ];
 
-/// How many arguments a function takes, by its index: the least and the most.
+/// Minimum and maximum number of arguments of a function, by its index.
 fn arity(function: usize) -> [usize; 2] {
     match FUNCTIONS[function] {
         "atan2" | "hypot" | "mod" | "div" => [2; 2],
@@ -30,7 +30,7 @@ enum ExprOp {
     Not,
     /// Arithmetic, and comparisons and connections of conditions.
     Binary(BinaryOp),
-    /// A function and how many arguments it has.
+    /// A function and its number of arguments.
     Call(usize, usize),
 }
 
@@ -50,7 +50,7 @@ pub struct DimensionExpr {
     ops: Vec<ExprOp>,
 }
 
-/// Why an expression has no value: a name is unknown or has none itself.
+/// Reason why an expression has no value: a name is unknown or has no value itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoValue {
     /// The name, folded.
@@ -69,7 +69,7 @@ impl DimensionExpr {
     /// Parses a text.
     ///
     /// # Errors
-    /// Says what is not understood.
+    /// A description of the syntax error.
     pub fn parse(text: &str) -> Result<DimensionExpr, String> {
         let text = text.trim();
         let (program, root, diagnostics) = sdl::parse_expr(text, FileId(0));
@@ -226,10 +226,10 @@ fn call<T: Real>(function: &str, x: &[T]) -> T {
     }
 }
 
-/// Whether operations have numbers where they take them, conditions where they take those, and make a number.
+/// True if operands have the right types (number or condition) and the result is a number.
 fn is_number(ops: &[ExprOp]) -> bool {
     use BinaryOp::{And, Eq, Ge, Gt, Le, Lt, Ne, Or};
-    // Whether each is a condition.
+    // True for a condition.
     let mut stack: Vec<bool> = Vec::new();
     for op in ops {
         let (takes, makes): (Vec<bool>, bool) = match op {

@@ -1,4 +1,4 @@
-//! From dimensions to coordinates, with an exact account of what is missing and what is too much.
+//! Coordinates from dimensions, with an exact account of missing and redundant ones.
 //!
 //! A dimension along an axis joins two planes with an offset. The planes and one ground node (joined
 //! to the reference point's planes) form a graph; dimensions that join two parts drive, one that
@@ -15,7 +15,7 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, VecDeque};
 
-/// A dimension that does not do what it says.
+/// A dimension that does not hold.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DimensionFault {
     /// The others determine it already; it agrees.
@@ -29,9 +29,9 @@ pub enum DimensionFault {
     Contradictory {
         /// Its name.
         name: String,
-        /// What it asks.
+        /// Given value.
         asked: f64,
-        /// What the others make it.
+        /// Value from the other dimensions.
         measured: f64,
         /// The dimensions that determine it.
         path: Vec<String>,
@@ -66,7 +66,7 @@ pub enum DimensionFault {
     Unsolved {
         /// Its name.
         name: String,
-        /// By how much it is missed.
+        /// Violation.
         residual: f64,
     },
 }
@@ -93,7 +93,7 @@ pub struct Count {
     pub missing: usize,
 }
 
-/// Where everything is.
+/// Positions from dimensions.
 #[derive(Clone, Debug)]
 pub struct DimensionLayout<T> {
     /// The coordinate of each plane of each axis, as far as determined.
@@ -109,7 +109,7 @@ pub struct DimensionLayout<T> {
 }
 
 impl<T: Real> DimensionLayout<T> {
-    /// Whether every point is determined.
+    /// True if every point is determined.
     pub fn complete(&self) -> bool {
         self.counts.iter().all(|c| c.missing == 0)
     }
@@ -119,7 +119,7 @@ impl<T: Real> DimensionLayout<T> {
         self.coordinates[axis.index()].get(planes.plane(axis, point)?).copied().flatten()
     }
 
-    /// Where a point is.
+    /// Position of a point.
     pub fn point(&self, planes: &Planes, point: PointId) -> Option<Vec3<T>> {
         let [x, y, z] = CoordinateAxis::ALL.map(|a| self.coordinate(planes, a, point));
         Some(Vec3::new(x?, y?, z?))
@@ -141,7 +141,7 @@ impl<T: Real> DimensionLayout<T> {
             .collect()
     }
 
-    /// What a measure comes to, if its points are determined.
+    /// Value of a measure, if its points are determined.
     pub fn measured(
         &self,
         object: &SketchObject,
@@ -215,8 +215,8 @@ fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(CoordinateAxis, 
     }
 }
 
-/// The chain of driving dimensions between two points on an axis, as the points it goes through and
-/// the dimensions' names; `None` when they are not connected.
+/// The chain of driving dimensions between two points on an axis, as points and names of
+/// dimensions; `None` without connection.
 pub fn chain(
     object: &SketchObject,
     planes: &Planes,
@@ -294,7 +294,7 @@ fn graphs(object: &SketchObject, planes: &Planes) -> ([DimensionGraph; 3], Vec<u
 }
 
 /// Computes the layout. `overrides` replaces the values of dimensions and variables (folded names);
-/// `estimate` is asked for only when derived dimensions (length, slope, …) need a start.
+/// `estimate` is called only if derived dimensions (length, slope, …) need a start.
 pub fn solve<T: Real>(
     object: &SketchObject,
     planes: &Planes,
@@ -404,7 +404,7 @@ pub fn solve<T: Real>(
     layout
 }
 
-/// Whether two values of a dimension are the same number but for rounding.
+/// True if two values of a dimension agree within rounding.
 pub fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
 }
@@ -475,7 +475,8 @@ fn evaluate<T: Real>(
         .collect();
     let mut cycles: Vec<Vec<String>> = Vec::new();
     for (&name, &reads) in &stuck {
-        // Follow what each waits for: it ends at a name without a value or runs in a circle.
+        // Follow the references from name to name: they end at a name without a value or in a
+        // cycle.
         let mut way = vec![name];
         let mut at = reads;
         while let Some(&next) = stuck.get(at) {
@@ -537,7 +538,7 @@ pub fn chain_expression(
     let path = graphs(object, planes).0[axis.index()].path(a, b);
     let mut sum = String::new();
     for (d, forward) in path {
-        // The reference is a number, and so is what hangs on given coordinates.
+        // The reference is a number, and so are given coordinates.
         let term = match object.dimensions.get_index(d) {
             Some((_, dimension)) => dimension.name.clone(),
             None => {

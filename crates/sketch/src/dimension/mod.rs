@@ -1,4 +1,4 @@
-//! Dimensions: what they measure, their values, and the coordinates that follow from them.
+//! Dimensions: measured quantities, values, and the resulting coordinates.
 //!
 //! `expressions -> values -> coordinates of planes`; dimensions that are not along an axis are solved
 //! for last.
@@ -12,7 +12,7 @@ use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 /// The quantity that a dimension fixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeasuredQuantity {
-    /// `coordinate(q) - coordinate(p)` on an axis. The sign never changes by itself.
+    /// `coordinate(q) - coordinate(p)` on an axis, with its sign.
     Along {
         /// The axis.
         axis: CoordinateAxis,
@@ -43,7 +43,7 @@ pub enum MeasuredQuantity {
 pub enum DimensionRole {
     /// It does.
     Driving,
-    /// It only shows what follows from others.
+    /// It shows the result of the others.
     Reference,
 }
 

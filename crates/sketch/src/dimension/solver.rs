@@ -1,11 +1,11 @@
 //! Dimensions that are not along an axis: length, slope, angle, equal length.
 //!
-//! They act only on what the axis dimensions leave open. Equations with one unknown are solved first,
-//! then the rest together. Of several solutions the one is taken that the drawing leads to: its own
-//! lengths and angles are changed into those asked for in steps that Newton's method follows, and the
-//! sign of the determinant of the equations, which distinguishes a solution from its mirror image, must stay.
-//! So the same text gives the same branch, whatever values were set before. Derivatives come from one
-//! more step in the scalar itself (implicit function theorem).
+//! They act only on the freedom left by the axis dimensions. Equations with one unknown are solved
+//! first, then the rest together. Of several solutions the one nearest to the drawing is taken: the
+//! drawn lengths and angles are changed into the given ones by continuation with Newton's method,
+//! and the sign of the determinant of the equations, which distinguishes a solution from its mirror
+//! image, must not change. So the same text gives the same branch, independent of earlier values.
+//! Derivatives come from one more step in the scalar itself (implicit function theorem).
 
 use crate::dimension::layout::{DimensionFault, DimensionLayout};
 use crate::dimension::{Dimension, MeasuredQuantity};
@@ -29,7 +29,7 @@ fn vector<T: Real>(
     Some(if from == Some(line.q) { -d } else { d })
 }
 
-/// What a derived measure comes to. An [`MeasuredQuantity::Equal`] is the ratio of the lengths.
+/// Value of a derived measure. An [`MeasuredQuantity::Equal`] is the ratio of the lengths.
 pub fn value<T: Real>(
     object: &SketchObject,
     measure: &MeasuredQuantity,
@@ -86,8 +86,8 @@ pub(crate) fn solve_derived<T: Real>(
     let guess = if floating.is_empty() { None } else { estimate() };
     let scale = guess.as_ref().map_or(1.0, |e| scale(object, planes, layout, e));
     let mut left: Vec<&Dimension> = dimensions.to_vec();
-    // All together first: a part that is solved alone no longer knows on which side of the others it was
-    // drawn.
+    // All together first: a part solved separately would lose its orientation relative to the
+    // others.
     let mut together = true;
     loop {
         // The floating parts that each equation reads.
@@ -105,7 +105,7 @@ pub(crate) fn solve_derived<T: Real>(
             parts
         };
         let table: Vec<Vec<usize>> = left.iter().map(|d| reads(d)).collect();
-        // What is fully determined only has to agree.
+        // A fully determined dimension only has to agree.
         if let Some(k) = table.iter().position(Vec::is_empty) {
             let d = left.remove(k);
             faults.extend(check(object, planes, layout, d));
@@ -266,7 +266,7 @@ struct System<'a, T> {
     turns: Vec<f64>,
 }
 
-/// A point on the way from the drawing to the values asked for.
+/// A point on the path from the drawing to the given values.
 struct ContinuationPoint {
     x: Vec<f64>,
     /// The sign of the determinant there.
@@ -305,7 +305,7 @@ impl<T: Real> System<'_, T> {
         Some((arms, self.object.drawing.section))
     }
 
-    /// Whether the drawing determines all unknowns.
+    /// True if the drawing determines all unknowns.
     fn regular(&self, x: &[f64]) -> bool {
         let jacobian = self.measured(x).and_then(|drawn| self.jacobian(x, &drawn));
         let n = x.len();
@@ -346,8 +346,8 @@ impl<T: Real> System<'_, T> {
         self.dimensions.iter().zip(&self.turns).map(one).collect()
     }
 
-    /// The residuals at `x` for the values `asked`. Lengths enter by their squares and angles by both
-    /// sine and cosine: these forms have no solutions of their own.
+    /// The residuals at `x` for the values `asked`. Lengths enter by their squares and angles by
+    /// both sine and cosine, forms without extraneous solutions.
     fn residuals<S: Real>(&self, x: &[S], asked: &[S], lift: &dyn Fn(T) -> S) -> Option<Vec<S>> {
         let at = |p: PointId| self.at(x, lift, p);
         let one = |((d, &asked), &turn): ((&&Dimension, &S), &f64)| -> Option<S> {

@@ -9,7 +9,7 @@ pub enum CoordinateAxis {
     X,
     /// Second.
     Y,
-    /// Third; up, unless said otherwise.
+    /// Third; up by default.
     Z,
 }
 
@@ -67,7 +67,7 @@ impl Free {
         (bits != 0).then_some(Free(bits))
     }
 
-    /// Whether the ends may differ along `axis`.
+    /// True if the ends may differ along `axis`.
     pub fn contains(self, axis: CoordinateAxis) -> bool {
         self.0 >> axis.index() & 1 == 1
     }
@@ -109,7 +109,7 @@ impl Free {
     }
 }
 
-/// Which spelling of the inclined types is in use.
+/// Spelling of the inclined types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Naming {
     /// By descriptive geometry: H is parallel to the ground, F to the front view, P to the side view.
@@ -124,7 +124,7 @@ pub enum Naming {
 pub struct Letters {
     /// The axis that points up.
     pub up: CoordinateAxis,
-    /// Which convention.
+    /// Spelling of the inclined types.
     pub naming: Naming,
 }
 
@@ -146,8 +146,8 @@ impl Letters {
         }
     }
 
-    /// The set a spelling stands for, in either case. In a section (perpendicular to `section`) F is
-    /// any line that is not parallel to its axes.
+    /// The set for a spelling, in either case. In a section (perpendicular to `section`) F is any
+    /// line that is not parallel to its axes.
     pub fn free(self, text: &str, section: Option<CoordinateAxis>) -> Option<Free> {
         let text = text.to_ascii_uppercase();
         if let ("F", Some(normal)) = (text.as_str(), section) {

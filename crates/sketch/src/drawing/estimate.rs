@@ -98,7 +98,8 @@ impl Estimate {
         self.coordinates[axis.index()].get(plane).copied().unwrap_or(0.0)
     }
 
-    /// Whether the picture shows the distance between two planes of an axis: no open depth changes it.
+    /// True if the picture determines the distance between two planes of an axis: no open depth
+    /// changes it.
     pub fn determines(&self, axis: CoordinateAxis, a: usize, b: usize) -> bool {
         let motion = |depth: &FreeDepth, plane: usize| {
             let own = depth.planes.iter().find(|m| m.0 == axis && m.1 == plane);
@@ -202,7 +203,7 @@ impl Factors {
     }
 }
 
-/// Subtracts from `x` what lies in the span of `basis`, by Gram-Schmidt.
+/// Subtracts from `x` its projection onto the span of `basis`, by Gram-Schmidt.
 fn remove_components(x: &mut [f64], basis: &[Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(p, q)| p * q).sum::<f64>();
     let mut square: Vec<Vec<f64>> = Vec::new();

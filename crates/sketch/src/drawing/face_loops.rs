@@ -1,9 +1,9 @@
 //! The face loops of a wireframe that its lines alone tell, before any of them has a type.
 //!
-//! In a graph that is planar and does not fall apart with any two points, the borders of faces are the cycles
-//! without chord whose points, taken away, leave the rest in one piece; then each line is in exactly two of them,
-//! and only then (W. T. Tutte, *How to draw a graph*, Proc. London Math. Soc. 13, 1963, (2.5) and (2.6)). Where that does
-//! not hold, as where the graph is not planar, nothing is said.
+//! In a planar graph that no two points disconnect, the borders of faces are the chordless cycles
+//! whose removal leaves the rest connected; each line is then in exactly two of them, and only then
+//! (W. T. Tutte, *How to draw a graph*, Proc. London Math. Soc. 13, 1963, (2.5) and (2.6)). Other
+//! graphs give no result.
 
 use crate::{DrawnLine, Free, LineId, PointId};
 use std::collections::{BTreeMap, BTreeSet};
@@ -130,8 +130,8 @@ impl LoopSearch<'_> {
     }
 }
 
-/// Whether a loop of lines of these types cannot bound a plane face: it does not close, has no area, or is not in one
-/// plane. `None` is a line that is inclined in a way that is not known yet.
+/// True if a loop of lines of these types cannot bound a plane face: it does not close, has no
+/// area, or is not in one plane. `None` is a line of unknown inclination.
 pub(super) fn impossible(types: impl Iterator<Item = Option<Free>>) -> bool {
     let (mut along, mut inclined) = ([0; 3], 0);
     let mut leaves = [false; 3];

@@ -7,30 +7,30 @@ use crate::{CoordinateAxis, Drawing, DrawnLine, Free, LineId, LineTypeSource, Po
 use moldloft_num::Real;
 use std::collections::BTreeMap;
 
-/// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
+/// Maximum inclination to an axis, as a slope, of a line named after it: 5 % (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
 
 /// Coordinates of an exact drawing are the same within this share of them.
 const AS_DRAWN: f64 = 1e-12;
 
-/// Below this a type is worth a look: of lines drawn within ±1, ±2 and ±4 on 400, 0.6, 1.6 and 4 % fall below, and
-/// with them half of those that are wrong.
+/// Confidence below which a type should be checked: of lines drawn within ±1, ±2 and ±4 on 400,
+/// 0.6, 1.6 and 4 % are below, and with them half of the wrong ones.
 pub const DOUBTFUL: f64 = 0.97;
 
 /// The confidence of a line that is inclined only because it would leave others no length.
 const MENDED: f64 = 0.85;
 
-/// What a line that loses its length, or a face loop that cannot be plane, weighs against the logarithm of odds.
+/// Penalty for a line of zero length, or a face loop that cannot be plane, in logarithms of odds.
 const FAULT: f64 = 9.0;
 
-/// What each further line of a group adds to its odds.
+/// Gain of odds for each further line of a group.
 const FELLOW: f64 = 1.7;
 
-/// What it costs that a line is not parallel to those that it seemed parallel to.
+/// Penalty for a line that is not parallel to lines to which it seems parallel.
 const LEAVES: f64 = 1.0;
 
-/// A line is drawn once more where another one leans off it by less than this sine, and is at least this part as long, or it
-/// is of the other: what hands leave of copies within 5 on 400.
+/// A line is a copy of another if the angle between them has a sine below `COPY_LEAN` and the
+/// lengths have at least this ratio: measured for copies drawn within 5 on 400.
 const COPY_LEAN: f64 = 0.12;
 const COPY_SIZE: f64 = 0.7;
 
@@ -43,8 +43,8 @@ const MOST_TRIED: usize = 60;
 impl Drawing {
     /// The type that the slope of a line suggests, with its confidence.
     ///
-    /// The axis with the smallest lean, if that is within 5 %. In a cross section every other line is
-    /// inclined; in a pictorial nothing is said about it.
+    /// The axis with the smallest inclination, if within 5 %. In a cross section every other line
+    /// is inclined; in a pictorial such a line has no type.
     pub fn slope_type(&self, line: &DrawnLine) -> Option<(Free, f64)> {
         let stroke = self.stroke(line);
         if let (Some(normal), true) = (self.section, self.exact) {
@@ -79,8 +79,8 @@ impl Drawing {
         self.lines.insert(id, DrawnLine { free, confidence, source: LineTypeSource::Auto, ..line });
     }
 
-    /// How sure the types of lines are that nobody has typed: by the noise of the pen, whether they were typed by slope
-    /// or all together.
+    /// Confidence of the types of lines that were not typed by hand: from the noise of the pen, for
+    /// types by slope as for types from the whole drawing.
     pub fn confidences(&self) -> BTreeMap<LineId, f64> {
         let verdicts = self.verdicts();
         let of = |id: &LineId, line: &DrawnLine| {
@@ -159,8 +159,9 @@ impl Drawing {
         }
     }
 
-    /// Lines without a type that are drawn once more at the other ends of two lines along one axis, with that axis: they
-    /// are sides of a prism along it, and lie across it. Lines whose copies say different axes are left.
+    /// Types of untyped lines that have copies at the other ends of two lines along one axis: they
+    /// are sides of a prism along it, perpendicular to it. Lines whose copies have different axes
+    /// are left out.
     fn across_by_copies(&self) -> BTreeMap<LineId, CoordinateAxis> {
         if self.section.is_some() {
             return BTreeMap::new();
@@ -273,8 +274,9 @@ impl Drawing {
         }
     }
 
-    /// How many lines along an axis have no length in the planes of the others or lie on one another, how many points
-    /// coincide, and whether everything lies in one plane.
+    /// Number of faults: lines along an axis of zero length in the planes of the others, coincident
+    /// points, axes with a single plane (for closed drawings), overlapping lines, and loops that
+    /// cannot be plane.
     fn collapsed(&self, loops: &[Vec<LineId>]) -> usize {
         let planes = Planes::of(self);
         let lines = self.lines.values().filter(|l| {
@@ -298,8 +300,8 @@ impl Drawing {
         lines.count() + coincident + flat + self.overlapping() + bent
     }
 
-    /// How many pairs of lines along one axis leave a point to the same side, or to both sides of it with a line
-    /// between their far ends.
+    /// Number of pairs of lines along one axis that leave a point to the same side, or to both
+    /// sides of it with a line between their far ends.
     fn overlapping(&self) -> usize {
         let mut leaving: BTreeMap<(PointId, CoordinateAxis), Vec<(bool, PointId)>> =
             BTreeMap::new();

@@ -1,4 +1,4 @@
-//! What was drawn: points, typed lines and alignments on a page.
+//! A drawing: points, typed lines and alignments on a page.
 
 pub(crate) mod axis;
 pub(crate) mod estimate;
@@ -39,7 +39,7 @@ numbered!(
     FaceId
 );
 
-/// A point as drawn. Where it is in space follows from its planes.
+/// A point as drawn. Its position in space follows from its planes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DrawnPoint {
     /// Screen right.
@@ -48,7 +48,7 @@ pub struct DrawnPoint {
     pub v: f64,
 }
 
-/// Who said which type a line has.
+/// Source of a line's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineTypeSource {
     /// Its slope, within the tolerance.
@@ -73,26 +73,27 @@ impl LineTypeSource {
 /// A line between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawnLine {
-    /// Where it starts.
+    /// Start.
     pub p: PointId,
     /// End.
     pub q: PointId,
     /// Its type; `None` while unknown.
     pub free: Option<Free>,
-    /// Where the type is from.
+    /// Source of the type.
     pub source: LineTypeSource,
-    /// How sure the type is, 0 to 1; below [`DOUBTFUL`](crate::DOUBTFUL) it is listed by CHECK.
+    /// Confidence of the type, 0 to 1; below [`DOUBTFUL`](crate::DOUBTFUL) it is listed by CHECK.
     pub confidence: f64,
 }
 
 impl DrawnLine {
-    /// Whether it is inclined as drawn, and taken as oblique only because nothing says which coordinate stays.
+    /// True if it is inclined as drawn, and taken as oblique because nothing determines the
+    /// constant coordinate.
     pub fn proposed(&self) -> bool {
         self.source == LineTypeSource::Inferred && self.free == Some(Free::OBLIQUE)
     }
 }
 
-/// Two points said to lie in the same plane perpendicular to `axis`.
+/// Two points in the same plane perpendicular to `axis`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Align {
     /// The axis whose coordinate they share.
@@ -122,7 +123,7 @@ pub enum DrawingHit {
 pub struct Snap {
     /// The place.
     pub at: [f64; 2],
-    /// What is there, or the point whose extension it is on.
+    /// The element there, or the point whose extension it is on.
     pub hit: Option<DrawingHit>,
     /// The axis of the extension.
     pub axis: Option<CoordinateAxis>,
@@ -133,17 +134,18 @@ pub struct Snap {
 pub struct Drawing {
     /// For a cross section, the axis it is perpendicular to.
     pub section: Option<CoordinateAxis>,
-    /// Whether places on the page of a section are its coordinates: types and suggested dimensions are then as drawn.
+    /// True if positions on the page of a section are its coordinates: types and suggested
+    /// dimensions are then as drawn.
     pub exact: bool,
-    /// How the axes were drawn.
+    /// Directions of the axes.
     pub projection: Projection,
-    /// What H, P and F mean.
+    /// Meaning of H, P and F.
     pub letters: Letters,
     /// The points by label.
     pub points: BTreeMap<PointId, DrawnPoint>,
     /// The lines by label.
     pub lines: BTreeMap<LineId, DrawnLine>,
-    /// Points in common planes beyond what lines say.
+    /// Common planes of points beyond those from lines.
     pub aligns: Vec<Align>,
 }
 
@@ -209,14 +211,15 @@ impl Drawing {
         far(&|p| p.u).max(far(&|p| p.v))
     }
 
-    /// How far two points are from each other on the page; 0 where one is missing.
+    /// Distance of two points on the page; 0 if one is missing.
     pub fn distance(&self, p: PointId, q: PointId) -> f64 {
         let (Some(a), Some(b)) = (self.points.get(&p), self.points.get(&q)) else { return 0.0 };
         libm::hypot(a.u - b.u, a.v - b.v)
     }
 
-    /// Pairs of points that lie closer than `reach` with no line between them, one of them the end of a
-    /// single line: kept, gone and their distance. Without a reach, half a hundredth of the drawing.
+    /// Pairs of points closer than `reach` without a line between them, one of them the end of a
+    /// single line: point to keep, point to remove and distance. Default of `reach`: 0.005 of the
+    /// drawing's extent.
     pub fn gaps(&self, reach: Option<f64>) -> Vec<(PointId, PointId, f64)> {
         let mut uses: BTreeMap<PointId, usize> = BTreeMap::new();
         self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
@@ -272,7 +275,7 @@ impl Drawing {
         best.map(|b| b.1)
     }
 
-    /// Where a place on the page snaps to within `reach`: a point, a place on a line, or the extension
+    /// Snap of a position on the page within `reach`: a point, a point on a line, or the extension
     /// of an axis through a point.
     pub fn snap(&self, at: [f64; 2], reach: f64) -> Option<Snap> {
         match self.hit(at, reach) {

@@ -1,4 +1,4 @@
-//! Types of lines from what the pen can tell: how likely each axis is, given the noise of the ends.
+//! Types of lines from strokes: probability of each axis, given the noise of the ends.
 //!
 //! An end that is off by σ in each coordinate lets a line of an axis miss it by √2 σ at right angles,
 //! whatever its length, so short lines tell little and long ones much. Lines that are parallel in space,
@@ -9,16 +9,16 @@ use moldloft_num::Real;
 use moldloft_num::union_find::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How much of all lines run along an axis, before they are looked at.
+/// Prior fraction of lines along an axis.
 const PRINCIPAL: f64 = 0.85;
 
-/// How many lines of a drawing what is usual is worth.
+/// Weight of the prior, in lines of a drawing.
 const USUAL_LINES: f64 = 6.0;
 
 /// From here on a line counts as surely typed.
 const SURE: f64 = 0.9;
 
-/// The noise of a steady hand, as a share of the longest line, and how many lines that is worth.
+/// Noise of a steady hand, relative to the longest line, and its weight in lines.
 const STEADY: f64 = 2e-3;
 const STEADY_LINES: f64 = 2.0;
 
@@ -29,14 +29,14 @@ const MOST: f64 = 0.02;
 /// Strokes that differ by more of their noise than this are not parallel, whatever hangs at their ends.
 const APART: f64 = 3.5;
 
-/// What it takes from the odds of a line along an axis, as a logarithm, that the opposite side of its face is inclined:
-/// most bodies that taper do so on all sides.
+/// Reduction of the odds of a line along an axis, as a logarithm, if the opposite side of its face
+/// is inclined: most tapered bodies taper on all sides.
 const TAPER: f64 = 2.5;
 
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
 
-/// What the strokes say about a line.
+/// Evidence of the strokes about a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Verdict {
     /// The likeliest axis, `None` when it is likelier inclined.
@@ -78,7 +78,8 @@ impl Drawing {
             .collect();
         let mut sigma = self.pen_noise(&strokes, &axes);
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
-        // How many run along an axis differs from drawing to drawing: the drawing's own share, from what is usual.
+        // The fraction of lines along an axis varies between drawings: the drawing's own, starting
+        // from the prior.
         let mut usual = PRINCIPAL;
         let mut alone: Vec<Verdict> = Vec::new();
         for _ in 0..3 {
@@ -173,7 +174,7 @@ impl Drawing {
         out
     }
 
-    /// The standard deviation of a coordinate of an end, from how far lines near an axis miss it.
+    /// Standard deviation of a coordinate of an end, from the deviations of lines near an axis.
     fn pen_noise(&self, strokes: &[Stroke], axes: &[(CoordinateAxis, [f64; 2])]) -> f64 {
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
         let mut off: Vec<f64> = (strokes.iter())
@@ -186,14 +187,15 @@ impl Drawing {
         off.sort_by(f64::total_cmp);
         let median = off.get(off.len() / 2).copied().unwrap_or(0.0);
         let found = median / 0.6745 / std::f64::consts::SQRT_2;
-        // That a few lines are exact says little: with them counts what a steady hand does.
+        // A few exact lines are weak evidence: the noise of a steady hand is included with them.
         let (n, usual) = (off.len() as f64, (STEADY * size).max(found));
         let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
         Real::sqrt(mean).clamp(LEAST * size, MOST * size)
     }
 }
 
-/// Whether two strokes may be parallel in space: then they are in the picture, but for the noise of their ends.
+/// True if two strokes may be parallel in space: they are parallel in the picture within the noise
+/// of their ends.
 fn agree(a: &Stroke, b: &Stroke, sigma: f64) -> bool {
     let across = (a.d[0] * b.d[1] - a.d[1] * b.d[0]).abs();
     let spread = sigma * Real::sqrt(2.0 * (a.length * a.length + b.length * b.length));

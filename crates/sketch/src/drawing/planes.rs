@@ -1,6 +1,6 @@
 //! Dimensioning planes: which points share a coordinate, and why.
 //!
-//! A line of type X has equal y and equal z at its ends, so its ends lie in a common Y plane and a
+//! A line of type X has equal y and equal z at its ends, so its ends are in a common Y plane and a
 //! common Z plane, and so on. The planes of an axis are the classes of this relation; N planes need
 //! N - 1 dimensions and one reference value (manual, pp. 5-8; routines DETPNS, SETPLS, PLNTES).
 
@@ -15,7 +15,7 @@ pub enum Reason {
     Line(LineId),
     /// An alignment.
     Align(Align),
-    /// They lie in the section plane.
+    /// Both are in the section plane.
     Section,
 }
 
@@ -39,18 +39,18 @@ pub enum TypeFault {
         line: LineId,
         /// The axis along which it should run.
         axis: CoordinateAxis,
-        /// What ties its ends there.
+        /// Constraints that connect its ends there.
         path: Vec<Reason>,
     },
     /// The planes say that a line is less inclined than its type.
     Degraded {
         /// The line.
         line: LineId,
-        /// What it is named.
+        /// Type as named.
         named: Free,
-        /// What it is.
+        /// Actual type.
         really: Free,
-        /// What ties its ends along the first missing axis.
+        /// Constraints that connect its ends along the first missing axis.
         path: Vec<Reason>,
     },
     /// Two points have the same three planes: they coincide.
@@ -151,7 +151,7 @@ impl Planes {
         classes.zip(&self.ids).filter(|(c, _)| **c as usize == plane).map(|(_, p)| *p).collect()
     }
 
-    /// Whether two points share a plane.
+    /// True if two points share a plane.
     pub fn same(&self, axis: CoordinateAxis, p: PointId, q: PointId) -> bool {
         self.plane(axis, p).is_some() && self.plane(axis, p) == self.plane(axis, q)
     }

@@ -59,7 +59,7 @@ impl Projection {
     }
 
     /// The axes of a cross section perpendicular to `normal`: the first of the two others to the
-    /// right, the second up. The normal is drawn at 45°, for what is extruded later.
+    /// right, the second up. The normal is drawn at 45°, for later extrusion.
     pub fn section(normal: CoordinateAxis) -> Projection {
         let mut angle_deg = [0.0, 90.0, 90.0];
         match normal {
@@ -77,7 +77,7 @@ impl Projection {
         [self.scale[k] * c, self.scale[k] * s]
     }
 
-    /// Where a point of space is drawn.
+    /// Image of a point of space.
     pub fn project(&self, p: Vec3) -> [f64; 2] {
         let mut at = [0.0; 2];
         for axis in CoordinateAxis::ALL {
@@ -88,8 +88,8 @@ impl Projection {
         at
     }
 
-    /// The sight vector: what is drawn as a point, seen from the side that `up` points to. Two points
-    /// are drawn at the same spot iff their difference is parallel to it.
+    /// The sight vector, whose image is a point, on the side of `up`. Two points have the same
+    /// image iff their difference is parallel to it.
     pub fn sight(&self, up: CoordinateAxis) -> Vec3 {
         let [a, b, c] = CoordinateAxis::ALL.map(|axis| self.unit(axis));
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
@@ -97,7 +97,7 @@ impl Projection {
         if n[up.index()] < 0.0 { -n } else { n }
     }
 
-    /// How far a drawn vector leans off an axis: |d × a| / |d · a|; infinite when perpendicular.
+    /// Inclination of a drawn vector to an axis: |d × a| / |d · a|; infinite if perpendicular.
     pub fn lean(&self, d: [f64; 2], axis: CoordinateAxis) -> f64 {
         let [c, s] = direction(self.angle_deg[axis.index()]);
         let along = (d[0] * c + d[1] * s).abs();

@@ -1,4 +1,4 @@
-//! The kinds that sketches bring into a model: what no other kind can say.
+//! Kinds that bring sketches into a model.
 //!
 //! A loaded sketch also declares points (`AbsPoint`) and lines (`DrawnLine`); see `lang`.
 

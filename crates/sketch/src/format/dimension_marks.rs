@@ -1,5 +1,5 @@
-//! Where dimensions stand on a drawing: dimension lines beside what they measure, witness lines from it, and the
-//! places of their texts.
+//! Layout of dimensions on a drawing: dimension lines beside the measured parts, witness lines, and
+//! positions of texts.
 
 use crate::{
     CoordinateAxis, DimensionRole, Drawing, LineId, MeasuredQuantity, Planes, PointId, SketchObject,
@@ -7,26 +7,28 @@ use crate::{
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 
-/// The first dimension line stands off the drawing by this share of its size, and each further one as much more.
+/// Distance of the first dimension line from the drawing, relative to its size, and between further
+/// ones.
 const APART: f64 = 0.05;
 
-/// How much a witness line goes beyond the dimension line, and stays off the drawing, as shares of the same.
+/// Extension of a witness line beyond the dimension line, and its gap to the drawing, relative to
+/// the size.
 const BEYOND: f64 = 0.012;
 
-/// A dimension as it stands on the page, v up.
+/// A dimension on the page, v up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DimensionMark {
     /// Its name.
     pub name: String,
-    /// What is written: its name and value, in brackets when it only measures.
+    /// Name and value, in brackets for a reference dimension.
     pub text: String,
     /// Its value; `None` while it is unknown.
     pub value: Option<f64>,
-    /// Whether it only measures.
+    /// True for a reference dimension.
     pub reference: bool,
     /// The axis that it runs along.
     pub axis: Option<CoordinateAxis>,
-    /// Where the text stands: the middle of the dimension line.
+    /// Position of the text: the middle of the dimension line.
     pub at: [f64; 2],
     /// The dimension line, with arrows at both ends, in the direction of the dimension; `None` of slopes, angles and equal lengths.
     pub line: Option<[[f64; 2]; 2]>,
@@ -205,7 +207,7 @@ fn beside(
     best.map(|b| b.1)
 }
 
-/// How far the lines of a drawing reach to a side of an axis, between two places along it.
+/// Maximum extent of a drawing's lines to a side of an axis, between two positions along it.
 fn outermost(
     drawing: &Drawing,
     page: &Page<'_>,
@@ -235,7 +237,7 @@ fn outermost(
     far
 }
 
-/// Puts dimension lines into rows beside the drawing, shorter ones nearer, so that none lie on each other.
+/// Arranges dimension lines in rows beside the drawing, shorter ones nearer, without overlap.
 fn place_rows(
     mut rows: Vec<UnplacedMark>,
     page: &Page<'_>,
@@ -246,7 +248,7 @@ fn place_rows(
         let long = |r: &UnplacedMark| (r.ends[1][0] - r.ends[0][0]).abs();
         long(x).total_cmp(&long(y)).then(x.mark.cmp(&y.mark))
     });
-    // By direction: what is taken, as (from, to, place across).
+    // By direction: occupied intervals, as (from, to, position across).
     let mut taken: BTreeMap<(usize, usize, bool), Vec<[f64; 3]>> = BTreeMap::new();
     for row in rows {
         let (a, w) = ((page.unit)(row.axis), (page.unit)(row.across));

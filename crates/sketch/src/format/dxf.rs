@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 /// Blocks inserted in one another deeper than this are left out.
 const MAX_DEPTH: usize = 16;
 
-/// The lines, arcs, circles and ellipses of a DXF text: LINE, LWPOLYLINE and POLYLINE with their bulges, ARC, CIRCLE,
-/// full ELLIPSE, seen from above, and INSERT of blocks of them; what else there is is counted.
+/// The lines, arcs, circles and ellipses of a DXF text: LINE, LWPOLYLINE and POLYLINE with their
+/// bulges, ARC, CIRCLE, full ELLIPSE, seen from above, and INSERT of blocks of them; other entities
+/// are counted.
 ///
 /// # Errors
 /// Says where the text is not a DXF.
@@ -69,7 +70,7 @@ fn unit(code: &str) -> Option<&'static str> {
     }
 }
 
-/// What is read of a file.
+/// Content of a file.
 #[derive(Default)]
 struct DxfFile {
     entities: Vec<Entity>,
@@ -133,12 +134,12 @@ struct Entity {
     vertices: Vec<([f64; 2], f64)>,
     numbers: BTreeMap<i32, f64>,
     closed: bool,
-    /// Whether it is seen from behind.
+    /// True if it is seen from behind.
     mirrored: bool,
 }
 
 impl Entity {
-    /// Takes a group; the error says what its value is not.
+    /// Reads a group; the error is the expected type of its value.
     fn read(&mut self, code: i32, value: &str) -> Result<(), &'static str> {
         let coordinate = || {
             let x: f64 = value.parse().map_err(|_| "a number")?;
@@ -173,7 +174,7 @@ impl Entity {
         Ok(())
     }
 
-    /// Where an INSERT puts its block, once.
+    /// Transformation of an INSERT's block; arrays and mirrored ones have none.
     fn placement(&self) -> Option<SvgTransform> {
         let number = |code: i32, other: f64| self.numbers.get(&code).copied().unwrap_or(other);
         if self.mirrored || number(70, 1.0) > 1.0 || number(71, 1.0) > 1.0 {

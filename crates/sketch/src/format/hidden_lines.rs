@@ -9,11 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Points along a curve.
 const CHORDS: usize = 24;
 
-/// How far a chord of a mesh may be off its face, as a share of the body.
+/// Maximum distance of a mesh chord from its face, relative to the body.
 const CHORD: f64 = 5e-4;
 
-/// How much nearer a facet of a round face must be to hide an edge of another face, and of its own, as shares of the body:
-/// it stands before its own border by its chords. Facets of plane faces are exact.
+/// Minimum distance in front, relative to the body, at which a facet of a round face hides an edge
+/// of another face, and of its own: chords are off the face's own border. Facets of plane faces are
+/// exact.
 const BEFORE: [f64; 2] = [2e-3, 2e-2];
 const BEFORE_PLANE: f64 = 1e-7;
 
@@ -79,12 +80,14 @@ pub(super) fn seen_strokes(
     for (ends, own) in &pieces {
         cut(ends, own, &covers, view, sight, size, &mut out);
     }
-    // What is hidden is drawn first, so that it does not break what is seen at the same place.
+    // Hidden lines are drawn first, so that they do not interrupt visible ones at the same
+    // position.
     out.sort_by_key(|s| !s.hidden);
     out
 }
 
-/// Whether an edge only parts a round surface, as the seams of a full turn: its faces have one name and go on smoothly.
+/// True for an edge within a smooth round surface, as the seams of a full turn: its faces have one
+/// name and a common tangent.
 fn smooth(solid: &SketchSolid<f64>, e: usize, own: &BTreeSet<usize>) -> bool {
     let faces: Vec<usize> = own.iter().copied().collect();
     let [a, b] = faces[..] else { return false };

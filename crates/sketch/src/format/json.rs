@@ -38,7 +38,7 @@ impl Json {
     /// Reads a text.
     ///
     /// # Errors
-    /// Says what is wrong, with the byte where.
+    /// A description of the error, with its byte.
     pub fn parse(text: &str) -> Result<Json, String> {
         let mut reader = Reader { bytes: text.as_bytes(), at: 0 };
         let value = reader.value(0)?;
@@ -73,7 +73,7 @@ impl Json {
         }
     }
 
-    /// The items of an array; none for anything else.
+    /// The items of an array; empty for other values.
     pub fn items(&self) -> &[Json] {
         match self {
             Json::List(items) => items,

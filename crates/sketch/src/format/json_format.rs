@@ -17,13 +17,13 @@ pub struct LineData {
     pub ends: [PointId; 2],
     /// `X`, `XY`, `O`, or empty while unknown.
     pub free: &'static str,
-    /// Who typed it.
+    /// Source of the type.
     pub source: LineTypeSource,
-    /// How sure the type is, from 0 to 1.
+    /// Confidence of the type, from 0 to 1.
     pub certainty: f64,
 }
 
-/// What a finished (or unfinished) object is, for hosts.
+/// Data of a finished (or unfinished) object, for hosts.
 #[derive(Clone, Debug)]
 pub struct ObjectData {
     /// Its name.
@@ -32,7 +32,7 @@ pub struct ObjectData {
     pub state: &'static str,
     /// Points and tangent points with their coordinates, as far as determined.
     pub points: Vec<(PointId, [Option<f64>; 3])>,
-    /// Where points are drawn.
+    /// Positions of points on the page.
     pub page: Vec<(PointId, [f64; 2])>,
     /// Its lines.
     pub lines: Vec<LineData>,
@@ -48,7 +48,7 @@ pub struct ObjectData {
     pub mass: Option<Mass<f64>>,
     /// Dimensions missing on X, Y, Z.
     pub missing: [usize; 3],
-    /// What they would connect.
+    /// Parts that they would connect.
     pub loose: Vec<Loose>,
     /// Dimensions with their values, in order.
     pub dimensions: Vec<(String, String, Option<f64>)>,
@@ -56,7 +56,7 @@ pub struct ObjectData {
     pub solid: Option<SketchSolid<f64>>,
 }
 
-/// The data of an object from what was computed about it.
+/// The data of an object from its computed results.
 pub fn object_data(
     object: &SketchObject,
     planes: &Planes,
@@ -173,8 +173,8 @@ impl ObjectData {
     }
 }
 
-/// The twin: format and version, the fields of the object as data, and the commands that make it,
-/// which are what is read back.
+/// The JSON form: format and version, the fields of the object as data, and the commands that make
+/// it, which are what is read back.
 pub fn to_json(object: &SketchObject) -> Json {
     let d = &object.drawing;
     let points = d
@@ -211,7 +211,7 @@ pub fn to_json(object: &SketchObject) -> Json {
 /// The commands of a twin, or of a list of twins.
 ///
 /// # Errors
-/// Says what the text lacks.
+/// Names the missing part of the text.
 pub fn from_json(text: &str) -> Result<String, String> {
     let json = Json::parse(text)?;
     let one = [json.clone()];

@@ -14,7 +14,7 @@ pub type Stroke = [[f64; 2]; 2];
 /// Angles up to this part of a radian make lines go on straight.
 const STRAIGHT: f64 = 1e-6;
 
-/// What is on the page.
+/// Shapes on the page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PageShapes {
     /// Straight lines.
@@ -25,7 +25,7 @@ pub struct PageShapes {
     pub rounds: Vec<[[f64; 2]; 3]>,
     /// The unit of length that the drawing states.
     pub unit: Option<&'static str>,
-    /// What is not drawn, by kind.
+    /// Numbers of entities that are not drawn, by kind.
     pub left_out: BTreeMap<String, usize>,
 }
 
@@ -116,7 +116,7 @@ impl PageShapes {
         self.strokes = strokes.into_iter().zip(cuts).flat_map(pieces).collect();
     }
 
-    /// How far the shapes reach.
+    /// Largest coordinate of the shapes.
     pub fn size(&self) -> f64 {
         let arcs = self.arcs.iter().flat_map(|a| a.0);
         let rounds = self.rounds.iter().flat_map(|[c, a, b]| {
@@ -128,14 +128,14 @@ impl PageShapes {
         all.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()))
     }
 
-    /// How many lines it draws, at most.
+    /// Maximum number of lines that it draws.
     pub fn line_count(&self) -> usize {
         self.strokes.len() + 2 * self.arcs.len() + 4 * self.rounds.len()
     }
 
-    /// Draws the shapes into an object, ends within `tolerance` being one point: an arc between two lines that
-    /// it goes on from is a round of their corner. Gives the numbers of new points and lines, and the names
-    /// of new curves.
+    /// Draws the shapes into an object, with ends within `tolerance` merged: an arc that continues
+    /// two lines is a round of their corner. Returns the numbers of new points and lines, and the
+    /// names of new curves.
     pub fn draw(&self, object: &mut SketchObject, tolerance: f64) -> (usize, usize, Vec<String>) {
         let near =
             |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= tolerance;

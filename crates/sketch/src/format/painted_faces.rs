@@ -110,7 +110,7 @@ fn order(front: &[usize], facets: &[Vec<PaintedFacet>], mean: &dyn Fn(usize) -> 
     let mut done = vec![false; facets.len()];
     while !left.is_empty() {
         let ready = left.iter().position(|&f| behind[f].iter().all(|&b| done[b]));
-        // Faces that cover each other in turn: the farthest goes first.
+        // In a cycle of mutual covering, the farthest is first.
         let f = left.remove(ready.unwrap_or(0));
         done[f] = true;
         out.push(f);
@@ -118,7 +118,8 @@ fn order(front: &[usize], facets: &[Vec<PaintedFacet>], mean: &dyn Fn(usize) -> 
     out
 }
 
-/// Whether the first face is nearer than the second where both are seen, by the place where they differ most.
+/// True if the first face is nearer than the second where both are visible, at the position with
+/// the largest difference.
 fn covers(
     a: &[PaintedFacet],
     boxes_a: &[[[f64; 2]; 2]],
@@ -153,7 +154,7 @@ fn cross(o: [f64; 2], p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
 }
 
-/// The part of a triangle within another one (Sutherland and Hodgman 1974), none where it is only a line.
+/// The part of a triangle within another one (Sutherland and Hodgman 1974); empty for a line.
 fn clipped(a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]) -> Vec<[f64; 2]> {
     let turn = cross(b[0], b[1], b[2]).signum();
     let mut rest: Vec<[f64; 2]> = a.to_vec();

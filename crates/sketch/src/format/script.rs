@@ -21,7 +21,7 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
-/// `X 1 TO 3`, `LENGTH 4`: what a dimension measures, as in its command.
+/// `X 1 TO 3`, `LENGTH 4`: the quantity of a dimension, as in its command.
 pub(crate) fn measure_text(measure: &MeasuredQuantity) -> String {
     match measure {
         MeasuredQuantity::Along { axis, p, q } => format!("{axis} {p} TO {q}"),
@@ -81,7 +81,7 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         Placement::Mirror { axis, at } => format!("{axis} {}", value(at)),
         Placement::Scale(factor) => value(factor),
     };
-    // What a number of the feature itself is, which its command names anew.
+    // Value of a number of the feature itself, which its command names again.
     let own_value = |e: &DimensionExpr| {
         let known = object.variables.get(&e.text().to_ascii_lowercase());
         value(known.map_or(e, |v| &v.value))
@@ -90,7 +90,7 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         let all: Vec<String> = faces.iter().map(face_text).collect();
         if all.is_empty() { String::new() } else { format!(" {word} {}", all.join(" ")) }
     };
-    // Numbers of the feature itself may stand in its command.
+    // The command may contain numbers of the feature itself.
     let own: Vec<&crate::Variable> = object.variables.values().collect();
     let command = match &feature.kind {
         FeatureKind::Boolean(operation) => format!("{} {parts} INTO {name}", operation.word()),

@@ -93,7 +93,7 @@ pub(crate) fn svg(
             _ => sketch(object, data, picture, page, &mut items),
         }
     }
-    // The page with the witness lines that leave it; of a view what is seen.
+    // The page with the witness lines that leave it; for a view the visible part.
     let bounds = match (&view, around(&items)) {
         (Some(_), seen) => seen.unwrap_or(page),
         (None, Some(s)) => {
@@ -235,7 +235,7 @@ fn dimensions(
     }
 }
 
-/// Where the dimensions of an object stand, on the page as drawn or in a view of the body.
+/// Positions of an object's dimensions, on the page as drawn or in a view of the body.
 pub(crate) fn marks(
     object: &SketchObject,
     data: &ObjectData,
@@ -391,7 +391,7 @@ fn haloed([x, y]: [f64; 2], text: &str, colour: &str) -> String {
     )
 }
 
-/// A dimension line with arrows at its ends; where it is too short for them they stand outside and point to it.
+/// A dimension line with arrows at its ends; if it is too short for them they are outside.
 fn span(from: [f64; 2], to: [f64; 2], colour: &str) -> String {
     const ARROW: [f64; 2] = [9.0, 2.6];
     let d = [to[0] - from[0], to[1] - from[1]];

@@ -6,7 +6,7 @@ use crate::format::svg_transform::{SvgTransform, numbers};
 /// Reads the shapes of an SVG text; v runs up, as on the page of a sketch.
 ///
 /// # Errors
-/// Says why the text is no SVG, or what of it cannot be placed.
+/// The reason why the text is not an SVG, or cannot be placed.
 pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
     let mut shapes = PageShapes::default();
     let mut known = false;
@@ -65,7 +65,7 @@ pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
     if known { Ok(shapes) } else { Err("it has no svg element".into()) }
 }
 
-/// Where a tag ends, not within quotes.
+/// End of a tag, outside quotes.
 fn tag_end(text: &str) -> Option<usize> {
     let mut quote = None;
     text.char_indices().find_map(|(k, c)| match (quote, c) {

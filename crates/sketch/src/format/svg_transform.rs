@@ -90,7 +90,7 @@ impl SvgTransform {
     }
 }
 
-/// Numbers with blanks or commas between them, or none where the next begins with a sign or point.
+/// Numbers separated by blanks or commas, or by the sign or point of the next.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let mut out = Vec::new();
     let mut word = String::new();

@@ -7,7 +7,7 @@ use super::SketchSolid;
 use super::combine::CombineError;
 use moldloft_num::{Real, Vec3};
 
-/// How far the sums over a surface may be off those of a closed one, as a share of the area and of the area times the
+/// Tolerance of the sums over a closed surface, relative to the area and to the area times the
 /// extent. Edges without a closed form are integrated to 1e-12 of their chords.
 const CLOSED: f64 = 1e-11;
 

@@ -155,7 +155,7 @@ fn follow_tangents<T: Real>(
     }
 }
 
-/// The edge after a side in its loop, or before it, and whether it goes on in the same direction.
+/// The edge after a side in its loop, or before it, and whether it continues in the same direction.
 fn neighbour<T: Real>(body: &SketchSolid<T>, side: &EdgeSide, next: bool) -> (usize, bool) {
     let cycle = &body.faces[side.face].loops[side.cycle];
     let n = cycle.len();
@@ -237,7 +237,7 @@ impl<T: Real> Blending<'_, T> {
         Some((edge.reach[k], edge.frame.into[k]))
     }
 
-    /// Where the blend of a straight edge ends.
+    /// End of the blend of a straight edge.
     fn station(&self, edge: &BlendEdge<T>, end: usize) -> Result<SectionPlacing<T>, NoBody> {
         let frame = &edge.frame;
         let at = if end == 0 { frame.start } else { frame.finish };
@@ -283,7 +283,7 @@ impl<T: Real> Blending<'_, T> {
             };
             let to_face = SectionPlacing::Plane { along, at: base, normal };
             let Some((other, k)) = shared else { return Ok(to_face) };
-            // Where the corner stands out, blends of different sizes cross each other.
+            // At a convex corner, blends of different sizes intersect.
             let mitre = self.mitre(edge, other, k, at, next[1 - k].0);
             return if open > 0.0 { Ok(mitre.unwrap_or(to_face)) } else { mitre };
         }
@@ -314,7 +314,7 @@ impl<T: Real> Blending<'_, T> {
         Ok(SectionPlacing::Plane { along, at: at + out * T::from(length + margin), normal: along })
     }
 
-    /// How far it is from a point along a direction to a face, beyond the point.
+    /// Distance from a point along a direction to a face, beyond the point.
     fn to_face(&self, face: usize, from: Vec3<T>, out: Vec3<T>) -> Option<f64> {
         let (p, d) = (from.re(), out.re());
         match self.body.form(face) {
@@ -334,7 +334,7 @@ impl<T: Real> Blending<'_, T> {
         }
     }
 
-    /// Two blends that meet in a corner that stands in end in the plane between them.
+    /// Two blends that meet in a concave corner end in the plane between them.
     fn mitre(
         &self,
         edge: &BlendEdge<T>,
@@ -484,7 +484,7 @@ impl<T: Real> Blending<'_, T> {
         Ok(())
     }
 
-    /// Whether a point of a plane face's plane is inside of its outer loop, or near it.
+    /// True if a point in the plane of a face is inside its outer loop, or near it.
     fn within(&self, face: usize, p: Vec3) -> bool {
         let FaceForm::Plane { normal, .. } = self.body.form(face) else { return true };
         let axis = (0..3).max_by(|&a, &b| normal[a].re().abs().total_cmp(&normal[b].re().abs()));

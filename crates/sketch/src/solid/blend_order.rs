@@ -1,4 +1,4 @@
-//! Corners where edges that stand out and edges that stand in meet: which of the chosen edges are blended first.
+//! Corners of convex and concave edges: order in which the chosen edges are blended.
 //!
 //! Of three such edges one is alone of its kind. When it is blended first, the other two are joined by an edge of the
 //! blend, an arc that they go on into. Then these are filleted with it, as edges of one kind. All edges of one kind that
@@ -30,14 +30,15 @@ const WHOLE: &str =
 /// Edges of a body that are blended together, after others.
 pub(super) struct BlendStep<T> {
     edges: Vec<EdgeFrame<T>>,
-    /// Where they run, by edge.
+    /// Polylines of the edges.
     ways: Vec<Vec<Vec3>>,
 }
 
 /// The edges to begin with, and those to be found in the body that results, in their order.
 ///
 /// # Errors
-/// A corner of both kinds that is not one of three straight chosen edges, or that asks for another order than others.
+/// A corner of both kinds that is not one of three straight chosen edges, or that requires another
+/// order than others.
 pub(super) fn ordered<T: Real>(
     body: &SketchSolid<T>,
     sides: &[Vec<EdgeSide>],
@@ -80,7 +81,8 @@ pub(super) fn ordered<T: Real>(
             _ => return Err(refused(place)),
         };
         let straight = own.iter().all(|&k| frames[k].axis.is_none());
-        // A rolling ball ends there in one way; of bevels the order of the edges decides what is between them.
+        // The end of a rolling-ball blend is unique; for chamfers it depends on the order of the
+        // edges.
         let bevel = matches!(size, BlendSize::Chamfer(_));
         if bevel {
             let text = "edges that stand out and edges that stand in meet, where the order of chamfers decides their shape";
@@ -140,7 +142,7 @@ impl<T: Real> BlendStep<T> {
     /// The edges of a later body that are parts of these.
     ///
     /// # Errors
-    /// An edge that is no longer there.
+    /// An edge that does not exist in the body.
     pub(super) fn found_in(&self, body: &SketchSolid<T>) -> Result<ChosenEdges, TreatmentFault> {
         let sides = body.edge_sides();
         let first = body.vertices.first().map_or(Vec3::zero(), |v| v.at.re());
@@ -167,7 +169,7 @@ impl<T: Real> BlendStep<T> {
     }
 }
 
-/// Whether a point lies on an edge.
+/// True if a point is on an edge.
 fn on_edge<T: Real>(frame: &EdgeFrame<T>, way: &[Vec3], p: Vec3, size: f64) -> bool {
     let near = 1e-9 * size;
     let [start, finish] = [frame.start, frame.finish].map(Vec3::re);

@@ -106,8 +106,8 @@ impl<T: Real> ToolParts<T> {
     }
 }
 
-/// The body that a section sweeps through stations, each with whether its points are vertices; the first is, and
-/// of an open one the last. A closed one goes on from the last to the first.
+/// The body that a section sweeps through stations, each with whether its points are vertices; the
+/// first is, and for an open sweep the last. A closed one continues from the last to the first.
 pub(super) fn swept<T: Real>(
     section: &BlendSection<T>,
     stations: &[(SectionPlacing<T>, bool)],

@@ -17,7 +17,8 @@ pub enum BodyTree<T> {
     Combined(Operation, Vec<BodyTree<T>>),
 }
 
-/// How the body of an object is combined; `None` where a body among them has round faces that are cut, or there is none.
+/// The combination tree of an object's body; `None` without a body, or if a body in it has trimmed
+/// round faces.
 pub fn body_tree<T: Real>(
     object: &SketchObject,
     planes: &Planes,

@@ -1,9 +1,10 @@
-//! Where measures of a body that was combined have no derivative.
+//! Detection of missing derivatives of a combined body's measures.
 //!
-//! A measure changes as the faces move: the volume by the integral of their normal speeds, the area by what their edges
-//! do. Where faces of two bodies lie in each other and do not move alike, they overlap on one side and part on the
-//! other, so the volume has two one-sided derivatives; where an edge lies in a face that moves otherwise, the area has.
-//! More faces than three at a point change neither in first order.
+//! A measure changes as the faces move: the volume by the integral of their normal speeds, the area
+//! by the motion of their edges. If faces of two bodies coincide but move differently, they overlap
+//! on one side and separate on the other, so that the volume has two one-sided derivatives; if an
+//! edge is in a face that moves differently, the area has. More than three faces at a point do not
+//! change either to first order.
 
 use super::SketchSolid;
 use super::facet_source::{FacetSource, moves, settled};
@@ -18,9 +19,8 @@ use moldloft_syntax::number::plain;
 pub struct Kink {
     /// The part of the scalar.
     pub part: usize,
-    /// Where.
     pub at: Vec3,
-    /// Whether the volume has none either: faces part, not an edge from a face.
+    /// True if the volume has no derivative either: faces separate, not an edge from a face.
     pub volume: bool,
 }
 
@@ -75,7 +75,7 @@ pub(super) fn part<T: Real>(v: Vec3<T>, k: usize) -> Vec3 {
 pub(super) struct Tangent<T> {
     /// The unit normal.
     pub normal: Vec3,
-    /// How far the point is in front of the surface.
+    /// Distance of the point in front of the surface.
     pub off: T,
     /// The speed of the surface there, by part.
     speed: Vec3<T>,
@@ -83,8 +83,8 @@ pub(super) struct Tangent<T> {
 }
 
 impl<T: Real> Tangent<T> {
-    /// Of a point on a surface, or one that is off it by no more than a share of its size; `None` at poles, and where
-    /// the point is not over it.
+    /// For a point on a surface, or off it by no more than a fraction of its size; `None` at poles,
+    /// and if the point is not over it.
     pub fn of(surface: &FaceSurface<T>, p: Vec3<T>, share: f64) -> Option<Tangent<T>> {
         if let FaceSurface::Plane { at, normal } = surface {
             let off = normal.dot(p - *at);
@@ -103,16 +103,17 @@ impl<T: Real> Tangent<T> {
         Some(Tangent { normal, off, speed: s, turn: Vec3::zero() })
     }
 
-    /// How fast its surface moves at most, by part.
+    /// Maximum speed of its surface, by part.
     pub fn pace(&self, k: usize, scale: f64) -> f64 {
         part(self.speed, k).norm() + scale * part(self.turn, k).norm()
     }
 }
 
-/// Corners and points of edges that move faster than what they are made of by this factor have no speed.
+/// Ratio of the speed of corners and points of edges to that of their operands, above which they
+/// have no derivative.
 const RUSHING: f64 = 1e6;
 
-/// Where faces touch, an edge between them has no speed: it comes out as a very large one.
+/// At a contact of faces the edge between them has no derivative: the computed speed is very large.
 pub(super) fn rushing<T: Real>(body: &SketchSolid<T>, given: &[Vec3<T>]) -> Vec<Kink> {
     let corners = body.vertices.iter().map(|v| v.at);
     let traces = || body.edges.iter().filter_map(|e| e.trace.as_ref());
@@ -160,8 +161,8 @@ pub(super) fn kinks<T: Real>(
     found
 }
 
-/// By part, whether surfaces that lie in each other, or meet in a line, at a point do not move alike there. `None` where only
-/// their facets meet.
+/// For each part, true if surfaces that coincide, or intersect in a line, at a point move
+/// differently there. `None` if only their facets meet.
 fn apart<T: Real>(
     surfaces: &[&FaceSurface<T>],
     p: Vec3,
@@ -175,7 +176,7 @@ fn apart<T: Real>(
     let rough: Option<Vec<Tangent<T>>> =
         surfaces.iter().map(|s| tangent(Vec3::lifted(p), s)).collect();
     let rough = rough?;
-    // Where they are.
+    // Largest distance, and its indices.
     let mut best = (0.0, [0, 0]);
     for i in 0..rough.len() {
         for j in i + 1..rough.len() {
@@ -213,8 +214,8 @@ fn apart<T: Real>(
     if exact.iter().any(|t| t.off.re().abs() > near * scale) {
         return None;
     }
-    // Where a round face of one body touches a face of another one, and a third runs through that line, normal speeds do not
-    // tell how the line moves.
+    // If a round face of one body touches a face of another one, and a third contains that line,
+    // normal speeds do not determine the motion of the line.
     let touch = |i: usize, j: usize| {
         let flat = |n: usize| matches!(surfaces[n], FaceSurface::Plane { .. });
         one.sources[i].0 != one.sources[j].0

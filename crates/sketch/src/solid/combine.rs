@@ -61,8 +61,8 @@ pub fn combined<T: Real>(
     build(&bodies, &[0, 1], [false; 2], &rule).map(|b| b.0)
 }
 
-/// The body of one and any number of tools, which may cross each other, by an operation. Edges of tools that lie in
-/// faces of the body are edges of the result, so that faces may be tangent along them.
+/// Combination of a body with any number of tools, which may intersect each other. Edges of tools
+/// on faces of the body are edges of the result, so that faces may be tangent along them.
 ///
 /// # Errors
 /// [`CombineError`], with the place.
@@ -95,7 +95,7 @@ pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, Com
     build(bodies, &vec![0; bodies.len()], [true, false], &|w| w[0] > 0).map(|b| b.0)
 }
 
-/// The facets of bodies, and what they stand for.
+/// The facets of bodies, with their origin.
 pub(super) struct Facetted<T> {
     pub(super) points: Vec<Vec3<T>>,
     pub(super) facets: Vec<Facet>,
@@ -104,7 +104,7 @@ pub(super) struct Facetted<T> {
     pub(super) vertex: Vec<bool>,
     /// By point: the surfaces of its body there, by operand and tag.
     pub(super) around: Vec<BTreeSet<(usize, u32)>>,
-    /// Where the bodies themselves have no derivative.
+    /// Points at which the bodies themselves have no derivative.
     pub(super) kinks: Vec<Kink>,
 }
 
@@ -142,7 +142,8 @@ fn build<T: Real>(
         let own =
             coincidence::kinks(&arranged.shared, &arranged.points, &all.sources, scale, fitted);
         body.kinks.extend(own);
-        // Where bodies touch in an edge, or round faces are beside it, the volume is refused with the area.
+        // At a contact in an edge, or beside round faces, the volume has no derivative, as the
+        // area.
         let mut uses = vec![0; body.edges.len()];
         body.faces.iter().flat_map(|f| f.loops.iter().flatten()).for_each(|h| uses[h.0] += 1);
         if !body.trims.is_empty() || uses.iter().any(|n| *n > 2) {
@@ -362,7 +363,7 @@ fn warping<T: Real>(
     out
 }
 
-/// Whether facets of a round face, counter-clockwise from outside, look to the side of the surface's normal.
+/// True if facets of a round face, counter-clockwise from outside, have the surface's normal.
 fn along_normal<T: Real>(
     surface: &FaceSurface<T>,
     facets: &[LoopsAndTags],
@@ -412,12 +413,14 @@ pub(super) fn triangles_of(
     triangulate(&points, &cycles, normal).into_iter().map(|t| t.map(|k| used[k])).collect()
 }
 
-/// How far the ways of the nodes along a chord may miss it, as a share of its length, and how often a chord is halved
-/// to get there: an edge that turns sharply within a chord, or ends where its surfaces touch, needs many.
+/// Maximum deviation of the nodes' paths along a chord, relative to its length, and maximum number
+/// of halvings of a chord: an edge that turns sharply within a chord, or ends at a contact of its
+/// surfaces, needs many.
 const RESOLVED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 16;
 
-/// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
+/// Accuracy of points, relative to the bodies; smaller errors of chords cannot be resolved by
+/// halving.
 const ROUNDED: f64 = 1e-14;
 
 /// Faces are tangent where the sine between their normals is less: surfaces that the arrangement takes for one line cross at
@@ -430,7 +433,7 @@ const MOST_FACETS: usize = 200_000;
 /// Two faces beside a side, and the edge of a body that it is part of.
 pub(super) type Kind = (usize, usize, Option<(usize, u32)>);
 
-/// Whether edges cross in a point, by its sides: two have no neighbour in common.
+/// True if edges cross in a point, by its sides: two have no common neighbour.
 fn crosses(sides: &BTreeSet<(Kind, u32)>) -> bool {
     let mut by_edge: BTreeMap<Kind, BTreeSet<u32>> = BTreeMap::new();
     for &(kind, end) in sides {
@@ -445,8 +448,8 @@ pub(super) struct Placing<'a, T> {
     pub(super) all: &'a Facetted<T>,
     pub(super) arranged: &'a Arrangement,
     pub(super) scale: f64,
-    /// Whether edges of the second operand are those of the result where they run: tools that touch the
-    /// first one's faces along them.
+    /// True if edges of the second operand are those of the result along their length: tools that
+    /// touch the first one's faces along them.
     pub(super) fitted: bool,
     /// The number of the given point of a vertex of a body, by point of the arrangement.
     pub(super) original: HashMap<u32, u32>,
@@ -541,8 +544,8 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
-        // Where bodies touch, an edge of one crosses one of the other though no loop turns from it into that one. Edges
-        // that run together through a point do not cross there.
+        // At a contact of bodies, an edge of one crosses one of the other although no loop turns
+        // from it into that one. Edges that coincide through a point do not cross there.
         corners.extend(sides.iter().filter(|(_, own)| crosses(own)).map(|(v, _)| *v));
         for face in faces {
             for c in &face.loops {
@@ -553,7 +556,7 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
-        // What meets at each corner.
+        // Faces and edges at each corner.
         let mut around: BTreeMap<u32, (BTreeSet<usize>, BTreeSet<(usize, u32)>)> = BTreeMap::new();
         for (f, face) in faces.iter().enumerate() {
             for c in &face.loops {
@@ -755,7 +758,7 @@ impl<'a, T: Real> Placing<'a, T> {
         Ok(edge)
     }
 
-    /// Whether the faces beside a chain are tangent all along it: then they do not fix it.
+    /// True if the faces beside a chain are tangent all along it, so that they do not determine it.
     fn tangent_along(&self, chain: &[u32], kind: Kind) -> bool {
         let normal = |f: usize, p: Vec3| match self.surface(f) {
             FaceSurface::Plane { normal, .. } => normal.re().normalized(),

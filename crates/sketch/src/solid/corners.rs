@@ -8,7 +8,8 @@ use super::surface::{Carrier, FaceSurface, meet};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;
 
-/// Farther off one of its surfaces than this share of the bodies, a point does not stand for where they touch.
+/// Maximum distance from its surfaces, relative to the bodies, of a point that represents their
+/// contact.
 const ON_ALL: f64 = 1e-11;
 
 impl<T: Real> Placing<'_, T> {
@@ -130,8 +131,9 @@ impl<T: Real> Placing<'_, T> {
         crossing.or_else(|| faces.iter().all(on).then(|| Vec3::lifted(guess)))
     }
 
-    /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
-    /// it becomes several corners with the slightest change. And whether edges have to end by themselves there.
+    /// A corner without derivatives if its faces separate: more of them than determine a point meet
+    /// there by chance, and any change splits it into several corners. Also returns whether edges
+    /// need ends of their own there.
     pub(super) fn moved_with_all(
         &self,
         at: Vec3<T>,
@@ -204,7 +206,7 @@ impl<T: Real> Placing<'_, T> {
                     continue;
                 }
                 let at = |v: u32| self.arranged.points[v as usize];
-                // How far a point of the face is behind its plane is how far that is ahead.
+                // Distance of a face's point behind its plane, from that in front of it.
                 let outward = |t: Tangent<T>| {
                     if t.normal.dot(face.normal) < 0.0 { t.off } else { -t.off }
                 };
@@ -268,7 +270,7 @@ impl<T: Real> Placing<'_, T> {
             };
             return (lifted + rates(by), Vec::new());
         }
-        // Where its surfaces touch, an edge has no speed.
+        // At a contact of its surfaces, an edge has no derivative.
         (lifted, (1..T::PARTS).map(|part| Kink { part, at: p, volume: true }).collect())
     }
 }

@@ -39,7 +39,7 @@ impl CurveKind {
         }
     }
 
-    /// Whether it is drawn into the corner of two lines.
+    /// True if it rounds the corner of two lines.
     pub fn at_corner(self) -> bool {
         !matches!(self, CurveKind::Quadratic | CurveKind::Cubic)
     }
@@ -50,7 +50,7 @@ impl CurveKind {
 pub struct SketchCurve {
     /// As the user wrote it.
     pub name: String,
-    /// What it is.
+    /// Kind.
     pub kind: CurveKind,
     /// The points it hangs on: for a corner the ends of the lines with the corner in the middle.
     pub points: Vec<PointId>,
@@ -60,7 +60,7 @@ pub struct SketchCurve {
     pub semi: Option<[DimensionExpr; 2]>,
     /// Chords to draw it with; by tolerance when `None`.
     pub steps: Option<u32>,
-    /// Whether it takes the place of lines in the solid.
+    /// True if it replaces lines in the solid.
     pub replaces: bool,
     /// Cubic: knots by the square root of the chord instead of uniform.
     pub centripetal: bool,
@@ -141,7 +141,7 @@ impl<T: Real> SmoothPiece<T> {
         sum
     }
 
-    /// How many chords keep within `tolerance` of the curve.
+    /// Number of chords within `tolerance` of the curve.
     pub fn chords(&self, tolerance: f64) -> usize {
         // A chord over ds misses by |p''| ds² / 8.
         let bend = match self {
@@ -164,7 +164,7 @@ impl<T: Real> SmoothPiece<T> {
 pub enum CurveFault {
     /// A size has no value.
     NoValue {
-        /// What it reads.
+        /// Missing name.
         reads: String,
     },
     /// A size is not positive.
@@ -197,7 +197,7 @@ pub struct Traced<T> {
 /// Traces a curve; `at` gives positions, `value` evaluates names.
 ///
 /// # Errors
-/// What is wrong with its sizes or points.
+/// A fault of its sizes or points.
 pub fn trace<T: Real>(
     curve: &SketchCurve,
     at: &dyn Fn(PointId) -> Option<Vec3<T>>,

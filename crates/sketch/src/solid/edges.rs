@@ -9,14 +9,14 @@ use crate::{LineId, SketchObject};
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Why edges or faces cannot be treated as asked.
+/// Reason why edges or faces cannot be treated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreatmentFault {
-    /// What is wrong.
+    /// Fault.
     pub text: String,
-    /// Where.
+    /// Position.
     pub at: Option<Vec3>,
-    /// What helps.
+    /// Remedy.
     pub next: &'static str,
 }
 
@@ -26,7 +26,7 @@ impl TreatmentFault {
     }
 }
 
-/// What a face is to the edges beside it.
+/// Class of a face for its edges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FaceForm<T> {
     /// A plane: a point of it and its outward normal.
@@ -58,7 +58,7 @@ pub(crate) struct EdgeFrame<T> {
     pub along: Vec3<T>,
     /// Unit vectors at the start, across the edge, into each face.
     pub into: [Vec3<T>; 2],
-    /// Whether the body is inside of the angle of its faces.
+    /// True for a convex edge.
     pub convex: bool,
     /// The axis of a round edge, along which the angles from the start are positive.
     pub axis: Option<Line<T>>,
@@ -87,7 +87,7 @@ impl<T: Real> SketchSolid<T> {
         way
     }
 
-    /// Whether an edge is straight.
+    /// True if an edge is straight.
     pub(crate) fn is_straight(&self, edge: usize) -> bool {
         let e = &self.edges[edge];
         let way: Vec<Vec3> = match (&e.trace, e.piece) {
@@ -103,7 +103,7 @@ impl<T: Real> SketchSolid<T> {
                 .all(|p| (*p - first).cross(last - first).norm() <= 1e-10 * length * length)
     }
 
-    /// What a face is.
+    /// Class of a face.
     pub(crate) fn form(&self, face: usize) -> FaceForm<T> {
         match self.surface(face) {
             None => {
@@ -136,7 +136,7 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// A face in words: its names and what it is; and a point of it.
+    /// Description of a face, by names and class; and a point of it.
     pub(crate) fn face_text(&self, face: usize) -> (String, Vec3) {
         let names: Vec<&str> = self.faces[face].names.iter().map(|n| &**n).collect();
         let name = if names.is_empty() { "without a name".to_owned() } else { names.join(", ") };
@@ -163,7 +163,7 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Whether the faces beside an edge go on smoothly into each other.
+    /// True if the faces beside an edge have a common tangent plane.
     pub(crate) fn is_smooth(&self, sides: &[EdgeSide]) -> bool {
         let [a, b] = sides else { return false };
         let way = self.run(self.faces[a.face].loops[a.cycle][a.place]);
@@ -174,7 +174,7 @@ impl<T: Real> SketchSolid<T> {
         m.re().cross(n.re()).norm() <= 1e-7
     }
 
-    /// An edge with what its treatment needs.
+    /// An edge with the data for its treatment.
     pub(crate) fn edge_frame(
         &self,
         edge: usize,
@@ -222,7 +222,7 @@ impl<T: Real> SketchSolid<T> {
             let convex = n.dot(into[0]).re() < 0.0;
             return Ok(EdgeFrame { sides, ends, start, finish, along, into, convex, axis: None });
         }
-        // The plane's side says which way round; what is the first stays the first.
+        // The side on the plane determines the orientation; the order is kept.
         let flat = usize::from(!plane(&sides[0]));
         let (FaceForm::Plane { normal, .. }, FaceForm::Straight(axis)) =
             (forms[flat], forms[1 - flat])

@@ -1,4 +1,4 @@
-//! What facets of bodies stand for: exact faces and edges, and places on them.
+//! Origin of facets: exact faces and edges of bodies, and positions on them.
 
 use super::coincidence::Kink;
 use super::curve::SmoothPiece;
@@ -12,23 +12,23 @@ pub(super) const ON_SURFACE: f64 = 1e-8;
 /// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
 const PARTING: f64 = 1e-6;
 
-/// Speeds that rounding leaves: numbers of bodies are lengths and degrees, so that what moves has a speed of about one.
+/// Speed by rounding: parameters are lengths and degrees, so that speeds of motion are about one.
 const STILL: f64 = 1e-11;
 
-/// Whether something moves, where the speeds around it are that.
+/// True if a speed is above rounding, relative to the speeds around it.
 pub(super) fn moves(speed: f64, around: f64) -> bool {
     speed.abs() > PARTING * around + STILL
 }
 
-/// What facets of the bodies stand for.
+/// Origin of the facets of bodies.
 pub(super) struct FacetSource<T> {
     pub(super) surfaces: Vec<FaceSurface<T>>,
     /// By surface: the names of its face.
     pub(super) names: Vec<Vec<Arc<str>>>,
     /// By edge: its curve where it has a closed form, and the surfaces beside it.
     pub(super) edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
-    /// By surface: the edges round its face as they are run, none of a face in triangles; and whether the outward side
-    /// is that of the surface's own normal.
+    /// By surface: the directed edges around its face, empty for a face in triangles; and whether
+    /// outward is the surface's own normal.
     pub(super) borders: Vec<(Vec<(u32, bool)>, bool)>,
     /// By edge: where it begins and ends on its curve.
     pub(super) ranges: Vec<[f64; 2]>,
@@ -58,8 +58,8 @@ pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
     s
 }
 
-/// The parameters of a point of a surface by Gauss-Newton steps, or of the foot of one that is off it by no more than a
-/// share of its size; `None` where the steps end at another point.
+/// The parameters of a point of a surface by Gauss-Newton steps, or of the foot of a point within a
+/// fraction of its size; `None` if the steps converge to another point.
 pub(super) fn settled<T: Real>(
     surface: &FaceSurface<T>,
     p: Vec3,
@@ -85,7 +85,7 @@ pub(super) fn settled<T: Real>(
     let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
     let near = |x: f64| (-0.5..=1.5).contains(&x);
     let size = du.norm() + dv.norm();
-    // What is left is square to the surface.
+    // The rest is perpendicular to the surface.
     let left = p - s;
     let along = |d: Vec3| left.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE);
     let foot = left.norm() <= share * size && along(du) + along(dv) <= ON_SURFACE * size;

@@ -28,11 +28,11 @@ pub enum NoBody {
     Flaw(SolidDefect),
     /// The operands cannot be combined.
     Combine(CombineError),
-    /// An operand has none.
+    /// An operand without a body.
     Operand {
         /// Its name.
         name: String,
-        /// Which one it is, from 0.
+        /// Its index, from 0.
         number: usize,
         /// Why.
         why: Box<NoBody>,
@@ -41,24 +41,26 @@ pub enum NoBody {
     NoValue(String),
     /// A number of copies that is not whole, or out of range.
     Copies(f64),
-    /// Edges or faces cannot be treated as asked.
+    /// Edges or faces cannot be treated.
     Treatment(TreatmentFault),
-    /// The section lies on both sides of the line it is turned about, or the line has no length.
+    /// The section is on both sides of the axis of rotation, or the axis has zero length.
     Axis,
 }
 
 /// More copies than this are refused.
 pub(crate) const MAX_COPIES: u32 = 400;
 
-/// How often chords are cut in three near places where facets do not tell which surfaces meet, and then everywhere.
+/// Maximum number of subdivisions of chords into three, near points at which facets do not
+/// determine the intersecting surfaces, then everywhere.
 const FINEST: u32 = 4;
 const FINEST_EVERYWHERE: u32 = 2;
 
-/// How often places are looked for: finer facets may find others.
+/// Maximum number of rounds; finer facets may reveal further such points.
 const ROUNDS: u32 = 12;
 
-/// The valid body of an object. Where its facets are too coarse to say which surfaces meet, it is made again with finer
-/// ones there. Where its measures may have no derivative, that is tried on both sides.
+/// The valid body of an object. If its facets are too coarse to determine the intersecting
+/// surfaces, they are refined there. If its measures may lack derivatives, both one-sided ones are
+/// compared.
 ///
 /// # Errors
 /// [`NoBody`], with the place.
@@ -87,7 +89,7 @@ fn body_of_facets<T: Real>(
             break;
         }
         match body_at(object, planes, layout, &plan) {
-            // More pieces than can be handled: what the first look says is nearer to the point.
+            // Too many pieces: the first error is more specific.
             Err(why) if why.too_large() => return first,
             Err(why) if why.unclear().is_some() => unclear = why.unclear(),
             found => return found,
@@ -107,7 +109,7 @@ fn body_of_facets<T: Real>(
     first
 }
 
-/// Which facets are made finer: of features, by the way to them from operand to operand.
+/// Plan of the refinement of facets; for features, by the path from operand to operand.
 #[derive(Clone, Default)]
 pub(super) struct FacetPlan {
     everywhere: u32,
@@ -117,7 +119,8 @@ pub(super) struct FacetPlan {
     way: Vec<usize>,
 }
 
-/// Places near which facets are finer, each with how often chords are cut in three, and how often it was asked.
+/// Points near which facets are finer, each with the number of subdivisions, and the number of
+/// requests.
 #[derive(Clone, Default)]
 struct FinerPlaces {
     places: Vec<(Vec3, u32)>,
@@ -153,7 +156,7 @@ impl FacetPlan {
 }
 
 impl NoBody {
-    /// What may change with finer facets.
+    /// The error, if finer facets can remove it.
     fn facet_error(&self) -> Option<&CombineError> {
         match self {
             NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => match e {
@@ -168,7 +171,7 @@ impl NoBody {
         }
     }
 
-    /// Whether there were more pieces than can be handled, in this feature or one that it is made of.
+    /// True if this feature or one of its operands had too many pieces.
     fn too_large(&self) -> bool {
         match self {
             NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => {
@@ -296,7 +299,7 @@ impl Feature {
         self.operands.iter().map(of).collect()
     }
 
-    /// Where the operand is put: once, or as often as a pattern repeats it.
+    /// Positions of the operand: one, or those of a pattern.
     pub(super) fn images<T: Real>(
         &self,
         layout: &DimensionLayout<T>,
@@ -332,7 +335,7 @@ impl Feature {
                 body.prefix_names(&operand.prefix);
                 body
             });
-            // Nothing is an operand too: what is cut from it or added to it has a body.
+            // An empty operand is valid: the result may have a body.
             let nothing = matches!(body, Err(NoBody::Combine(CombineError::Empty)));
             empty.push(nothing);
             bodies.push(match body {
@@ -417,9 +420,10 @@ impl Feature {
         Ok(body)
     }
 
-    /// The body of this feature with its faces moved outwards by a distance, but for those of some names, as the same
-    /// feature of operands with moved faces: what is cut away moves the other way. `None` where that is another body: faces
-    /// of bodies that are united may end within the other one, and moving them inwards would part them there.
+    /// The body of this feature with its faces offset outwards by a distance, except for those of
+    /// some names, as the same feature of operands with offset faces; subtracted operands are
+    /// offset in the opposite direction. `None` if that is another body: faces of united bodies may
+    /// end within the other one, and an inward offset would separate them there.
     fn moved<T: Real>(
         &self,
         layout: &DimensionLayout<T>,
@@ -522,7 +526,7 @@ fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, 
     x.map_err(|no| NoBody::NoValue(no.name))
 }
 
-/// How many copies there are.
+/// Number of copies.
 fn copies<T: Real>(layout: &DimensionLayout<T>, count: &DimensionExpr) -> Result<usize, NoBody> {
     let n = number(layout, count)?.re();
     let whole = n.fract() == 0.0 && (1.0..=f64::from(MAX_COPIES)).contains(&n);
@@ -562,7 +566,7 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// What all names of faces begin with from now on.
+    /// Adds a prefix to all names of faces.
     fn prefix_names(&mut self, prefix: &str) {
         if !prefix.is_empty() {
             for name in self.faces.iter_mut().flat_map(|f| &mut f.names) {
@@ -592,7 +596,7 @@ impl Placement {
     }
 }
 
-/// Whether a section lies on one side of a line.
+/// True if a section is on one side of a line.
 fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
     let Some(direction) = (q - p).normalized() else { return false };
     let mesh = section.faceted();
@@ -613,7 +617,7 @@ pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
     let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
     let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
-    // What its operands read is read by it.
+    // References of its operands are references of the feature.
     let inner = feature.flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
     own.chain(inner).filter(|n| n.contains('.') && !object.has_name(n)).collect()
 }

@@ -12,10 +12,11 @@ use super::{CombinedMesh, SketchSolid};
 use moldloft_num::{Real, Vec3};
 use std::collections::{HashMap, HashSet};
 
-/// Each halving quarters what a side misses: this is a part in 10^9 of what facets miss at first.
+/// Maximum number of halvings: each divides the error of a side by four, in total by 10^9.
 const MOST_ROUNDS: usize = 16;
 
-/// How far sides may be off their surface, as a share of its size, for its nearest point to be looked for.
+/// Maximum distance of sides from their surface, relative to its size, for a search of the nearest
+/// point.
 const NEAR: f64 = 0.1;
 
 /// In the middle of a facet its surface may be farther off than at the middles of its sides, by a third.
@@ -148,7 +149,7 @@ impl<T: Real> SketchSolid<T> {
         let reach = 0.5 * p.re().distance(q.re());
         let met = meet(&on, middle.re(), &start, middle.re().norm() + reach);
         let near = |x: &Vec3<T>| x.re().distance(middle.re()) <= reach;
-        // Where the surfaces are tangent: the nearest of the points that are known along the edge.
+        // At tangent surfaces: the nearest of the known points along the edge.
         let known = || {
             let nodes = own.trace.iter().flat_map(|t| &t.nodes).map(|n| n.0);
             nodes.min_by(|a, b| {

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// Directions of one pass.
 const WIDTH: usize = 4;
 
-/// The exact derivatives by one number each, in the order they were asked for; not a number where there is none, and
-/// where a vertex becomes several.
+/// Exact derivatives with respect to one number each, in the given order; NaN if not defined, and
+/// where a vertex splits into several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidGradient {
     /// Of the volume; zero for a flat figure.
@@ -21,12 +21,13 @@ pub struct SolidGradient {
     pub centroid: Vec<Vec3>,
     /// Of the vertices of [`crate::SketchSolid`], in their order.
     pub points: Vec<Vec<Vec3>>,
-    /// Where a measure has two derivatives, one on each side.
+    /// Two one-sided derivatives of a measure.
     pub kinks: Vec<Option<Kink>>,
 }
 
-/// Derivatives by dimensions and variables (any case). A number that an expression computes is varied
-/// as if it stood there by itself. `others` are the numbers of other objects that expressions read.
+/// Derivatives with respect to dimensions and variables (any case). A number computed by an
+/// expression is varied as an independent value. `others` are the numbers of other objects in
+/// expressions.
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
@@ -42,7 +43,8 @@ pub fn gradient(
     if let Some(k) = keys.iter().position(|k| !plain.values.contains_key(k)) {
         return Err(by[k].clone());
     }
-    // A computed number is seeded by itself, or the others' way through it would be cut.
+    // A computed number is seeded separately, since otherwise its dependence on the others would be
+    // lost.
     let plain_number = |key: &String| {
         let dimension = object.dimensions.get(key).and_then(|d| d.value.as_ref());
         dimension
@@ -73,7 +75,7 @@ pub fn gradient(
             out.volume[k] = mass.volume.eps[d];
             out.area[k] = mass.area.eps[d];
             out.centroid[k] = part(mass.centroid);
-            // One that the volume has is said first.
+            // A kink of the volume is reported first.
             let own = body.kinks.iter().filter(|kink| kink.part == d + 1);
             out.kinks[k] = own.max_by_key(|kink| kink.volume).copied();
             let at = |v: &Vertex<Dual<WIDTH>>| part(v.at);
@@ -83,7 +85,7 @@ pub fn gradient(
     Ok(out)
 }
 
-/// What a value of a swept number made of the body.
+/// Results for a value of a swept number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swept {
     /// Its value.

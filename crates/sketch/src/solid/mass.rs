@@ -80,8 +80,8 @@ impl<T: Real> MassIntegrals<T> {
         self.closure[1] += Vec3::new(p.x * da.x, p.y * da.y, p.z * da.z);
     }
 
-    /// By how much the surface does not close, as a share of its area, and by how much volumes along x, y and z differ, as
-    /// a share of the area times `extent`.
+    /// Closure error of the surface, relative to its area, or the spread of the volumes along x, y
+    /// and z, relative to the area times `extent`, if larger.
     pub fn gap(&self, extent: f64) -> f64 {
         let [vector, volumes] = self.closure;
         let [x, y, z] = volumes.to_array();

@@ -1,9 +1,10 @@
 //! Closed forms of the curves in which two surfaces meet.
 //!
-//! Surfaces that are the same turned about one axis meet in circles about it; a plane cuts what a curve sweeps out along
-//! a straight line in an affine image of that curve; cylinders of one radius whose axes cross meet in two ellipses, in
-//! the planes that halve the angles between the axes. Whether surfaces are so placed is decided for their derivatives
-//! too: a circle that becomes another curve with the slightest change has no closed form here.
+//! Surfaces of revolution about the same axis intersect in circles about it; the section of a
+//! translation surface by a plane is an affine image of the translated curve; cylinders of one
+//! radius with intersecting axes intersect in two ellipses, in the planes that bisect the angles
+//! between the axes. The conditions are tested for derivatives too: a circle that any change turns
+//! into another curve has no closed form here.
 
 use super::curve::SmoothPiece;
 use super::facet_source::{along, moves};
@@ -30,7 +31,7 @@ pub(super) struct RoundCylinder<T> {
     radius: T,
 }
 
-/// Whether a length is nothing beside a size, and stays so.
+/// True if a length is zero relative to a size, with its derivatives.
 fn vanishes<T: Real>(x: T, size: f64) -> bool {
     x.re().abs() <= ALIKE * size && (1..T::PARTS).all(|k| !moves(x.part(k), 1.0))
 }
@@ -39,7 +40,7 @@ fn all_vanish<T: Real>(v: Vec3<T>, size: f64) -> bool {
     v.to_array().into_iter().all(|x| vanishes(x, size))
 }
 
-/// Whether a curve from `a` to its conjugate `b` is a circle.
+/// True if a curve from `a` to its conjugate `b` is a circle.
 fn round<T: Real>(a: Vec3<T>, b: Vec3<T>) -> bool {
     let size = a.norm();
     size.re() > 0.0 && vanishes(size - b.norm(), size.re()) && vanishes(a.dot(b) / size, size.re())
@@ -150,7 +151,7 @@ fn arc<T: Real>(axis: &Axis<T>, points: &[Vec3<T>]) -> Option<SmoothPiece<T>> {
     (a.re().norm() > 0.0).then(|| SmoothPiece::Conic { centre, a, b, sweep: T::from(sweep) })
 }
 
-/// The section of what a curve sweeps out along a straight line by a plane that crosses that line.
+/// The section of a translation surface by a plane that crosses the direction of translation.
 fn oblique_section<T: Real>(
     surface: &FaceSurface<T>,
     at: Vec3<T>,
@@ -170,7 +171,7 @@ fn oblique_section<T: Real>(
 
 /// Cylinders of one radius whose axes cross.
 pub(super) struct EqualCylinders<T> {
-    /// Where the axes cross.
+    /// Intersection of the axes.
     centre: Vec3<T>,
     /// The normals of the planes of their two ellipses.
     normals: [Vec3<T>; 2],
@@ -239,7 +240,7 @@ pub(super) fn closed_form<T: Real>(
     points.iter().step_by(1 + points.len() / 4).chain(points.last()).all(on).then_some(curve)
 }
 
-/// Whether surfaces meet in straight lines that both are swept out along.
+/// True if surfaces intersect in straight lines that are rulings of both.
 fn ruling<T: Real>(pair: [&FaceSurface<T>; 2]) -> bool {
     let way = |s: &FaceSurface<T>| translation(s).and_then(|t| t.1.normalized());
     match pair {

@@ -19,7 +19,7 @@ pub struct Placed<'a> {
     pub at: BTreeMap<PointId, Vec3>,
 }
 
-/// What came of a merge.
+/// Result of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MergeReport {
     /// Points that were there twice.
@@ -130,7 +130,7 @@ pub fn merge(
         out.reference = Some(Reference { point: *point, at: at.to_array() });
     }
     settle(&mut out, &mut report, solve);
-    // What hangs on no common plane keeps the place of its own reference.
+    // Coordinates without a common plane keep the position of their own reference.
     for (prefix, point, at) in references.iter().skip(1) {
         for axis in CoordinateAxis::ALL {
             let planes = Planes::of(&out.drawing);
@@ -170,7 +170,7 @@ pub(crate) fn settle(
     }
 }
 
-/// A name as it can stand in an expression.
+/// A name in the form of an identifier.
 pub fn identifier(name: &str) -> String {
     let fine = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
     let text: String = name.chars().map(fine).collect();
@@ -315,7 +315,7 @@ pub fn extrude(section: &SketchObject, name: &str, value: DimensionExpr) -> Opti
     let first = *flat.points.keys().next()?;
     for &id in flat.points.keys().skip(1) {
         let planes = Planes::of(drawing);
-        // Figures that no line joins lie in the same two planes all the same.
+        // Separate figures are aligned in the same two planes.
         if !planes.same(normal, first, id) {
             drawing.aligns.push(Align { axis: normal, p: first, q: id });
         }

@@ -8,7 +8,8 @@ use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
 impl<T: Real> SketchSolid<T> {
-    /// Chords per edge: as curves ask where that is wanted, else as `usual` says; both ends of a patch agree.
+    /// Number of chords per edge: that of its curve if requested, otherwise `usual`; opposite sides
+    /// of a patch agree.
     fn chords(&self, usual: &dyn Fn(&SmoothPiece<T>) -> usize, asked: bool) -> Vec<usize> {
         let mut chords: Vec<usize> = (self.edges.iter())
             .map(|e| match (e.piece, e.curve.filter(|_| asked).and_then(|c| self.steps.get(&c))) {
@@ -33,13 +34,14 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// A mesh of triangles and quads within `tolerance` of curves and round faces; faces are its patches. Curves for which
-    /// a number of steps is asked have that.
+    /// A mesh of triangles and quads within `tolerance` of curves and round faces, which are its
+    /// patches. Curves with a given number of steps have that.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
         if let Some(facets) = &self.facets {
             return self.mesh_from_facets(&self.finer(facets, tolerance));
         }
-        // Facets of faces that are curved both ways miss them by what the chords of both ways miss.
+        // The error of facets of doubly curved faces is the sum of the errors of chords in both
+        // directions.
         let bent = self.trims.iter().any(|t| match &t.surface {
             FaceSurface::Turned { profile, .. } => profile.chords(tolerance) > 1,
             FaceSurface::Ruled { .. } | FaceSurface::Plane { .. } => false,

@@ -1,9 +1,9 @@
 //! The finished body: faces of an object at their positions, with curves in place of corners.
 //!
-//! The drawing keeps its sharp corners, so a radius stays a parameter; here they are replaced
+//! The drawing keeps its sharp corners, so that a radius stays a parameter; here they are replaced
 //! (routines DELCOR, DEL4CR, DEL4EL). A corner between two lines becomes two tangent points and an
-//! arc; the third line at the corner becomes two, with a ruled patch between them (a cylinder when
-//! its other end has the same arc, a cone when it has none).
+//! arc; the third line at the corner becomes two, with a ruled patch between them (a cylinder if
+//! its other end has the same arc, a cone if it has none).
 
 pub mod arrangement;
 mod balance;
@@ -52,7 +52,7 @@ use surface::FaceSurface;
 pub struct Vertex<T> {
     /// The label: a point's, or the next free one for a tangent point.
     pub id: PointId,
-    /// Where it is.
+    /// Position.
     pub at: Vec3<T>,
 }
 
@@ -110,7 +110,7 @@ pub(crate) struct CombinedMesh<T> {
 pub struct SolidFace {
     /// The face of the object; `None` for the patch of a curve.
     pub id: Option<FaceId>,
-    /// Whether it is a ruled patch: its first edge against its third (a point when there are three).
+    /// True for a ruled patch: its first edge against its third (a point if there are three).
     pub ruled: bool,
     /// Directed edges, counter-clockwise from outside: outer cycle, then holes.
     pub loops: Vec<Vec<(usize, bool)>>,
@@ -155,7 +155,7 @@ pub struct SketchSolid<T> {
     pub edges: Vec<SolidEdge<T>>,
     /// Its faces.
     pub faces: Vec<SolidFace>,
-    /// Whether it is a flat figure.
+    /// True for a flat figure.
     pub flat: bool,
     /// Curves traced, by index, whether built in or not.
     pub curves: BTreeMap<usize, Traced<T>>,
@@ -169,11 +169,11 @@ pub struct SketchSolid<T> {
     pub(crate) planes: BTreeMap<usize, [Vec3<T>; 2]>,
     /// Parts of plane faces that move otherwise than the rest of them.
     pub(crate) strays: Vec<coincidence::StrayPart<T>>,
-    /// Where measures have no derivative.
+    /// Points at which measures have no derivative.
     pub(crate) kinks: Vec<coincidence::Kink>,
     /// Derivatives of measures that both sides of a kink have.
     pub(crate) rates: Vec<one_sided::MassRate>,
-    /// Where chords of round edges are cut in three, where the body is combined with others.
+    /// Subdivision of the chords of round edges in combinations with other bodies.
     pub(crate) density: outline::FacetDensity,
     steps: BTreeMap<usize, u32>,
 }
@@ -276,7 +276,7 @@ impl<'a> Labels<'a> {
     }
 }
 
-/// Where the points of the drawing are.
+/// Positions of the drawing's points.
 struct Places<'a, T> {
     labels: Labels<'a>,
     at: Vec<Vec3<T>>,
@@ -311,7 +311,7 @@ struct SolidBuilder<'a, T> {
 }
 
 impl<T: Real> SolidBuilder<'_, T> {
-    /// Records what a curve replaces.
+    /// Records the lines that a curve replaces.
     fn take(
         &mut self,
         k: usize,
@@ -375,8 +375,8 @@ impl<T: Real> SolidBuilder<'_, T> {
         Ok(())
     }
 
-    /// Whether a curve between two of its lines can take the place of a corner. Of a third line a solid makes two, with
-    /// a patch between them; a flat figure has no place for that.
+    /// Checks that a curve between two of its lines can replace a corner. A third line becomes two
+    /// with a patch between them in a solid; a flat figure cannot have one.
     fn corner_is_free(&self, at: PointId, ends: [PointId; 2]) -> Result<(), UnbuiltReason> {
         let neighbours = self.neighbours(at);
         if !ends.iter().all(|e| neighbours.contains(e)) {
@@ -421,7 +421,7 @@ impl<T: Real> SolidBuilder<'_, T> {
         if way.iter().any(|(_, at, _)| self.corners.contains_key(at)) {
             return Err(UnbuiltReason::Taken(m));
         }
-        // All four or none.
+        // All four corners or none.
         for (from, at, to) in way {
             self.corner_is_free(at, [from, to])?;
         }
@@ -469,7 +469,7 @@ impl<T: Real> SolidBuilder<'_, T> {
         }
     }
 
-    /// What stands for corner `p` on the way from or to `other`.
+    /// Replacement of corner `p` on the line between it and `other`.
     fn stand_in(&self, p: PointId, other: PointId) -> Option<(PointId, Vec3<T>)> {
         match self.corners.get(&p) {
             None => Some((p, self.place.of(p))),
@@ -584,7 +584,7 @@ impl<T: Real> SolidBuilder<'_, T> {
                 let e = out.edge([a, b], Some((c.curve, c.piece)));
                 edges.push((e, forward));
             }
-            // Where the line leaves p and where it arrives at q.
+            // Points at which the line leaves p and arrives at q.
             let seam = |at: PointId, other: PointId, side: PointId| {
                 self.stand_in(at, other).or_else(|| self.stand_in(at, side))
             };
@@ -699,7 +699,7 @@ impl<T: Real> SolidBuilder<'_, T> {
         faces
     }
 
-    /// Whether a face runs through these points one after the other, either way.
+    /// True if a face contains these points consecutively, in either direction.
     fn same_face(&self, way: [PointId; 4]) -> bool {
         self.object.faces.values().flat_map(|f| f.loops()).any(|cycle| {
             let n = cycle.len();
@@ -711,8 +711,8 @@ impl<T: Real> SolidBuilder<'_, T> {
     }
 }
 
-/// A hash of small numbers: what they are multiplied by mixes their low bits into the high ones
-/// (Knuth, The Art of Computer Programming, volume 3, section 6.4).
+/// A hash of small numbers: multiplication mixes their low bits into the high ones (Knuth, The Art
+/// of Computer Programming, volume 3, section 6.4).
 #[derive(Clone, Copy, Default)]
 struct IndexHasher(u64);
 
@@ -861,14 +861,14 @@ impl<T: Real> SketchSolid<T> {
         sums
     }
 
-    /// Where a directed edge begins and ends.
+    /// Start and end of a directed edge.
     fn ends(&self, (e, forward): (usize, bool)) -> [Vec3<T>; 2] {
         let edge = &self.edges[e];
         let [p, q] = edge.own_ends.unwrap_or_else(|| edge.ends.map(|v| self.vertices[v].at));
         if forward { [p, q] } else { [q, p] }
     }
 
-    /// Whether the end of an edge and the beginning of the next one move apart.
+    /// True if the end of an edge and the start of the next one separate.
     fn parts(&self, edge: (usize, bool), next: (usize, bool)) -> bool {
         let own = |h: (usize, bool)| self.edges[h.0].own_ends.is_some();
         let way = || (self.ends(next)[0] - self.ends(edge)[1]).to_array();

@@ -1,11 +1,12 @@
 //! Places where round faces or edges come so near to others that facets do not tell whether they meet.
 //!
-//! How two shapes meet changes only where one of them moves past a critical value of their distance: where points
-//! of two faces, edges or vertices have a common normal. NearMissSearch are off their surfaces by the height of a chord,
-//! so they are right unless there is such a pair, apart by more than nothing and less than those heights: a bar
-//! that pokes through a wall by less than a chord, two tubes that pass each other at a hair's breadth, the corner of a
-//! block just below a round face. Every pair of facets, of sides and of vertices that are near enough is the start of
-//! a Newton search for such a pair; boxes of facets, grown by their own heights, say which are.
+//! The intersection of two shapes changes its topology only where one of them passes a critical
+//! value of their distance: where points of two faces, edges or vertices have a common normal.
+//! Facets are off their surfaces by the height of a chord, so their topology is right unless there
+//! is such a pair at a distance below those heights: a bar that protrudes from a wall by less than
+//! a chord, two tubes at a very small distance, the corner of a block just below a round face.
+//! Every pair of facets, of sides and of vertices that are close enough, by boxes of facets
+//! extended by their own heights, is the start of a Newton search for such a pair.
 
 use super::arrangement::{Facet, INNER, overlapping};
 use super::curve::SmoothPiece;
@@ -17,10 +18,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 /// Less far apart than this share of the bodies, two things touch; and where an edge is known by its points.
 const TOUCHING: [f64; 2] = [1e-9, 1e-6];
 
-/// How far beyond the facets between them the ends of a common normal are looked for, in parts of their size.
+/// Maximum distance of the ends of a common normal beyond their facets, relative to the size of
+/// these.
 const BEYOND: f64 = 0.02;
 
-/// How much farther than facets are off a pair may be for them to be right, in parts of that.
+/// Safety factor on the error of facets within which a pair is critical.
 const SAFE: f64 = 2.0;
 
 /// Places nearer to each other than this share of the bodies are one.
@@ -28,7 +30,7 @@ const SAME: f64 = 1e-5;
 
 const STEPS: usize = 24;
 
-/// NearMissSearch of bodies, with what they stand for.
+/// Facets of bodies, with their origin.
 pub(super) struct NearMissSearch<'a, T> {
     pub points: &'a [Vec3],
     /// By point: whether it is a vertex of its body.
@@ -57,7 +59,8 @@ enum Stratum<'a, T> {
 }
 
 impl<T: Real> Stratum<'_, T> {
-    /// How many parameters a search has: points of planes and lines are those nearest to the other's.
+    /// Number of parameters of a search: points of planes and lines are those nearest to the
+    /// other's.
     fn unknowns(&self) -> usize {
         match self {
             Stratum::Vertex(_) | Stratum::Plane { .. } | Stratum::Line { .. } => 0,
@@ -126,9 +129,9 @@ struct Element<'a, T> {
     middle: Vec3,
     /// Its unit normal, or direction of a side.
     way: Vec3,
-    /// How far it is off what it stands for.
+    /// Distance from its exact element.
     off: f64,
-    /// The greatest angle between its normal or direction and those of what it stands for.
+    /// Maximum angle between its normal or direction and those of its exact element.
     turn: f64,
     size: f64,
     /// The vertices of its face or edge, and a number of it.
@@ -181,7 +184,8 @@ impl<T: Real> NearMissSearch<'_, T> {
     }
 
     fn elements(&self, rims: &mut Vec<BTreeSet<u32>>) -> Vec<Element<'_, T>> {
-        // Vertices of faces and edges: only what shares none can meet where it should not.
+        // Vertices of faces and edges: only elements without a common one can have a false
+        // intersection.
         let mut face_rim: BTreeMap<(usize, u32), usize> = BTreeMap::new();
         let mut edge_rim: BTreeMap<(usize, u32), usize> = BTreeMap::new();
         let mut sides: BTreeMap<(u32, u32), (usize, u32)> = BTreeMap::new();
@@ -299,7 +303,8 @@ impl<T: Real> NearMissSearch<'_, T> {
 
     /// The place of a common normal of two elements that facets are too coarse for.
     fn pair(&self, a: &Element<'_, T>, b: &Element<'_, T>) -> Option<Vec3> {
-        // Tangent directions of one are square to normals of the other, but for what facets turn.
+        // Tangent directions of one are perpendicular to normals of the other, up to the turn of
+        // facets.
         let slack = a.turn + b.turn + 0.03;
         match (a.rim.0, b.rim.0) {
             (0, 0) if a.way.cross(b.way).norm() > slack => return None,
@@ -385,7 +390,7 @@ impl<T: Real> NearMissSearch<'_, T> {
             }
         }
         let left = r.iter().fold(0.0f64, |l, s| l.max(s.abs()));
-        // Where corners coincide and both are tangent a search creeps towards them.
+        // At coincident corners with a common tangent a search converges to the corners slowly.
         let shared = || {
             let same = TOUCHING[0] * self.scale;
             a.corners.iter().any(|p| b.corners.iter().any(|q| p.distance(*q) <= same))
@@ -403,7 +408,7 @@ impl<T: Real> NearMissSearch<'_, T> {
         (left <= 1e-6).then_some((p + q) * 0.5)
     }
 
-    /// Whether a place is over a facet, side or vertex.
+    /// True if a point is over a facet, side or vertex.
     fn covers(&self, e: &Element<'_, T>, p: Vec3) -> bool {
         let margin = BEYOND * e.size + SAFE * e.off;
         match e.rim.0 {
@@ -476,7 +481,7 @@ fn between(through: &[(f64, Vec3); 4], s: f64) -> Vec3 {
     })
 }
 
-/// Whether a piece is a straight one.
+/// True for a straight piece.
 fn straight<T: Real>(piece: Option<&SmoothPiece<T>>) -> bool {
     match piece {
         Some(SmoothPiece::Cubic(p)) => {

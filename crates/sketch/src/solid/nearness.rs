@@ -1,4 +1,4 @@
-//! Whether exact places agree with the facets that decided which surfaces meet.
+//! Comparison of exact positions with the facets that determined the intersecting surfaces.
 //!
 //! Facets are off their surfaces by up to their chords, so an edge may seem to end in one face where it ends in
 //! the next. The exact corner is then outside of the face that it was taken to be in.
@@ -23,15 +23,15 @@ pub(super) struct Nearness<'a, T> {
 /// The point of a border that is nearest to a place.
 struct NearestOfBorder {
     distance: f64,
-    /// How far the place is to the left of the border, as its face is seen from outside.
+    /// Distance of the point to the left of the border, seen from outside the face.
     left: f64,
-    /// Whether it is an end of its edge.
+    /// The end of its edge, if nearest.
     end: Option<Vec3>,
     exact: bool,
 }
 
 impl<T: Real> Nearness<'_, T> {
-    /// Whether a place on the surface of a face, near its border, is outside of the face.
+    /// True if a point on the surface of a face, near its border, is outside the face.
     pub fn outside(&self, at: Vec3, (operand, tag): (usize, u32)) -> bool {
         let source = &self.sources[operand];
         let (border, along_normal) = &source.borders[tag as usize];
@@ -57,7 +57,7 @@ impl<T: Real> Nearness<'_, T> {
         }
         match best.end {
             None => best.left < 0.0,
-            // Nearest is a corner: it stands out of the face where both edges leave the place to their right.
+            // The nearest is a corner: the point is outside if it is to the right of both edges.
             Some(end) => {
                 let here = |n: &&NearestOfBorder| n.end.is_some_and(|p| p.distance(end) <= on);
                 all.iter().filter(here).all(|n| n.left < 0.0)

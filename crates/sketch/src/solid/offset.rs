@@ -24,8 +24,9 @@ type FacePlane<T> = (Vec3<T>, Vec3<T>);
 pub(crate) type MovedParts<'a, T> =
     dyn Fn(T, &BTreeSet<String>) -> Result<SketchSolid<T>, NoBody> + 'a;
 
-/// The body hollowed to a wall of a thickness; the faces of `open` have none. A negative thickness leaves the
-/// body out of its wall. Where faces cannot be moved as they are, those of its parts are.
+/// The body hollowed to a wall of a given thickness, without a wall at the faces of `open`. A
+/// negative thickness gives an outer wall. If faces cannot be offset directly, those of its parts
+/// are.
 ///
 /// # Errors
 /// A thickness that does not fit; faces that are neither planes nor plain cylinders, nor of parts that are moved.
@@ -67,8 +68,9 @@ pub(crate) fn shelled<T: Real>(
     combined(pair, Operation::Cut).map_err(NoBody::Combine)
 }
 
-/// The body with plane faces turned by an angle in radians about the lines in which they meet the plane at a
-/// coordinate, so that it becomes narrower along the axis; all faces parallel to the axis when none are chosen.
+/// The body with plane faces rotated by an angle in radians about their lines of intersection with
+/// the plane at a coordinate, so that it becomes narrower along the axis; by default all faces
+/// parallel to the axis.
 ///
 /// # Errors
 /// Faces that are not plane, or square to the axis; angles with which faces vanish.
@@ -280,7 +282,7 @@ fn outward_normal<T: Real>(body: &SketchSolid<T>, face: usize, p: Vec3<T>) -> Op
         FaceForm::Plane { normal, .. } => Some(normal),
         FaceForm::Straight(axis) => {
             let radial = (p - axis.foot(p)).normalized()?;
-            // Which side is outside: as the loop runs.
+            // The loop's orientation determines the outward side.
             let ring: Vec<Vec3<T>> =
                 body.faces[face].loops[0].iter().flat_map(|&h| body.run(h)).collect();
             let sum = super::combine::newell(&ring);

@@ -6,14 +6,14 @@ use super::{SketchSolid, SolidEdge, Vertex};
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::BTreeMap;
 
-/// What a point of a moved side fulfils: a distance from a line along the normal, or from a centre.
+/// Equation of a moved side: a distance from a line along the normal, or from a centre.
 enum MovedSide<T> {
     Straight { at: Vec3<T>, normal: Vec3<T> },
     Round { centre: Vec3<T>, radius: T },
 }
 
 impl<T: Real> MovedSide<T> {
-    /// How far a point is off, and the direction in which that grows.
+    /// Residual of a point, and its gradient direction.
     fn off(&self, p: Vec3<T>) -> Option<(T, Vec3<T>)> {
         match self {
             MovedSide::Straight { at, normal } => Some((normal.dot(p - *at), *normal)),
@@ -110,7 +110,7 @@ pub(super) fn moved_section<T: Real>(
                 let angle = direction.dot(from.cross(to)).atan2(from.dot(to));
                 let full = 2.0 * std::f64::consts::PI;
                 let angle = if angle.re() <= 0.0 { angle + full } else { angle };
-                // A side that has turned inside out goes nearly the whole way round.
+                // An inverted side has an angle of nearly a full turn.
                 if (angle.re() - sweep.re().abs()).abs() > std::f64::consts::PI {
                     return None;
                 }

@@ -1,8 +1,9 @@
 //! Derivatives of measures on both sides of a place where faces, edges or corners meet by chance.
 //!
-//! The motion of faces there shows that a measure may have two derivatives, not that it has: an edge that leaves a face can
-//! change the area on both sides alike. So the body is made with a little more and a little less of the number, and the measures are
-//! differentiated on each side, by the one-sided formula of fourth order. Where both sides agree there is one derivative.
+//! The motion of faces there shows that a measure may have two derivatives, not that it does: an
+//! edge that leaves a face can change the area equally on both sides. So the body is rebuilt with
+//! slightly smaller and larger values of the number, and the measures are differentiated on each
+//! side by the one-sided formula of fourth order. If both sides agree there is one derivative.
 
 use super::SketchSolid;
 use super::coincidence::without;
@@ -20,8 +21,8 @@ pub(crate) struct MassRate {
     solid: Option<Mass<f64>>,
 }
 
-/// Steps as shares of the body. Near another such place, or where edges nearly meet, a smaller one is needed; where a
-/// measure changes as a root of the step none is small enough.
+/// Steps relative to the body. Near another such point, or where edges nearly intersect, a smaller
+/// one is needed; if a measure changes as a root of the step no step is small enough.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
 
 /// Weights of the values at 0 to 4 steps, for twelve times the step.
@@ -106,7 +107,7 @@ fn size_of<T: Real>(body: &SketchSolid<T>) -> f64 {
     all().map(|p| p.distance(first)).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// How fast numbers and coordinates change at most.
+/// Maximum rate of change of numbers and coordinates.
 fn rate<T: Real>(layout: &DimensionLayout<T>, part: usize) -> f64 {
     let coordinates = layout.coordinates.iter().flatten().flatten();
     layout.values.values().chain(coordinates).map(|x| x.part(part).abs()).fold(0.0, f64::max)
@@ -166,7 +167,7 @@ fn part_of<T: Real>(mass: &Mass<T>, part: usize) -> Mass<f64> {
     }
 }
 
-/// What both sides agree on: the derivative of the faces where it is theirs, else their middle.
+/// The common value of both sides: the derivative from the faces if it agrees, otherwise the mean.
 fn agreed<T: Real>(
     part: usize,
     own: &Mass<f64>,

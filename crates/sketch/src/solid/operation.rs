@@ -1,6 +1,6 @@
 //! Operations on two bodies.
 
-/// What to make of two bodies.
+/// Boolean operation on two bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// In one of them.

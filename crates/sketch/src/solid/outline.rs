@@ -1,7 +1,8 @@
 //! Bodies as plane facets, for arrangements and meshes.
 //!
-//! A round edge has a chord for each 5°. Where these do not tell how surfaces meet, chords near the place are cut in
-//! three, as often as it takes: facets between them and the opposite edges are finer there alone.
+//! A round edge has a chord for each 5°. If these do not determine the intersection of surfaces,
+//! chords near the point are divided into three repeatedly; facets between them and the opposite
+//! edges are finer only there.
 
 use super::combine::LoopsAndTags;
 use super::surface::FaceSurface;
@@ -17,14 +18,14 @@ pub(super) struct Outline<T> {
     strips: Vec<Vec<LoopsAndTags>>,
 }
 
-/// How fine facets are: how often all chords are cut in three, and those near places.
+/// Density of facets: number of subdivisions of all chords, and of those near given points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FacetDensity {
     pub everywhere: u32,
     pub near: Vec<(Vec3, u32)>,
 }
 
-/// Where the chords of an edge end, in equal parts of it.
+/// Ends of an edge's chords, in equal parts of it.
 struct EdgeDivision {
     parts: u64,
     /// In order.
@@ -49,7 +50,7 @@ impl EdgeDivision {
 }
 
 impl<T: Real> SketchSolid<T> {
-    /// Where the chords of each edge end.
+    /// Ends of each edge's chords.
     fn divisions(&self) -> Vec<EdgeDivision> {
         let FacetDensity { everywhere, near } = &self.density;
         let most = near.iter().map(|p| p.1).max().unwrap_or(0);
@@ -153,7 +154,7 @@ impl<T: Real> SketchSolid<T> {
 
     /// Opposite edges of round faces are divided alike.
     fn share_cuts(&self, all: &[EdgeDivision], cut: &mut [BTreeSet<u64>]) {
-        // Where a chord of one edge begins on the other, which may run the other way.
+        // Ends of chords carried over to the other edge, which may have the opposite direction.
         let carried = |from: &BTreeSet<u64>, division: &EdgeDivision, turned: bool| -> Vec<u64> {
             let next = |k: &u64| division.at.get(division.at.partition_point(|x| x <= k)).copied();
             let of = |k: &u64| match turned {
@@ -305,7 +306,7 @@ impl<T: Real> Outline<T> {
     }
 }
 
-/// How far a place is from a segment.
+/// Distance of a point from a segment.
 fn near_segment(x: Vec3, [p, q]: [Vec3; 2]) -> f64 {
     let d = q - p;
     let s = (d.dot(x - p) / d.norm_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -350,7 +351,7 @@ pub(super) fn patch<T: Real>(
     if right.len() != m || far.as_ref().is_some_and(|f| f.len() != n) {
         return vec![];
     }
-    // Which way the parameters run along the first edge and the sides.
+    // Directions of the parameters along the first edge and the sides.
     let corner = |v: u32| places[v as usize].re();
     let corners = [corner(near[0]), corner(near[n - 1]), corner(left[m - 1])];
     let grid = PatchOrientation::of(surface, corners);
@@ -378,7 +379,7 @@ pub(super) fn patch<T: Real>(
     quads
 }
 
-/// How the first edge (s) and the sides (t) of a patch run in its parameters.
+/// Directions of the first edge (s) and the sides (t) of a patch in its parameters.
 struct PatchOrientation {
     corner: [f64; 2],
     along: [f64; 2],

@@ -79,7 +79,7 @@ impl<T: Real> Similarity<T> {
         Vec3::new(along[0], along[1], along[2])
     }
 
-    /// Whether it makes a left hand of a right one.
+    /// True if it changes the handedness.
     pub fn mirrors(&self) -> bool {
         let [a, b, c] = self.columns;
         a.cross(b).dot(c).re() < 0.0

@@ -4,8 +4,8 @@ use crate::SketchSolid;
 use crate::solid::curve::SmoothPiece;
 use moldloft_num::{Real, Vec3};
 
-/// A face that goes straight from an arc to a copy of it, shifted and scaled: part of a cylinder, a cone
-/// or a parabolic cylinder. Velocity x shift points out of the solid.
+/// A ruled face between an arc and a shifted, scaled copy of it: part of a cylinder, a cone or a
+/// parabolic cylinder. Velocity x shift points out of the solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundFace<T> {
     /// The index of the face.
@@ -68,7 +68,7 @@ fn copy<T: Real>([p, q, r]: &[Vec3<T>; 3], sweep: T, far: &SmoothPiece<T>) -> Op
     if (sweep - other).re().abs() > SAME {
         return None;
     }
-    // What is scaled: half-diameters, or ways from the start.
+    // The scaled vectors: half-diameters, or displacements from the start.
     let parabola = sweep.re() == 0.0;
     let from = |x: Vec3<T>, o: Vec3<T>| if parabola { x - o } else { x };
     let ([a, b], [c, d]) = ([from(*q, *p), from(*r, *p)], [from(v, u), from(w, u)]);

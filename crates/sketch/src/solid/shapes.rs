@@ -142,7 +142,7 @@ fn turned_shape(axis: &Line<f64>, profile: &SmoothPiece<f64>) -> Option<SurfaceS
     let arm = centre - foot;
     let major = arm.norm();
     let normal = a.cross(b).normalized()?;
-    // The circle lies in a plane through the axis.
+    // The circle is in a plane through the axis.
     let upright = normal.dot(axis.direction).abs() <= 1e-10
         && normal.dot(arm).abs() <= 1e-10 * (major + minor);
     if !round || !upright {

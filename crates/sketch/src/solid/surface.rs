@@ -84,8 +84,8 @@ impl<T: Real> FaceSurface<T> {
         at
     }
 
-    /// The end of v where the surface shrinks to a point, 0 if there is none: where integrals along v
-    /// start.
+    /// The end of v at which the surface degenerates to a point, 0 if there is none: start of
+    /// integrals along v.
     fn pole(&self) -> f64 {
         let thin = |v: f64| {
             let size = |u: f64| self.jet(T::from(u), T::from(v))[1].re().norm();
@@ -123,7 +123,7 @@ impl<T: Real> FaceSurface<T> {
     }
 }
 
-/// Something that a point lies on.
+/// A carrier of a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carrier<'a, T> {
     /// A surface.
@@ -132,7 +132,7 @@ pub(crate) enum Carrier<'a, T> {
     Curve(&'a SmoothPiece<T>),
 }
 
-/// A point with its parameters on what it lies on.
+/// A point with its parameters on its carriers.
 #[derive(Clone, Debug)]
 pub(crate) struct Met<T> {
     pub at: Vec3<T>,
@@ -144,8 +144,8 @@ pub(crate) struct Met<T> {
     pub moved_parameters: Vec<[T; 2]>,
 }
 
-/// The point near `guess` that lies on all of `on`, which must leave it no freedom. `None` when Newton's
-/// method does not arrive, as where surfaces touch.
+/// The point near `guess` on all of `on`, which must determine it. `None` if Newton's method does
+/// not converge, as at a contact of surfaces.
 pub(crate) fn meet<T: Real>(
     on: &[Carrier<'_, T>],
     guess: Vec3,

@@ -25,7 +25,6 @@ pub enum SolidDefect {
         face: Option<FaceId>,
         /// The vertices of the two sides that cross.
         sides: [[PointId; 2]; 2],
-        /// Where.
         at: Vec3,
     },
     /// A hole of a face of a section is not inside of the face's border.
@@ -49,7 +48,7 @@ const MAX_COORDINATE: f64 = 1e60;
 /// # Errors
 /// [`SolidDefect`], with the place.
 pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
-    // Where there is no derivative there may be a body.
+    // Derivatives may be undefined for a valid body.
     let within = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
     if body.vertices.iter().any(|v| !within(&v.at.re())) {
         return Err(SolidDefect::NotFinite);
@@ -111,8 +110,8 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Labels of the old body for vertices at its places, the others go on counting; and its curves, with what is
-    /// to be said about them.
+    /// Labels of the old body for vertices at its positions, new numbers for the others; and its
+    /// curves, with their messages.
     fn named_after(mut self, old: &SketchSolid<T>) -> SketchSolid<T> {
         self.curves.clone_from(&old.curves);
         self.unbuilt.clone_from(&old.unbuilt);
@@ -176,7 +175,7 @@ impl CrossingFacet {
     }
 }
 
-/// Whether any side may cross a facet, or an edge has no length.
+/// True if any side may intersect a facet, or an edge has zero length.
 fn suspect<T: Real>(body: &SketchSolid<T>, outline: &Outline<T>) -> bool {
     let points: Vec<Vec3> = outline.points.iter().map(|p| p.re()).collect();
     let [low, high] = bounds(points.iter().copied());
@@ -312,7 +311,7 @@ fn flat(normal: Vec3, p: Vec3) -> [f64; 2] {
     }
 }
 
-/// Whether a point of the plane is in a wall or on its border.
+/// True if a point of the plane is in a wall or on its border.
 fn covers(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> bool {
     for c in &wall.loops {
         for k in 0..c.len() {
@@ -327,7 +326,7 @@ fn covers(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f6
     wall.loops.iter().map(|c| winding(c, wall.normal, at, p)).sum::<i32>() != 0
 }
 
-/// How often a cycle in a plane of that normal goes round a point of the plane.
+/// Winding number of a cycle about a point, in a plane of that normal.
 fn winding(cycle: &[u32], normal: Vec3, at: &dyn Fn(u32) -> Vec3, p: Vec3) -> i32 {
     let [x, y] = flat(normal, p);
     let mut turns = 0;
@@ -341,7 +340,7 @@ fn winding(cycle: &[u32], normal: Vec3, at: &dyn Fn(u32) -> Vec3, p: Vec3) -> i3
     turns
 }
 
-/// Whether a side in the plane of a wall runs through its inside.
+/// True if a side in the plane of a wall passes through its inside.
 fn overlaps(
     wall: &CrossingFacet,
     at: &dyn Fn(u32) -> Vec3,
@@ -395,7 +394,7 @@ fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
     [low, high]
 }
 
-/// Which way the shells of a body face.
+/// Orientation of the shells of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shells {
     /// Outer ones outward, those of cavities inward.

@@ -70,7 +70,7 @@ fn a_hole_a_pocket_and_a_cavity() {
 
 #[test]
 fn touching_and_oblique_bodies() {
-    // Face on face: the wall between them goes.
+    // Coincident faces: the wall between them disappears.
     let mut s = boxes(&[("L", [2.0, 3.0, 2.0], [0.0; 3]), ("R", [2.0, 3.0, 2.0], [2.0, 0.0, 0.0])]);
     run(&mut s, "UNION L R INTO U");
     check(&mut s, "U", 24.0, 2.0 * (12.0 + 8.0 + 6.0));

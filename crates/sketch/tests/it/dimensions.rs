@@ -84,7 +84,8 @@ fn unaligned_counts_and_depths() {
     assert_eq!(counts("T5", &["X 1 9", "X 2 10", "Y 1 9", "Y 4 12"]), [4, 4, 3]);
 }
 
-/// The picture of the exact solid, estimated: what can be seen comes out, what cannot is counted.
+/// The picture of the exact solid, estimated: visible quantities are recovered, open depths are
+/// counted.
 #[test]
 fn the_estimate_recovers_what_the_picture_shows() {
     let depths = [

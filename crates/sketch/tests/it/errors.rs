@@ -1,5 +1,5 @@
-//! Every error of the table (fact sheet, 1.13; manual, appendix E) that a user can cause: its code, that
-//! it says what, where and the next step, and that it changes nothing.
+//! Every error of the table (manual, appendix E) that a user can cause: its code, its text with
+//! fault, position and next step, and that it changes nothing.
 
 use crate::common::*;
 use moldloft_sketch::*;
@@ -57,7 +57,7 @@ pub const LOOSE_TOP: &str = "SKETCH A
     DIM H5 Z 1 5 = 2; DIM H6 Z 2 6 = 2; DIM H7 Z 3 7 = 2; DIM H8 Z 4 8 = 2
     GENERATE FACES";
 
-/// Code, what is done before, the command, and a part of what is said.
+/// Code, preparation, command, and a part of the reply.
 pub const TABLE: &[(u16, &str, &str, &str)] = &[
     (101, "SKETCH A", "CONVERT", "A has no points"),
     (101, "SKETCH A", "LINE 1 2", "points"),
@@ -197,7 +197,7 @@ fn faults_of_the_text() {
     }
 }
 
-/// What a file did before it was refused is taken back, in the journal too.
+/// Changes by a file before its refusal are undone, in the journal too.
 #[test]
 fn a_refused_file_leaves_nothing() {
     let mut s = session();
@@ -249,7 +249,7 @@ fn the_command_reference_is_documented() {
     assert!(docs.contains(reference.trim()), "paste this into docs/sketch.md:\n{reference}");
 }
 
-/// The tutorial runs as it stands.
+/// The tutorial runs as written.
 #[test]
 fn the_tutorial_runs() {
     let docs = include_str!("../../../../docs/sketch.md");

@@ -1,12 +1,12 @@
-//! Every error that the commands can say has a case here: the texts are read from the sources, and each must be
-//! said by one of the cases, with a kind and the parts that its sentence names as data.
+//! Every error of the commands has a case here: the texts are read from the sources, and each must
+//! occur in one of the cases, with a kind and the parts that its text names as data.
 
 use crate::errors::{TABLE, session};
 use moldloft_diag::Severity;
 use moldloft_sketch::*;
 use std::path::Path;
 
-/// Where a text begins and the pieces between what is filled in.
+/// Start of a text and the pieces between its arguments.
 struct Template {
     place: String,
     /// Of several texts that the place chooses from, each as its fixed pieces.
@@ -22,7 +22,7 @@ const GUARDS: &[&str] = &[
     "the points of {name} are not determined yet",
     // A chain has a length as soon as its dimensions have values, and they have.
     "the chain {} determines it already",
-    // What the order of steps refuses before, in all that was tried.
+    // Errors that earlier steps prevent in all known cases.
     "{name}: round surfaces touch, or nearly so, at {}",
     "{name}: its faces do not close to rounding near {}",
     // Sizes.
@@ -133,7 +133,7 @@ fn says(text: &str, pieces: &[String]) -> bool {
     true
 }
 
-/// Where errors are made, and which argument is the text.
+/// Constructors of errors, and the index of the argument with the text.
 const CALLS: [(&str, usize); 5] = [
     ("CommandError::new(", 1),
     ("CommandError::text(", 0),
@@ -221,8 +221,8 @@ const HOLED: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 100 0; POINT 3 100 80;
     POINT 5 20 20; POINT 6 60 20; POINT 7 60 60; POINT 8 20 60; POLYLINE 5 6 7 8 CLOSE
     DIM X 1 2 10; DIM Z 1 4 8; DIM Q X 1 5 2; DIM X 5 6 4; DIM Z 1 5 2; DIM Z 5 8 4; GENERATE FACES";
 
-/// What is done before (a name in capitals is one of the texts above), and the command: with [`TABLE`], one for each
-/// error.
+/// Preparation (a name in capitals is one of the texts above) and command: with [`TABLE`], one for
+/// each error.
 const CASES: &[(&str, &str)] = &[
     // Words and numbers.
     ("", "FROBNICATE"),
@@ -401,7 +401,7 @@ fn prepared(before: &str) -> SketchSession {
     s
 }
 
-/// What is said to a program that drags and asks at a wrong time.
+/// Replies to a program that drags and calls at a wrong time.
 fn by_hand(said: &mut Vec<CommandReply>) {
     let mut s = prepared("BOX");
     s.begin().unwrap();

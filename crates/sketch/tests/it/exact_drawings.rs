@@ -122,7 +122,7 @@ fn lines_that_cross_and_blocks() {
     }
 }
 
-/// A picture of a solid is asked for by an object of its own.
+/// A picture of a solid needs an object of its own.
 #[test]
 fn pictorials_stay_pictorials() {
     let text = file("", &polygon(&[[0.0, 0.0], [10.0, 0.0], [10.0, 7.0], [0.0, 7.0]]));

@@ -193,7 +193,7 @@ fn voxel_edges(size: [i64; 3], solid: &dyn Fn([i64; 3]) -> bool) -> (Vec<Vec3>, 
         p[axis] += d;
         p
     };
-    // A vertex stands where directions change.
+    // A vertex is at a change of direction.
     let corner = |p: [i64; 3]| {
         let along =
             |axis: usize| (unit.contains(&(p, axis)), unit.contains(&(step(p, axis, -1), axis)));
@@ -239,7 +239,7 @@ fn random_slabs_are_rebuilt() {
     }
 }
 
-/// Checks a voxel solid; pieces that touch along an edge only leave room for other readings.
+/// Checks a voxel solid; pieces that touch only along an edge admit other readings.
 fn check_voxels(round: usize, size: [i64; 3], solid: &dyn Fn([i64; 3]) -> bool, manifold: bool) {
     let (vertices, edges) = voxel_edges(size, solid);
     let mut volume = 0;

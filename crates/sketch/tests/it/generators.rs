@@ -91,7 +91,7 @@ fn a_hole_that_wanders() {
         s.insert(block("B", [2.0, 3.0, 8.0], [2.0, 2.0, -1.0]));
         s.run_line("CUT A B INTO C");
         for _ in 0..rounds(8, 20) {
-            // Halves, so that faces often lie in one plane.
+            // Halves, so that faces are often coplanar.
             let mut pick = |low: f64, high: f64| {
                 (low + (high - low) * random.unit()).mul_add(2.0, 0.0).round() / 2.0
             };
@@ -288,7 +288,7 @@ fn a_hole_outside_of_its_section() {
     assert_eq!(s.objects()[0].area, Some(64.0));
 }
 
-/// Rhombi by equal lengths and an angle: every angle from one drawing, none folded.
+/// Rhombi by equal lengths and an angle: every angle from one drawing, without folding.
 #[test]
 fn a_rhombus_through_all_angles() {
     let text = "SKETCH Q 2D XZ\nPOINT 1 0 0; POINT 2 100 5; POINT 3 130 70; POINT 4 20 90\n\
@@ -413,7 +413,8 @@ fn types_of_shaken_pictures() {
                 drawing.type_all();
                 for (id, line) in &truth {
                     let found = object.drawing.lines[id];
-                    // What the planes cannot tell (the ridge of T11) is proposed as oblique.
+                    // Lines that the planes do not determine (the ridge of T11) are proposed as
+                    // oblique.
                     let same = found.free == line.free
                         || line.free.and_then(Free::single).is_none()
                             && found.free.and_then(Free::single).is_none();

@@ -35,7 +35,7 @@ fn numbers_of_other_objects_in_every_command() {
     );
     let want = |n: f64| 80.0 * 50.0 * 8.0 - n * PI * 4.0 * 8.0;
     assert!((volume(&mut s, "P") - want(3.0)).abs() < 1e-9);
-    // A number of another object, by its name; what reads it follows.
+    // A number of another object, by its name; dependent values follow.
     run(&mut s, "SET G.N 2");
     assert_eq!(s.active_object().unwrap().name, "P");
     assert!((volume(&mut s, "P") - want(2.0)).abs() < 1e-9);
@@ -116,7 +116,7 @@ fn tools_are_no_results() {
     assert_eq!(flags(&s), ["G", "B", "P"]);
 }
 
-/// What is written without a unit is in millimetres, and that is said once.
+/// Files without a unit are in millimetres, which is reported once.
 #[test]
 fn files_without_a_unit_are_in_millimetres() {
     let mut s = SketchSession::new();

@@ -94,7 +94,7 @@ fn bars_and_walls_at_a_hair() {
     );
 }
 
-/// Two bars at right angles whose axes are apart by the sum of their radii, less a hair.
+/// Two perpendicular bars whose axes are apart by slightly less than the sum of their radii.
 #[test]
 fn crossing_bars_at_a_hair() {
     let mut random = Random::new(78);

@@ -1,4 +1,4 @@
-//! Views of bodies: what is hidden is dashed.
+//! Views of bodies: hidden lines are dashed.
 
 use moldloft_sketch::*;
 
@@ -43,7 +43,7 @@ DIM R X 1 2 2; DIM H Z 1 4 7; GENERATE FACES; REVOLVE 4\nVIEW FRONT\nSHOW LABELS
         };
         solid.push(["x1", "y1", "x2", "y2"].map(number));
     }
-    // Of the height 7 and the width 4 on 800 units of paper: the two sides stand at the full width.
+    // Height 7 and width 4 on 800 units of paper: the two sides are at the full width.
     let width = 800.0 * 4.0 / 7.0;
     let left = solid.iter().map(|l| l[0].min(l[2])).fold(f64::INFINITY, f64::min);
     for x in [left, left + width] {

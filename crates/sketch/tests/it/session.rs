@@ -142,7 +142,7 @@ fn edits_of_a_live_object() {
     let mut s = with(case_named("T8").object);
     run(&mut s, "GEN FACES; SET d5 8");
     close(volume(&mut s, "A"), 64.0);
-    // A plane that passes another is said.
+    // A plane that passes another is reported.
     let replies = run(&mut s, "SET d5 -8");
     assert!(replies.iter().any(|r| r.text.contains("complete")));
     let mut s = with(case_named("T10").object);
@@ -743,7 +743,7 @@ fn what_takes_a_body_away_is_said() {
         s.run_line("UNDO");
         assert!(s.objects()[0].volume.is_some(), "{command}");
     }
-    // Nothing is said of a body that was never there.
+    // The loss of a body is reported only if there was one.
     let mut s = with(cuboid([4.0, 3.0, 2.0]));
     assert!(s.run_line("DELETE DIMENSION D1").iter().all(|r| r.about.kind != "no-faces"));
 }

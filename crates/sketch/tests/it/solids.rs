@@ -1,4 +1,5 @@
-//! Bodies: mass of every case with its derivatives, curves and what they replace (T7, T12).
+//! Bodies: mass of every case with its derivatives, curves and the lines that they replace (T7,
+//! T12).
 
 use crate::common::*;
 use moldloft_mesh::measure;

@@ -8,7 +8,7 @@ fn transforms_in_their_order() {
     let both = both.with(" rotate(90 1 1),matrix(1 0 0 1 3 0)").unwrap();
     let mut shapes = PageShapes::default();
     let mut one = PageShapes::default();
-    // (4, 0) goes to (7, 0), about (1, 1) to (2, 7), then to (14, 34), whose v is -34.
+    // (4, 0) is mapped to (7, 0), about (1, 1) to (2, 7), then to (14, 34), whose v is -34.
     one.strokes.push([[4.0, 0.0], [0.0, 0.0]]);
     one.arcs.push(([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 1.0));
     both.put(one.clone(), &mut shapes);

@@ -133,7 +133,7 @@ fn round_edges() {
     run(&mut s, "CIRCLE C1 CORNER 1 4 2; CIRCLE C2 CORNER 5 8 6");
     near(volume(&mut s, "DISC"), 48.0 * PI);
     run(&mut s, "FILLET DISC 1 EDGES OF TOP Z INTO B; CHAMFER DISC 1 EDGES OF TOP Z INTO C");
-    // Pappus: the triangle of the chamfer, and what the quarter leaves of its square.
+    // Pappus: the triangle of the chamfer, and the part of the square outside the quarter circle.
     let square = 1.0 - PI / 4.0;
     // The square's centroid is 1/2 from the corner; that of the rest (10 - 3 pi) / (12 - 3 pi).
     let off = (10.0 - 3.0 * PI) / (12.0 - 3.0 * PI);

@@ -187,8 +187,8 @@ fn arcs_and_circles_are_imported() {
     }
 }
 
-/// Any commands as data, in and out of drags, with numbers and names that no one would give: nothing panics, what is
-/// asked between them is answered, and the journal makes the same objects again.
+/// Random commands as data, in and out of drags, with unusual numbers and names: no panic, queries
+/// between them are answered, and the journal reproduces the objects.
 #[test]
 fn any_typed_commands() {
     use moldloft_testing::{Random, rounds};

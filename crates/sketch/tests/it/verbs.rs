@@ -1,4 +1,4 @@
-//! Words that stand for verbs.
+//! Abbreviations and synonyms of verbs.
 
 use moldloft_sketch::command::verbs::find;
 

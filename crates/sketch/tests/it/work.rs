@@ -1,4 +1,4 @@
-//! What grows with the size of a drawing, by counts; the clocks are in `examples/timing.rs`.
+//! Growth of the work with the size of a drawing, by counts; times are in `examples/timing.rs`.
 
 use moldloft_num::Vec3;
 use moldloft_sketch::{Planes, SketchSession, faces, solid, solve};
@@ -48,7 +48,7 @@ fn a_dimension_of_a_thousand_points() {
     let made = fresh.objects().remove(0);
     assert_eq!(edited.solid, made.solid);
     assert_eq!(edited.volume.map(f64::to_bits), made.volume.map(f64::to_bits));
-    // 249 steps of 1; the fourth from below, of height 4, is wider by what was added.
+    // 249 steps of 1; the fourth from below, of height 4, is wider by the added length.
     let expected = 5.0 * (249.0 * 250.0 / 2.0 + 4.0 * (width - 1.0));
     assert!((made.volume.unwrap() - expected).abs() < 1e-6, "{:?} {expected}", made.volume);
 }

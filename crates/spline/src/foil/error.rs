@@ -7,17 +7,17 @@ use std::fmt;
 pub enum FoilError {
     /// There is no thickness form of this name.
     Family {
-        /// The name asked for.
+        /// The given name.
         name: String,
     },
     /// There is no mean line of this name.
     Mean {
-        /// The name asked for.
+        /// The given name.
         name: String,
     },
-    /// A number of the section lies outside its range.
+    /// A number of the section is outside its range.
     Range {
-        /// What the number is.
+        /// Name of the number.
         name: &'static str,
         /// The number.
         value: f64,
@@ -30,7 +30,7 @@ pub enum FoilError {
     Ordinates {
         /// The first that is out of place, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// Description of the fault.
         what: &'static str,
     },
     /// A foil is laid between 3, 4 or 5 points.

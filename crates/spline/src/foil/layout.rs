@@ -1,10 +1,10 @@
-//! Where a foil lies in space: from points to chord, thickness and mean-line directions.
+//! Position of a foil in space: chord, thickness and mean-line directions from points.
 
 use super::error::FoilError;
 use super::station::Station;
 use moldloft_num::{Jet, Real, Vec3};
 
-/// How thickness is set off from the mean line.
+/// Direction of thickness from the mean line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Offset {
     /// Along the direction of the thickness point, whatever the camber: an affine map of the
@@ -15,7 +15,7 @@ pub enum Offset {
     Normal,
 }
 
-/// The metric of the plane or space that a foil lies in: the scalar product.
+/// The metric of the plane or space of a foil: the scalar product.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Metric<T> {
     /// That of space.
@@ -47,7 +47,7 @@ impl<T: Real> Metric<T> {
     }
 }
 
-/// Where a section lies: from its points.
+/// Position of a section, from its points.
 ///
 /// Three points are nose, thickness point and tail of a half section. Four are upper tail,
 /// thickness point, nose and lower tail of a symmetric one; five have a lower thickness point

@@ -16,7 +16,7 @@ pub enum MeanLine<T> {
     },
     /// Two cubics that meet at `r` (five-digit); see [`MeanLine::cubic`].
     Cubic {
-        /// Where they meet.
+        /// Position of the junction.
         r: f64,
         /// The ratio k2 / k1: 0 for a straight tail.
         k: f64,
@@ -29,7 +29,7 @@ pub enum MeanLine<T> {
     Straightened {
         /// The line with a = 0.8.
         load: Load<T>,
-        /// What is added to its slope, so that the tail ends at 0.
+        /// Slope added so that the tail ends at 0.
         tilt: f64,
         /// The slope of the tail.
         slope: f64,
@@ -50,7 +50,7 @@ pub struct Load<T> {
     rest: T,
 }
 
-/// Below this the logarithms are held: far below what a section shows, and far above the square
+/// Offset of the arguments of logarithms: far below visible dimensions, and far above the square
 /// root of rounding, so that second derivatives stay finite.
 const HELD: f64 = 1e-9;
 
@@ -131,7 +131,7 @@ impl<T: Real> Load<T> {
     }
 }
 
-/// Where the straight tail of the 6A-series begins.
+/// Start of the straight tail of the 6A-series.
 const STRAIGHT: f64 = 0.874_37;
 
 /// In front of this, slopes are taken behind; see [`held`].
@@ -256,7 +256,7 @@ mod tests {
     use super::*;
     use moldloft_num::Dual;
 
-    /// Height and slope together are what they are by themselves, derivatives included.
+    /// Height and slope computed together agree with the separate values, derivatives included.
     #[test]
     fn height_and_slope_share_their_logarithms_to_the_bit() {
         for a in [0.0, 0.3, 0.8, 1.0] {

@@ -26,7 +26,7 @@ pub use thickness::Thickness;
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use std::sync::Arc;
 
-/// What a section is made of, by name; see [`Section::new`].
+/// Definition of a section by names; see [`Section::new`].
 #[derive(Clone, Debug)]
 pub struct SectionSpec<'a, T> {
     /// Thickness form: one of [`Section::FAMILIES`].
@@ -35,7 +35,7 @@ pub struct SectionSpec<'a, T> {
     pub mean: &'a str,
     /// Place of the greatest camber of the parabolic mean line, in (0, 1).
     pub camber_at: T,
-    /// Extent a of the uniform load of the mean line "a", in [0, 1]; none for that of the family.
+    /// Extent a of the uniform load of the mean line "a", in [0, 1]; `None`: that of the family.
     pub load: Option<T>,
     /// Nose index of the modified four-digit family: 6 is the plain nose, 0 a sharp one.
     pub nose_index: T,
@@ -233,9 +233,9 @@ impl<T: Real> Section<T> {
 pub struct Profile<T: Real> {
     /// The section.
     pub section: Arc<Section<T>>,
-    /// Where it lies.
+    /// Position of the section.
     pub layout: Layout<T>,
-    /// How thickness is set off.
+    /// Direction of the thickness.
     pub offset: Offset,
 }
 

@@ -10,16 +10,16 @@ use std::sync::OnceLock;
 /// Intervals of s at which the mapping is sampled: their spline is within 1e-7 of it.
 pub(super) const STEPS: usize = 128;
 
-/// Ratios at which forms are computed; between them forms are the polynomial through these, which is
-/// within 1e-8 of what the mapping gives there (tested) and smooth, so that lofts are.
+/// Ratios at which forms are computed; between them a form is the polynomial through these, which
+/// is within 1e-8 of the mapping (tested) and smooth, as lofts require.
 const NODES: usize = 26;
 
 /// Ratios of thickness that the scale polynomials serve; beyond, the nearest form is stretched.
 const RATIOS: (f64, f64) = (0.02, 0.24);
 
 /// The mapping of a circle to a thickness form (Theodorsen 1931; Abbott and von Doenhoff 1959,
-/// section 3.6): the point exp(psi_0 + i phi) goes to z = exp(psi + i (phi - epsilon)), and that to
-/// z + 1/z, which is normalised to the unit chord.
+/// section 3.6): the point exp(psi_0 + i phi) is mapped to z = exp(psi + i (phi - epsilon)), and
+/// that to z + 1/z, which is normalised to the unit chord.
 struct Mapping {
     epsilon: InterpolatingSpline<f64>,
     psi: InterpolatingSpline<f64>,
@@ -119,7 +119,7 @@ fn node(k: usize) -> f64 {
     0.5 * (low + high) - 0.5 * (high - low) * x
 }
 
-/// The forms of a family at the nodes; computed when they are first asked for.
+/// The forms of a family at the nodes; computed on first use.
 fn forms(at: usize) -> &'static [ThicknessForm] {
     static FORMS: [OnceLock<Vec<ThicknessForm>>; FAMILIES.len()] =
         [const { OnceLock::new() }; FAMILIES.len()];
@@ -133,7 +133,7 @@ pub struct Blended<T> {
     forms: &'static [ThicknessForm],
     /// The share of each: Lagrange's polynomials at the ratio.
     shares: [T; NODES],
-    /// Their sums, when they are worth their while.
+    /// Precomputed sums, if they save time.
     pieces: Vec<[T; 4]>,
 }
 

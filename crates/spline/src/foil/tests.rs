@@ -179,7 +179,8 @@ fn mean_lines_are_smooth_and_one_high() {
     // NACA 230: the published factor k1 = 15.957 makes it 0.0184 high for c_l = 0.3.
     let MeanLine::Cubic { scale, .. } = MeanLine::<f64>::cubic("230").unwrap() else { panic!() };
     assert!((15.957 / 6.0 / scale - 0.01838).abs() < 2e-5);
-    // The 6A-series line: the tail falls by 0.24521 c_l per chord, less what turns its end to 0.
+    // The 6A-series line: the tail falls by 0.24521 c_l per chord, less the tilt that brings its
+    // end to 0.
     let MeanLine::Straightened { slope, tilt, .. } = MeanLine::<f64>::uniform_load_modified()
     else {
         panic!("the modified line")
@@ -209,7 +210,7 @@ fn profiles_pass_through_their_ends_and_are_as_thick_as_asked() {
         let at = |t: f64| profile.jet(t, Order::Zero)[0];
         assert_eq!([at(0.0), at(0.5), at(1.0)], [points[0], points[2], points[4]]);
         for t in [0.05, 0.2, 0.4] {
-            // Camber 0.04 at 0.4: upper and lower side lie on both sides of the mean line.
+            // Camber 0.04 at 0.4: upper and lower side are on both sides of the mean line.
             let (a, b) = (at(t), at(1.0 - t));
             let x = (1.0 - 2.0 * t) * (1.0 - 2.0 * t);
             let w = (x - 0.4) / if x < 0.4 { 0.4 } else { 0.6 };

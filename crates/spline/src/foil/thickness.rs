@@ -35,13 +35,14 @@ pub enum Thickness<T: Real> {
     Family(Blended<T>),
     /// A curve of (x, thickness, camber).
     Curve(Arc<dyn Curve<T>>),
-    /// Another form, less what is left at its tail times the cube of the way behind `at`.
+    /// Another form, less its thickness at the tail times the cube of the relative position behind
+    /// `at`.
     Closed {
         /// The form.
         open: Box<Thickness<T>>,
-        /// Where the closing begins, as x.
+        /// Start of the closing, as x.
         at: T,
-        /// What it leaves at the tail.
+        /// Thickness at the tail.
         rest: T,
     },
 }
@@ -88,7 +89,7 @@ impl<T: Real> Thickness<T> {
     /// index `index` and the greatest thickness at x = `m`: both polynomials have the same value,
     /// no slope and the same curvature there.
     pub fn modified(index: T, m: T) -> Self {
-        // Nose: 0.296904 index / 6 at the thickness 0.2; index 9 stands for sqrt 3.
+        // Nose: 0.296904 index / 6 at the thickness 0.2; index 9 means sqrt 3.
         let a0 = if index.re() > 8.0 {
             // From 8 to 9 to the sharp step of the tables in a straight line.
             let low = T::from(8.0 / 6.0);

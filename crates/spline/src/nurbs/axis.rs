@@ -10,7 +10,7 @@ pub struct SplineSpace {
     pub degree: usize,
     /// The ends of the spans, from 0 to 1.
     pub ends: Vec<f64>,
-    /// How often each of them but the first and last is a knot.
+    /// Multiplicity of each of them except the first and last.
     pub repeats: Vec<usize>,
     /// True when the shape is not such a spline, so that its knots may be added to.
     pub fitted: bool,

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 pub struct Chebyshev {
     /// The degree: there is one node more.
     pub degree: usize,
-    /// cos(k j pi / degree), with what the discrete transform divides by.
+    /// cos(k j pi / degree), with the divisors of the discrete transform.
     matrix: Vec<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Chebyshev {
         (0..=n).map(|j| if j == n { 1.0 } else { at(j) }).collect()
     }
 
-    /// The nodes of all spans between these ends; a common end stands once.
+    /// The nodes of all spans between these ends, common ends once.
     pub fn nodes_of(&self, ends: &[f64]) -> Vec<f64> {
         let nodes = self.nodes();
         let mut all = vec![ends[0]];

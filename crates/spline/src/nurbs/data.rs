@@ -1,4 +1,4 @@
-//! Grids of homogeneous values, and what is done line by line along one of their axes.
+//! Grids of homogeneous values, and operations line by line along one of their axes.
 
 use moldloft_num::Vec3;
 
@@ -66,7 +66,7 @@ impl<const D: usize> HomogeneousGrid<D> {
 pub fn gap(a: &Value, b: &Value) -> f64 {
     a.iter().zip(b).fold(0.0, |most, (x, y)| {
         let d = (x - y).abs();
-        // What is not a number is the largest there is.
+        // NaN counts as infinite.
         if d.is_nan() { f64::INFINITY } else { most.max(d) }
     })
 }

@@ -1,4 +1,4 @@
-//! The spline spaces of a shape, its control points in them, and the bound of what is left.
+//! Spline spaces of a shape, its control points in them, and a bound of the error.
 
 use super::Nurbs;
 use super::axis::{Interpolation, SplineSpace, apply, basis_rows};
@@ -17,7 +17,7 @@ const MANY: usize = 22;
 /// Degrees up to this are taken for exact without an abrupt end of the coefficients.
 const USUAL: usize = 5;
 
-/// How much larger the last coefficient is than rounding where a polynomial of a high degree ends.
+/// Ratio of the last coefficient to rounding at which a polynomial of high degree is not resolved.
 const ABRUPT: f64 = 1e4;
 
 /// Joints nearer than this are one.
@@ -34,7 +34,7 @@ const MOST_ROUNDS: usize = 30;
 /// Degree of the Chebyshev interpolants by which the error of fits is bounded.
 const BOUND_DEGREE: usize = 8;
 
-/// What is asked of a fit.
+/// Options of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// The largest error.
@@ -56,7 +56,7 @@ pub struct SampledShape<'a, const D: usize> {
     pub sample: &'a dyn Fn(&[Vec<f64>; D]) -> Vec<Vec3>,
     /// The parameters at which one formula ends and another begins.
     pub joints: [Vec<f64>; D],
-    /// What makes it rational.
+    /// Its rational form.
     pub rational: Rational<D>,
 }
 
@@ -71,7 +71,7 @@ pub enum NotFitted {
     Error {
         /// The bound.
         reached: f64,
-        /// Where.
+        /// Parameters.
         at: Vec<f64>,
     },
 }
@@ -157,7 +157,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
         Ok(fitter)
     }
 
-    /// An error that counts as none.
+    /// Error below which a fit is exact within rounding.
     fn rounding(&self) -> f64 {
         40.0 * ROUNDING * self.scale
     }
@@ -237,7 +237,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
         if degree > highest || degree > USUAL && !abrupt {
             return None;
         }
-        // How often a joint is a knot: the order of the first derivative that jumps there says.
+        // Multiplicity of a joint, from the order of the first derivative with a jump.
         let repeats = |joint: usize| {
             let widths = [ends[joint] - ends[joint - 1], ends[joint + 1] - ends[joint]];
             for k in 1..=degree {
@@ -276,7 +276,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
         SplineSpace { degree, ends: ends.clone(), repeats, fitted: true }
     }
 
-    /// How often a joint is a knot of a fit: as its tangents and curvatures jump.
+    /// Multiplicity of a joint in a fit, from jumps of tangents and curvatures.
     fn repeats(&self, d: usize, joint: usize) -> usize {
         const NODES: usize = 6;
         let degree = self.options.degree;
@@ -481,7 +481,7 @@ impl<const D: usize> FitErrorBound<D> {
         let cells: [usize; D] = std::array::from_fn(|d| ends[d].len() - 1);
         let count: usize = cells.iter().product();
         let mut sums = vec![0.0f64; count];
-        // The last two orders of each axis, and what no space of that axis can hold.
+        // The last two orders of each axis, and the part that no space of that axis can represent.
         let mut tails = vec![0.0f64; count];
         let mut high = vec![[0.0f64; D]; count];
         for (k, v) in off.values.iter().enumerate() {

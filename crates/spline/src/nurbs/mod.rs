@@ -29,13 +29,13 @@ pub struct Nurbs<const D: usize> {
     pub knots: [Vec<f64>; D],
     /// Control points, the last index fastest; not multiplied by weights.
     pub points: Vec<Vec3>,
-    /// Weights in the order of the points; none when all are 1.
+    /// Weights in the order of the points; `None` if all are 1.
     pub weights: Option<Vec<f64>>,
     /// A bound of the distance from the shape at equal places.
     pub error: f64,
     /// True when the shape is this NURBS but for rounding.
     pub exact: bool,
-    /// How the shape's own parameters follow from those of the NURBS.
+    /// The shape's own parameters as functions of those of the NURBS.
     pub paces: [Pace; D],
 }
 

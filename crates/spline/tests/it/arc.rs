@@ -45,7 +45,7 @@ fn each_type_meets_its_points() {
         let p = [random.point(), random.point(), random.point()];
         let through = arc(1, p);
         assert_eq!((at(&through, 0.0), at(&through, 1.0)), (p[0], p[2]));
-        // The middle point lies on the arc where the angle from the start says.
+        // The middle point is on the arc at its angle from the start.
         let centre = at(&through, 0.0)
             + through.jet(0.0, Order::Second)[2].map(|x| x / through.angle().powi(2));
         let radius = (p[0] - centre).norm();

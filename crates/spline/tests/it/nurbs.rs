@@ -60,7 +60,7 @@ fn splines_come_back_with_their_own_control_points() {
         assert!(made.exact && made.error < 1e-10, "{knots:?} {}", made.error);
         let off = off_curve(&curve, &made);
         assert!(off <= made.error, "{off:e} {:e}", made.error);
-        // A random knot is one: none is lost, none is added.
+        // A random knot is recovered, without others.
         assert_eq!(made.degrees, [degree]);
         let gap = |a: &f64, b: &f64| (a - b).abs();
         assert!(made.knots[0].iter().zip(knots.as_slice()).all(|(a, b)| gap(a, b) < 1e-15));

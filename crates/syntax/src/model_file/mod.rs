@@ -1,8 +1,9 @@
 //! MultiSurf model files, versions 0.35 and 1.x, as a lossless structure.
 //!
-//! A file is a header, then objects: an entity word, a name and fields separated by blanks, up to a `;`. What the fields
-//! mean depends on the entity and is decided elsewhere; here they are numbers, words, lists and so on, each with its
-//! place. An object that nobody understands can therefore be written back as it stood.
+//! A file is a header, then objects: an entity word, a name and fields separated by blanks, up to a
+//! `;`. The meaning of the fields depends on the entity and is decided elsewhere; here they are
+//! numbers, words, lists and so on, each with its position. An unknown object can therefore be
+//! written back unchanged.
 //!
 //! ```
 //! use moldloft_diag::FileId;
@@ -38,20 +39,20 @@ pub const ARGUMENT: &str = "A:Moldloft";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NumberId(pub u32);
 
-/// A number and where it stands.
+/// A number and its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
     /// The value, finite.
     pub value: f64,
-    /// Whether it is spelled with digits (and a sign) only.
+    /// True if it is spelled with digits (and a sign) only.
     pub is_int: bool,
-    /// Where it stands in the text that was parsed.
+    /// Position in the parsed text.
     pub span: Span,
-    /// Whether the value was set after parsing.
+    /// True if the value was set after parsing.
     pub edited: bool,
 }
 
-/// Fields that stand one after the other; `model[fields]` is the slice.
+/// Consecutive fields; `model[fields]` is the slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fields {
     start: u32,
@@ -64,7 +65,7 @@ impl Fields {
         self.count as usize
     }
 
-    /// Whether there is no field.
+    /// True without fields.
     pub fn is_empty(self) -> bool {
         self.count == 0
     }
@@ -73,13 +74,13 @@ impl Fields {
 /// One field of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EntryField {
-    /// What it is.
+    /// Kind.
     pub kind: FieldKind,
-    /// Where it stands.
+    /// Position.
     pub span: Span,
 }
 
-/// The kinds of fields. What has no data is read with [`ModelFile::slice`] of the field's span.
+/// The kinds of fields. Kinds without data are read with [`ModelFile::slice`] of the field's span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldKind {
     /// A number.
@@ -100,14 +101,14 @@ pub enum FieldKind {
     Tuple(Fields),
     /// `A:Name(value)`.
     Attribute {
-        /// Where the name stands.
+        /// Position of the name.
         name: Span,
-        /// Where the value stands, without the parentheses.
+        /// Position of the value, without the parentheses.
         value: Span,
     },
     /// `A:Moldloft(name field)`: an argument that has no column, by its name.
     Argument {
-        /// Where the name stands.
+        /// Position of the name.
         name: Span,
         /// Its fields: one, where it is sound.
         value: Fields,
@@ -123,15 +124,16 @@ pub struct ObjectEntry {
     pub entity: Span,
     /// The name.
     pub name: Span,
-    /// What follows the name.
+    /// Fields after the name.
     pub fields: Fields,
     /// From the entity word to the `;`.
     pub span: Span,
-    /// Whether it ends properly, with all its lists closed; the faults of one that does not were reported.
+    /// True if it ends properly, with all its lists closed; the errors of an incomplete one were
+    /// reported.
     pub complete: bool,
 }
 
-/// What can stand in the body of a file.
+/// Items of the body of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ItemKind {
     /// `Rem …` or `# …`, without the line end.
@@ -145,11 +147,11 @@ pub enum ItemKind {
 /// Something in the body of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// What it is.
+    /// Kind.
     pub kind: ItemKind,
-    /// Where it stands.
+    /// Position.
     pub span: Span,
-    /// Whether an empty line stands before it.
+    /// True if an empty line precedes it.
     pub after_gap: bool,
 }
 
@@ -158,7 +160,7 @@ pub struct Item {
 pub struct HeaderLine {
     /// The key without its colon.
     pub key: Span,
-    /// What follows, without blanks around it.
+    /// The rest, without blanks around it.
     pub rest: Span,
 }
 
@@ -169,7 +171,7 @@ pub struct ModelFile {
     file: FileId,
     /// The version word of the first line.
     pub version: Option<Span>,
-    /// What follows the version on the first line, such as `/y`.
+    /// Text after the version on the first line, such as `/y`.
     pub first_line_rest: Option<Span>,
     /// The header lines.
     pub header: Vec<HeaderLine>,
@@ -181,7 +183,7 @@ pub struct ModelFile {
     pub items: Vec<Item>,
     /// The word `EndModel`.
     pub end: Option<Span>,
-    /// What follows `EndModel`.
+    /// Text after `EndModel`.
     pub trailer: Option<Span>,
     fields: Vec<EntryField>,
     numbers: Vec<Number>,
@@ -264,12 +266,12 @@ impl ModelFile {
         Ok(())
     }
 
-    /// Whether a number was changed since the text was parsed.
+    /// True if a number was changed since the text was parsed.
     pub fn is_edited(&self) -> bool {
         !self.edited.is_empty()
     }
 
-    /// What must be replaced in [`ModelFile::text`] to say the changed numbers, in the order of the text.
+    /// Replacements in [`ModelFile::text`] for the changed numbers, in the order of the text.
     pub fn edits(&self) -> Vec<(Span, String)> {
         let mut ids = self.edited.clone();
         ids.sort_unstable();

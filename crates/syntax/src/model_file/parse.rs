@@ -5,8 +5,8 @@ use super::*;
 const MAX_NESTING: usize = 200;
 const MAX_DIAGNOSTICS: usize = 100;
 
-/// Parses a model file. It never fails: whatever is wrong is in the diagnostics, in the order of the text, and the
-/// pieces that could not be understood are kept as they stand.
+/// Parses a model file. It never fails: errors are in the diagnostics, in the order of the text,
+/// and parts with errors are kept unchanged.
 pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (ModelFile, Vec<Diagnostic>) {
     let text: Arc<str> = text.into();
     let too_large = crate::decode::check_size(&text, file);
@@ -59,7 +59,7 @@ struct ModelFileParser<'a> {
     scratch: Vec<EntryField>,
     diagnostics: Vec<Diagnostic>,
     unlisted: usize,
-    /// Where the next header line was found to begin.
+    /// Start of the next header line, if found.
     header_until: usize,
 }
 
@@ -69,7 +69,7 @@ struct OpenList {
     at: Span,
     /// The name of the argument that it is.
     argument: Option<Span>,
-    /// Where its fields begin in the scratch stack.
+    /// Start of its fields in the scratch stack.
     base: usize,
 }
 
@@ -213,7 +213,7 @@ impl<'a> ModelFileParser<'a> {
         }
     }
 
-    /// Whether a header line, the first line or `BeginModel` comes after the comments that stand here.
+    /// True if a header line, the first line or `BeginModel` follows the comments at this position.
     fn header_goes_on(&mut self) -> bool {
         if self.at < self.header_until {
             return true;
@@ -279,7 +279,7 @@ impl<'a> ModelFileParser<'a> {
         self.object(start, after_gap);
     }
 
-    /// Takes what is not an object, up to its `;` or to the end of its line.
+    /// Reads an unknown item, up to its `;` or to the end of its line.
     fn unknown(&mut self, start: usize, after_gap: bool) {
         let rest = &self.bytes[start..];
         let length = rest.iter().position(|byte| matches!(byte, b';' | b'\n'));
@@ -394,7 +394,8 @@ impl<'a> ModelFileParser<'a> {
         self.report(diagnostic.help("the file may have been cut off when it was copied or saved"));
     }
 
-    /// Whether an unindented line begins here that looks like `Entity name colour visible`, or `EndModel`.
+    /// True if an unindented line begins here that looks like `Entity name colour visible`, or
+    /// `EndModel`.
     fn object_starts_here(&self) -> bool {
         let line_start = self.at > 0 && self.bytes[self.at - 1] == b'\n';
         if !line_start || !self.peek().is_ascii_alphabetic() {

@@ -3,9 +3,9 @@
 use super::*;
 
 impl ModelFile {
-    /// The canonical text: one object a line, numbers in their shortest spelling, single empty lines and all comments
-    /// kept, the order as it was. Objects for which `verbatim` holds, and those with faults, are written as they stand
-    /// in the source (changed numbers included).
+    /// The canonical text: one object a line, numbers in their shortest spelling, single empty
+    /// lines and all comments kept, in the original order. Objects for which `verbatim` holds, and
+    /// those with errors, are written as in the source (changed numbers included).
     pub fn to_canonical(&self, mut verbatim: impl FnMut(&ObjectEntry) -> bool) -> String {
         let mut out = String::with_capacity(self.text.len());
         self.write_header(&mut out);

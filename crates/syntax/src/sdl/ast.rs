@@ -4,18 +4,19 @@ use super::interner::Symbol;
 use moldloft_diag::Span;
 use std::marker::PhantomData;
 
-/// A number that stands in the text. A sign directly before a number belongs to it (`{-1, 2}`), unless `^`, `.` or `.*` follows.
+/// A number in the text. A sign directly before a number belongs to it (`{-1, 2}`), unless `^`, `.`
+/// or `.*` follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Literal {
     /// The value, finite.
     pub value: f64,
-    /// Whether it is spelled with digits only.
+    /// True if it is spelled with digits only.
     pub is_int: bool,
-    /// Where it stands in the text that was parsed, sign included.
+    /// Position in the parsed text, sign included.
     pub span: Span,
-    /// Whether the value was set after parsing.
+    /// True if the value was set after parsing.
     pub edited: bool,
-    /// Whether a negative value must be written in parentheses here (before `^`, `.` and `.*`).
+    /// True if a negative value must be written in parentheses here (before `^`, `.` and `.*`).
     pub(crate) wrap_negative: bool,
 }
 
@@ -66,18 +67,18 @@ impl<T> NodeList<T> {
         self.count as usize
     }
 
-    /// Whether there is no element.
+    /// True if empty.
     pub fn is_empty(self) -> bool {
         self.count == 0
     }
 }
 
-/// A name and where it stands.
+/// A name and its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ident {
     /// The name.
     pub symbol: Symbol,
-    /// Where.
+    /// Position.
     pub span: Span,
 }
 
@@ -208,9 +209,9 @@ pub enum Subscript {
 /// An expression with its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Expr {
-    /// What it is.
+    /// Kind.
     pub kind: ExprKind,
-    /// Where it stands.
+    /// Position.
     pub span: Span,
 }
 
@@ -233,7 +234,7 @@ pub enum ExprKind {
     Unary {
         /// The operator.
         op: UnaryOp,
-        /// What it stands before.
+        /// Operand.
         operand: ExprId,
     },
     /// Two operands whose grouping is the same whatever their values are.
@@ -250,7 +251,7 @@ pub enum ExprKind {
     Chain(NodeList<ChainItem>),
     /// `base[subscripts]`
     Index {
-        /// What is indexed.
+        /// Indexed expression.
         base: ExprId,
         /// One to three subscripts, or the values of loop variables in a name made in loops.
         subs: NodeList<Subscript>,
@@ -261,13 +262,13 @@ pub enum ExprKind {
         base: ExprId,
         /// The member's name, never reserved. It ends where the expression ends.
         name: Symbol,
-        /// Whether it can also be read as a dot product of `base` with the variable `name`: for every name but
-        /// the components `x y z d1 d2`. A member wins if `base` owns the name.
+        /// True if it can also be a dot product of `base` with the variable `name`: for every name
+        /// except the components `x y z d1 d2`. A member of `base` takes precedence.
         or_dot: bool,
     },
     /// `callee(args)`
     Call {
-        /// What is called.
+        /// Called expression.
         callee: ExprId,
         /// The arguments, positional ones first.
         args: NodeList<Arg>,
@@ -413,13 +414,13 @@ pub struct Declarator {
     pub name: Ident,
     /// The length of the list that it is, when its brackets say that it is one.
     pub list: Option<ListLength>,
-    /// Its dimensions, none to three; of a list those of its items.
+    /// Its dimensions, none to three; for a list those of its items.
     pub dims: NodeList<ExprId>,
     /// Its first value.
     pub value: Option<ExprId>,
 }
 
-/// How an assignment combines the old value with the new.
+/// Operator of an assignment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AssignOp {
     /// `=`
@@ -431,9 +432,9 @@ pub enum AssignOp {
 /// A statement with its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Stmt {
-    /// What it is.
+    /// Kind.
     pub kind: StmtKind,
-    /// Where it stands, the `;` included.
+    /// Position, the `;` included.
     pub span: Span,
 }
 
@@ -455,16 +456,16 @@ pub enum StmtKind {
     },
     /// `[global] type name…;`
     Declare {
-        /// Whether `global` stands before it.
+        /// True after `global`.
         global: bool,
-        /// The type and where it stands.
+        /// The type and its position.
         ty: (Type, Span),
         /// The variables.
         items: NodeList<Declarator>,
     },
     /// `param [type] name = value [in [low, high]];`
     Param {
-        /// The type, `float` if none is written.
+        /// The type, by default `float`.
         ty: Option<(Type, Span)>,
         /// Its name.
         name: Ident,
@@ -484,11 +485,11 @@ pub enum StmtKind {
     },
     /// `target = value;` and its like. The target is a name with subscripts and members.
     Assign {
-        /// Where to.
+        /// Target.
         target: ExprId,
-        /// How.
+        /// Operator.
         op: AssignOp,
-        /// What.
+        /// Value.
         value: ExprId,
     },
     /// A call for its effect.
@@ -537,7 +538,7 @@ pub enum StmtKind {
     Foreach {
         /// The loop variable.
         variable: Ident,
-        /// What is walked through.
+        /// Sequence of the loop.
         list: ExprId,
         /// The body.
         body: StmtId,
@@ -546,9 +547,9 @@ pub enum StmtKind {
     Print(NodeList<ExprId>),
     /// `assert condition, message;`
     Assert {
-        /// What must hold.
+        /// Condition.
         condition: ExprId,
-        /// What to say if it does not.
+        /// Message if it does not hold.
         message: Option<ExprId>,
     },
     /// `break;`
@@ -564,15 +565,15 @@ pub enum StmtKind {
 /// A formal argument: `[returned] type name[[]] [= value] [...]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Formal {
-    /// Whether it is passed by reference.
+    /// True if it is passed by reference.
     pub returned: bool,
-    /// Its type and where it stands.
+    /// Its type and position.
     pub ty: (Type, Span),
     /// Its name.
     pub name: Ident,
-    /// Whether it takes all remaining arguments.
+    /// True if it takes all remaining arguments.
     pub multiple: bool,
-    /// Its value where the call gives none.
+    /// Its default value.
     pub default: Option<ExprId>,
 }
 

@@ -47,17 +47,17 @@ struct Writer<'a> {
     out: String,
     /// Indentation of the current statement.
     depth: u32,
-    /// Brackets open in the current statement: the line number of `out` on which each stands.
+    /// Open brackets of the current statement: the line number of each in `out`.
     brackets: Vec<u32>,
     line: u32,
     at_line_start: bool,
     /// The last token written and its role.
     last: Option<(Token, TokenRole)>,
-    /// Whether nothing but a trailing comment was written since the block (or the text) began.
+    /// True if at most a trailing comment was written since the block (or the text) began.
     first_in_block: bool,
     next_comment: usize,
     next_start: usize,
-    /// End in the source of what was written last.
+    /// End in the source of the last written part.
     source_end: u32,
 }
 
@@ -107,7 +107,7 @@ impl<'a> Writer<'a> {
         self.out
     }
 
-    /// Whether the source has an empty line between two of its bytes.
+    /// True if the source has an empty line between two of its bytes.
     fn empty_line_between(&self, from: u32, to: u32) -> bool {
         let between = &self.text.as_bytes()[from as usize..to as usize];
         between.iter().filter(|byte| **byte == b'\n').count() > 1
@@ -121,7 +121,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// An empty line, if the author had one and something stands before it in this block.
+    /// An empty line, if the source has one and something precedes it in this block.
     fn empty_line(&mut self, source_start: u32) {
         if !self.first_in_block && self.empty_line_between(self.source_end, source_start) {
             self.out.push('\n');
@@ -132,14 +132,15 @@ impl<'a> Writer<'a> {
     fn indent(&mut self, closing: usize) {
         let mut levels = self.depth as usize;
         let kept = self.brackets.len().saturating_sub(closing);
-        // Brackets opened on one line indent once; a closing one stands as deep as the line of its opener.
+        // Brackets opened on one line indent once; a closing one has the indentation of its
+        // opener's line.
         let mut lines = self.brackets[..kept].to_vec();
         lines.dedup();
         if closing > 0 && lines.last() == self.brackets.get(kept) {
             lines.pop();
         }
         levels += lines.len();
-        // A statement that goes on without a bracket around.
+        // A statement that continues without brackets.
         if kept == 0 && closing == 0 && self.inside_statement() {
             levels += 1;
         }
@@ -147,7 +148,7 @@ impl<'a> Writer<'a> {
         self.at_line_start = false;
     }
 
-    /// Whether the last token leaves a statement unfinished.
+    /// True if the last token leaves a statement unfinished.
     fn inside_statement(&self) -> bool {
         !self.brackets.is_empty()
             || self.last.is_some_and(|(token, role)| {
@@ -156,7 +157,7 @@ impl<'a> Writer<'a> {
             })
     }
 
-    /// Writes the comments that stand before the token `at`.
+    /// Writes the comments before the token `at`.
     fn comments(&mut self, at: usize) {
         while let Some(comment) = self.layout.comments.get(self.next_comment).copied() {
             if comment.before as usize > at {
@@ -176,7 +177,7 @@ impl<'a> Writer<'a> {
             self.new_line();
             let first_in_block = std::mem::take(&mut self.first_in_block);
             let starts = self.start_of(at);
-            // Comments before a statement or a `}` stand as deep as what is in this block.
+            // Comments before a statement or a `}` have the indentation of the block's content.
             let fresh = starts.is_some() || self.layout.tokens[at].kind == Kind::End;
             if fresh && self.brackets.is_empty() {
                 if !first_in_block {
@@ -247,7 +248,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// True behind a comma in brackets when the line has no room for what follows, up to the next comma.
+    /// True after a comma in brackets if the line is too short for the text up to the next comma.
     fn is_too_long(&self, at: usize) -> bool {
         let comma = self.last.is_some_and(|(last, _)| last.kind == Kind::Comma);
         if !comma || self.brackets.is_empty() {
@@ -322,7 +323,7 @@ fn closes(token: Token, role: TokenRole) -> bool {
             || (token.kind == Kind::Pipe && role == TokenRole::Close))
 }
 
-/// Whether a line break of the author before this token stays.
+/// True if a line break of the source before this token is kept.
 fn may_break(token: Token, role: TokenRole, last: Option<(Token, TokenRole)>) -> bool {
     let after_prefix = matches!(last, Some((_, TokenRole::Prefix)));
     let glued = matches!(token.kind, Kind::Semi | Kind::Comma | Kind::Ellipsis | Kind::MemberDot)
@@ -331,7 +332,7 @@ fn may_break(token: Token, role: TokenRole, last: Option<(Token, TokenRole)>) ->
     !(after_prefix || glued || after_tight)
 }
 
-/// Whether a blank stands between two tokens of a line.
+/// True if there is a blank between two tokens of a line.
 fn blank_between(last: Option<(Token, TokenRole)>, token: Token, role: TokenRole) -> bool {
     let Some((last, last_role)) = last else { return false };
     if matches!(last_role, TokenRole::Prefix | TokenRole::Open | TokenRole::Applied)

@@ -5,7 +5,7 @@ use super::interner::Interner;
 use super::token::{self, Comment, Kind, RESERVED, Token};
 use moldloft_diag::{Diagnostic, FileId, Span};
 
-/// What lexing a text gives; the last token is `ObjectEnd`.
+/// Result of lexing a text; the last token is `End`.
 pub(crate) struct Lexed {
     pub tokens: Vec<Token>,
     pub comments: Vec<Comment>,

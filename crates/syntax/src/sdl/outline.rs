@@ -1,4 +1,5 @@
-//! What an editor asks of a text that may be unfinished: the call around a place, and the parts that fold.
+//! Queries of an editor to a possibly unfinished text: the call around a position, and foldable
+//! parts.
 //!
 //! Invariant: works on tokens alone, so that a text that cannot be parsed has an answer, too.
 
@@ -13,7 +14,7 @@ pub struct OpenCall {
     pub callee: String,
     /// The byte of its first letter.
     pub start: u32,
-    /// How many arguments come before the place.
+    /// Number of arguments before the position.
     pub argument: usize,
     /// The name, when the argument is written as `name = value`.
     pub name: Option<String>,
@@ -65,7 +66,7 @@ pub fn call_around(text: &str, offset: u32) -> Option<OpenCall> {
     })
 }
 
-/// Where the quoted text around a place begins, behind its quotation mark.
+/// Start of the quoted text around a position, after its quotation mark.
 pub fn text_around(text: &str, offset: u32) -> Option<u32> {
     let lexed = lex(text, FileId(0));
     let text = lexed.tokens.iter().take_while(|t| t.start < offset).last()?;

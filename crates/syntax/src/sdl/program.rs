@@ -7,9 +7,9 @@ use moldloft_diag::{Diagnostic, FileId, Span};
 use std::ops::Index;
 use std::sync::Arc;
 
-/// A parsed program: its text, its tables of nodes, and the numbers that stand in it.
+/// A parsed program: its text, its tables of nodes, and its numbers.
 ///
-/// It is complete even when the text had errors: what could not be understood is an `Error` node.
+/// It is complete even if the text has errors, which are `Error` nodes.
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(crate) text: Arc<str>,
@@ -58,7 +58,7 @@ impl Program {
         &self.literals
     }
 
-    /// The name a symbol stands for.
+    /// The name of a symbol.
     pub fn name(&self, symbol: Symbol) -> &str {
         self.interner.name(symbol)
     }
@@ -101,7 +101,7 @@ impl Program {
         expr
     }
 
-    /// Where the name of a member stands (the last part of a [`ExprKind::Member`]).
+    /// Position of a member's name (the last part of a [`ExprKind::Member`]).
     pub fn member_span(&self, member: ExprId) -> Span {
         let expr = &self[member];
         match expr.kind {
@@ -158,12 +158,12 @@ impl Program {
         Ok(())
     }
 
-    /// Whether a number was changed since the text was parsed.
+    /// True if a number was changed since the text was parsed.
     pub fn is_edited(&self) -> bool {
         !self.edited.is_empty()
     }
 
-    /// What must be replaced in [`Program::text`] to say the changed numbers, in the order of the text.
+    /// Replacements in [`Program::text`] for the changed numbers, in the order of the text.
     pub fn edits(&self) -> Vec<(Span, String)> {
         let mut ids = self.edited.clone();
         ids.sort_unstable();

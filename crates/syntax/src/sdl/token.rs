@@ -2,7 +2,8 @@
 
 use super::interner::{Interner, Symbol};
 
-/// What a token is. Words that are reserved only in places (`param`, `in`, `assert`, `field`, `set`, `block`, `record`) are `Ident`.
+/// Kind of a token. Contextual keywords (`param`, `in`, `assert`, `field`, `set`, `block`,
+/// `record`) are `Ident`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     // Words: `Ident`, then the reserved ones in the order of `RESERVED`.
@@ -103,11 +104,11 @@ pub(crate) const RESERVED: [(&str, Kind); 28] = [
     ("print", Print),
 ];
 
-/// Words that are reserved only where they can stand; their symbols follow those of [`RESERVED`].
+/// Contextual keywords; their symbols follow those of [`RESERVED`].
 const CONTEXTUAL: [&str; 12] =
     ["param", "in", "assert", "field", "set", "block", "record", "x", "y", "z", "d1", "d2"];
 
-/// The words of the language: reserved ones, and those that begin statements or stand between their parts.
+/// The words of the language: reserved ones, and contextual keywords of statements.
 pub fn keywords() -> impl Iterator<Item = &'static str> {
     let components = CONTEXTUAL.len() - 5;
     RESERVED.iter().map(|(word, _)| *word).chain(CONTEXTUAL[..components].iter().copied())
@@ -119,7 +120,7 @@ pub fn declaring_words() -> impl Iterator<Item = &'static str> {
     types.chain(["param", "field", "set", "block", "record"])
 }
 
-/// Whether the word has a meaning of its own at some places only.
+/// True for a contextual keyword.
 pub fn is_contextual(word: &str) -> bool {
     CONTEXTUAL[..CONTEXTUAL.len() - 5].contains(&word)
 }
@@ -132,7 +133,7 @@ pub(crate) const SET: Symbol = Symbol(32);
 pub(crate) const BLOCK: Symbol = Symbol(33);
 pub(crate) const RECORD: Symbol = Symbol(34);
 
-/// Whether the name is one of the component suffixes `x y z d1 d2`.
+/// True for one of the component suffixes `x y z d1 d2`.
 pub(crate) fn is_component(symbol: Symbol) -> bool {
     (35..=39).contains(&symbol.0)
 }
@@ -152,7 +153,7 @@ pub(crate) fn interner() -> Interner {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Token {
     pub kind: Kind,
-    /// Whether a line end stands between the token before and this one.
+    /// True if there is a line end between the previous token and this one.
     pub new_line: bool,
     pub start: u32,
     pub end: u32,

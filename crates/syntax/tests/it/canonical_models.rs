@@ -1,4 +1,4 @@
-//! Canonical text of model files is its own canonical text, whatever blanks and line ends stand where.
+//! The canonical text of model files is a fixed point, for any blanks and line ends.
 
 use moldloft_diag::FileId;
 use moldloft_syntax::model_file;

@@ -59,7 +59,7 @@ fn read(path: &Path) -> (String, Vec<Case>) {
     (head, cases)
 }
 
-/// What the parser says of a case: trees and faults, a line each.
+/// The parser's result for a case: trees and errors, one per line.
 fn run(case: &Case) -> (Vec<String>, Vec<String>) {
     let mut sources = Sources::new();
     let file = sources.add(case.name.as_str(), case.text.as_str());

@@ -46,7 +46,7 @@ impl Grammar {
         run.rule("program", 0).contains(&tokens.len())
     }
 
-    /// The tokens as class and text; `None` if there is something that is none.
+    /// The tokens as class and text; `None` if there is an invalid one.
     fn tokens(&self, text: &str) -> Option<Vec<(&'static str, String)>> {
         let mut tokens: Vec<(&'static str, String)> = Vec::new();
         let mut at = 0;
@@ -122,7 +122,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Where the rule can end that starts at the token `at`.
+    /// Possible ends of the rule that starts at the token `at`.
     fn rule(&mut self, name: &str, at: usize) -> BTreeSet<usize> {
         let key = (name.to_owned(), at);
         if let Some(ends) = self.memo.get(&key) {

@@ -1,4 +1,4 @@
-//! Damaged texts: whatever comes, the parsers neither panic nor hang, and what they accept they print faithfully.
+//! Damaged texts: the parsers neither panic nor hang, and print accepted texts faithfully.
 //!
 //! Two per cent of a long run by default; all of it with `MOLDLOFT_SOAK=1`.
 

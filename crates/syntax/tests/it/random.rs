@@ -2,7 +2,7 @@
 use moldloft_testing::Random;
 use std::fmt::Write;
 
-/// How many rounds to run: two per cent of a long run, or all of it with `MOLDLOFT_SOAK=1`.
+/// Number of rounds: two per cent of a long run, or all of it with `MOLDLOFT_SOAK=1`.
 pub fn rounds(long: usize) -> usize {
     moldloft_testing::rounds(long / 50, long)
 }
@@ -29,7 +29,7 @@ impl RandomText {
         if self.below(2) == 0 { whole } else { whole * 0.1 * scale }
     }
 
-    /// Some blanks, a line break or a comment: whatever may stand between tokens.
+    /// Some blanks, a line break or a comment: anything allowed between tokens.
     fn gap(&mut self, out: &mut String) {
         let gap = match self.below(40) {
             0..22 => " ",

@@ -8,10 +8,10 @@
 //! S = (F - H) | (B & H) | (F & B)
 //! ```
 //!
-//! The last term changes no point of the set, but keeps the plane from showing inside it: a point of
-//! the plane with solid on both sides is strictly inside F & B. So the function is zero on the
-//! surface of the body and nowhere else. Where one of F, B contains the other, each is needed once:
-//! `F | (B & H)` or `(F - H) | B`, which keeps terraces and prisms as long as their list of faces.
+//! The last term does not change the set, but hides the plane inside it: a point of the plane with
+//! solid on both sides is strictly inside F & B. So the function is zero on the surface of the body
+//! only. If one of F, B contains the other, each is needed once: `F | (B & H)` or `(F - H) | B`, so
+//! that terraces and prisms keep short formulas.
 //!
 //! (Divisions by faces: Fuchs, Kedem, Naylor 1980; the consensus term: Quine 1955.)
 
@@ -29,11 +29,11 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use tree::{BspTree, Containment, ConvexPiece, Divider, SideSurface, Tangled};
 
-/// How many cells a division may have, and primitives its set.
+/// Maximum number of cells of a division, and of primitives of its set.
 const MOST: usize = 100_000;
 /// Number of cells sampled to decide whether one side contains the other.
 const LOOKS: usize = 4_000;
-/// How many in all: what is left undecided then makes the set longer, and stays right.
+/// Maximum number in total: undecided containments lengthen the formula, but do not change the set.
 const ALL_LOOKS: usize = 30_000;
 /// Points nearer to a plane than this part of the body's diagonal are on it.
 const FLAT: f64 = 1e-9;
@@ -45,7 +45,7 @@ pub struct Sides<'a, T> {
     pub points: &'a [Vec3<T>],
     /// The triangles, counter-clockwise from outside; those of round sides are chords of these.
     pub triangles: &'a [[u32; 3]],
-    /// The number of each triangle's side; none: triangles of one plane make a side.
+    /// Number of each triangle's side; `None`: coplanar triangles form a side.
     pub sides: Option<&'a [u32]>,
     /// The round ones among them.
     pub rounds: &'a [Round<T>],
@@ -74,7 +74,7 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
     let (flats, mut pieces) = flats(body, &plain, epsilon)?;
     let mut planes: Vec<HessePlane> = flats.iter().map(|f| f.level).collect();
     for (k, round) in rounds.iter().enumerate() {
-        // Faces reach to the corners that an arc cuts off: what stands there counts as theirs too.
+        // Faces extend to the corners that an arc cuts off: their points belong to the faces too.
         for end in round.ends() {
             let on = |l: &HessePlane| end.iter().all(|p| l.at(*p).abs() <= 10.0 * epsilon);
             for n in 0..flats.len() {
@@ -91,7 +91,7 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
         let angle = |t: &[u32; 3]| seen(t.map(|v| plain[v as usize] - p));
         body.triangles.iter().map(angle).sum::<f64>()
     };
-    // Of a body turned inside out the solid is around it, as for the distance from its triangles.
+    // For an inverted body the solid is around it, as for the distance from its triangles.
     let origin = (bounds.low + bounds.high) * 0.5;
     let part = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| plain[v as usize] - origin);
@@ -168,7 +168,7 @@ fn flats<T: Real>(
     let corners = |t: &[u32; 3]| t.map(|v| plain[v as usize]);
     let level = |t: &[u32; 3]| {
         let [a, b, c] = corners(t);
-        // Slivers have no plane of their own: they lie between others.
+        // Slivers have no plane of their own.
         let normal = (b - a).cross(c - a);
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
         if normal.norm() <= epsilon * longest { None } else { HessePlane::through(normal, a) }
@@ -241,7 +241,7 @@ fn mean_plane<T: Real>(body: &Sides<'_, T>, triangles: &[usize]) -> (Vec3<T>, Ve
     (normal, if area > 0.0 { centre / T::from(area) } else { centre })
 }
 
-/// Whether the half-spaces of the outermost faces bound a part of space.
+/// True if the half-spaces of the outermost faces bound a part of space.
 fn bounded(planes: &[HessePlane], pieces: &[ConvexPiece], space: &Polytope, epsilon: f64) -> bool {
     let mut hull = Some(space.clone());
     for level in planes {
@@ -257,7 +257,7 @@ fn bounded(planes: &[HessePlane], pieces: &[ConvexPiece], space: &Polytope, epsi
     })
 }
 
-/// What a division is put together from.
+/// Data from which the set of a division is built.
 struct DivisionBuilder<'a, T: Real> {
     half_spaces: Vec<Primitive<T>>,
     rounds: Vec<Set<T>>,
@@ -266,12 +266,12 @@ struct DivisionBuilder<'a, T: Real> {
     /// The space in which one side may be found to contain the other; only for bodies whose outermost
     /// faces bound it.
     space: Option<Polytope>,
-    /// How many cells may still be looked at.
+    /// Number of cells that may still be examined.
     looks: Cell<usize>,
 }
 
 impl<T: Real> DivisionBuilder<'_, T> {
-    /// The set of a division and how many primitives it names.
+    /// The set of a division, and its number of primitives.
     fn set(&self, tree: &BspTree) -> Result<(Set<T>, usize), FieldError> {
         let (plane, parts) = match tree {
             BspTree::Air => return Ok((Set::nothing(), 0)),

@@ -26,7 +26,7 @@ impl HessePlane {
         Self { normal: -self.normal, offset: -self.offset }
     }
 
-    /// Where points lie: the least and the greatest distance.
+    /// Least and greatest distance of points.
     pub fn range<'a>(&self, points: impl Iterator<Item = &'a Vec3>) -> [f64; 2] {
         points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
             let d = self.at(*p);
@@ -39,7 +39,7 @@ impl HessePlane {
 #[derive(Clone, Debug)]
 pub(super) struct Polytope {
     pub faces: Vec<Vec<Vec3>>,
-    /// Whether it is a body: cuts of bodies are closed by a face, those of polygons are not.
+    /// True for a body, whose cuts are closed by a face; false for a polygon.
     pub body: bool,
 }
 
@@ -81,7 +81,7 @@ impl Polytope {
         self.points().fold(Vec3::zero(), |s: Vec3, p| s + *p) / n
     }
 
-    /// What lies in front of a plane by more than `epsilon`: nothing when no corner does.
+    /// The part in front of a plane by more than `epsilon`; `None` if no corner is.
     pub fn cut(&self, level: &HessePlane, epsilon: f64) -> Option<Self> {
         let [low, high] = level.range(self.points());
         if high <= epsilon {

@@ -13,7 +13,7 @@ pub enum RoundProfile<T> {
     Conic {
         /// Centre.
         centre: Vec3<T>,
-        /// From the centre to the start.
+        /// Vector from the centre to the start.
         a: Vec3<T>,
         /// Conjugate to `a`.
         b: Vec3<T>,
@@ -24,7 +24,7 @@ pub enum RoundProfile<T> {
     Parabola([Vec3<T>; 3]),
 }
 
-/// A round side: from a profile straight to a copy of it that is shifted, and smaller or larger.
+/// A round side: ruled between a profile and a shifted, scaled copy of it.
 ///
 /// The profile runs so that its velocity x `shift` points out of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Round<T> {
     pub side: u32,
     /// The near end.
     pub profile: RoundProfile<T>,
-    /// From the near end to the far one: of the centre, or of a parabola's start.
+    /// Vector from the near end to the far one: of the centre, or of a parabola's start.
     pub shift: Vec3<T>,
     /// The size of the far end: 1 for cylinders, 0 for a cone with its apex there.
     pub scale: T,
@@ -73,7 +73,7 @@ impl<T: Real> Round<T> {
         }
     }
 
-    /// What lies at the far end where `p` lies at the near one.
+    /// The point at the far end opposite to `p` at the near one.
     fn far(&self, p: Vec3) -> Vec3 {
         let origin = self.origin().re();
         origin + self.shift.re() + (p - origin) * self.scale.re()
@@ -142,13 +142,13 @@ pub(super) struct Rounded {
     /// Numbers of the sides in the list.
     parts: Vec<usize>,
     plain: Vec<Round<f64>>,
-    /// Whether the solid is inside.
+    /// True if the solid is inside.
     convex: bool,
     full: bool,
 }
 
 impl Rounded {
-    /// All of them; those of one surface that together turn once round it are one.
+    /// All of them; those of one surface with a full turn in total are merged.
     ///
     /// # Errors
     /// Degenerate ones.
@@ -245,7 +245,7 @@ impl Rounded {
             set = set & Set::new(&nappe);
         }
         if !self.full {
-            // Beyond the chord, away from the arc, the solid goes on.
+            // Beyond the chord, away from the arc, the solid continues.
             let plain = &self.plain[0];
             let (start, end) = (plain.at(0.0), plain.at(1.0));
             let far = |p: Vec3| plain.far(p) - p;

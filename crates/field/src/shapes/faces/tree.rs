@@ -2,7 +2,7 @@
 
 use super::polytope::{HessePlane, Polytope};
 
-/// What a piece of a body's surface lies on: a number of a plane or of a round side.
+/// Surface of a piece of a body's boundary: the number of a plane or of a round side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SideSurface {
     /// A plane.
@@ -41,17 +41,17 @@ pub(super) enum Tangled {
     Cells,
 }
 
-/// What a division is made from.
+/// Input of a division.
 pub(super) struct Divider<'a> {
     /// The planes: those of flat sides first, then planes beside round ones that may part these.
     pub planes: &'a [HessePlane],
-    /// How many of them are of flat sides.
+    /// Number of planes that belong to flat sides.
     pub flat: usize,
-    /// Whether a point off the surface is inside.
+    /// True for a point off the surface that is inside.
     pub inside: &'a dyn Fn(moldloft_num::Vec3) -> bool,
     /// Distance below which a point is on a plane.
     pub epsilon: f64,
-    /// How many cells are allowed.
+    /// Maximum number of cells.
     pub cells: usize,
 }
 
@@ -90,7 +90,7 @@ impl Divider<'_> {
             (Some(front), Some(behind)) => {
                 BspTree::Split { plane, parts: Box::new([front, behind]) }
             }
-            // The plane bounds the cell and its pieces lie on the boundary: the sides differ.
+            // The plane bounds the cell, and its pieces are on the boundary: the sides differ.
             (Some(front), None) => BspTree::Split { plane, parts: Box::new([front, BspTree::Air]) },
             (None, Some(behind)) => {
                 BspTree::Split { plane, parts: Box::new([BspTree::Air, behind]) }
@@ -149,8 +149,8 @@ impl Divider<'_> {
     }
 }
 
-/// Whether the set of one division contains that of another within a cell; `false` also when `steps`
-/// do not suffice to tell.
+/// Tests whether the set of one division contains that of another within a cell; `false` also if
+/// `steps` do not suffice.
 pub(super) struct Containment<'a> {
     pub planes: &'a [HessePlane],
     pub epsilon: f64,
@@ -158,7 +158,7 @@ pub(super) struct Containment<'a> {
 }
 
 impl Containment<'_> {
-    /// Whether `inner` lies within `outer`.
+    /// True if `inner` is contained in `outer`.
     pub fn holds(&mut self, inner: &BspTree, outer: &BspTree, cell: &Polytope) -> bool {
         if self.steps == 0 {
             return false;

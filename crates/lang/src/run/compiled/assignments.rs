@@ -24,7 +24,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         };
         let start = self.here()?;
         let origin = self.origin(item.name.span, ty)?;
-        // What the initial value reads is what the name meant before.
+        // The initial value refers to the previous meaning of the name.
         let fault = item.name.span;
         let mut sure = true;
         self.range(start, fault, fault, Some((what, origin)), |this| {

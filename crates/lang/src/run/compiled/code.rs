@@ -1,4 +1,4 @@
-//! The code of a region: operations on registers, and what is known of each place of it.
+//! Code of a region: operations on registers, and their source positions.
 
 use crate::functions::elementary::Elementary;
 use crate::source::module::{Module, Name, RoutineAt};
@@ -7,7 +7,7 @@ use moldloft_num::Real;
 use moldloft_syntax::sdl::{ExprId, StmtId, Symbol, Type};
 use std::sync::Arc;
 
-/// Which of two numbers is the greater, as conditions ask.
+/// Order relation of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Relation {
     Lt,
@@ -89,7 +89,7 @@ pub(super) enum ScalarOp {
         to: u16,
         a: u16,
     },
-    /// A power with a whole exponent that stands in the text.
+    /// A power with a literal integer exponent.
     PowerWhole {
         to: u16,
         a: u16,
@@ -221,12 +221,12 @@ pub(super) enum ScalarOp {
         array: u16,
         k: u16,
     },
-    /// Into a whole number; what it does not hold is a fault.
+    /// Conversion to an integer; a fault for values that an int cannot represent.
     Whole {
         to: u16,
         a: u16,
     },
-    /// Into a variable whose type depends on what was executed.
+    /// Assignment to a variable whose type depends on the executed path.
     Assign {
         variable: u16,
         to: u16,
@@ -279,7 +279,7 @@ pub(super) enum ScalarOp {
     ForBegin {
         at: u16,
     },
-    /// The number of the turn is kept when something may ask for it.
+    /// The number of the iteration is kept if it may be read.
     ForTest {
         at: u16,
         variable: u16,
@@ -312,7 +312,7 @@ pub(super) enum ScalarOp {
     WalkEnd {
         array: u16,
     },
-    /// The number of a turn's name, where the variable may have none.
+    /// Number for names of the iteration, if the variable may have none.
     Label {
         at: u16,
         variable: u16,
@@ -326,7 +326,7 @@ pub(super) enum ScalarOp {
         to: u16,
         site: u16,
     },
-    /// A routine is called whose code stands here.
+    /// Inlined call.
     Called,
     Return {
         a: u16,
@@ -358,15 +358,15 @@ pub(super) struct CodeVariable {
     pub name: Name,
     /// Its register, that of the first component of a vector.
     pub register: u16,
-    /// The type; `None` when it is a number's that depends on what was executed.
+    /// The type; `None` for a number whose type depends on the executed path.
     pub ty: Option<Type>,
-    /// What was there when the region began.
+    /// Binding at the start of the region.
     pub captured: Option<Captured>,
     /// True when statements of the region declare it.
     pub declared: bool,
 }
 
-/// What a name was when a region was compiled, and must be when it is entered.
+/// Binding of a name at compilation, which is required at entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Captured {
     /// A number or a vector.
@@ -384,7 +384,7 @@ pub(super) enum Captured {
 /// An array of numbers or vectors of a unit.
 #[derive(Clone, Debug)]
 pub(super) struct CodeArray {
-    /// `None` for what a `foreach` walks through.
+    /// `None` for the sequence of a `foreach`.
     pub name: Option<Name>,
     /// An farray, a curve or a surface.
     pub ty: Type,
@@ -392,14 +392,14 @@ pub(super) struct CodeArray {
     pub declared: bool,
 }
 
-/// A loop under way at a place of the code: the register of its number, behind it that of its turn.
+/// An active loop: the register of its number, followed by that of its iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ActiveLoop {
     pub at: u16,
     pub labelled: bool,
 }
 
-/// A call, or what the interpreter does.
+/// A call, or an operation of the interpreter.
 #[derive(Clone, Debug)]
 pub(super) struct CodeSite {
     pub stmt: StmtId,
@@ -428,20 +428,20 @@ pub(super) enum CodeArgument {
     OfFile,
 }
 
-/// What a fault at a place of the code is.
+/// Source of a fault at a position of the code.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CodeNote {
     /// The result is not finite.
     Finite(&'static str, Span),
-    /// The interpreter, asked for the expression, says what is wrong.
+    /// The interpreter evaluates the expression, which gives the error.
     Expression(ExprId),
-    /// The same of what is assigned to.
+    /// The same for the target of an assignment.
     Target(ExprId),
     /// An int does not hold the value.
     Convert(Span),
-    /// The interpreter, asked to declare that variable of the statement, says what is wrong.
+    /// The interpreter declares the variable of the statement, which gives the error.
     Declaration(StmtId, u32),
-    /// The argument is not what the routine asks for there.
+    /// The argument does not fit the parameter.
     Argument(Span, Span),
     /// The name may mean nothing here.
     Name(Symbol, Span),
@@ -453,13 +453,13 @@ pub(super) struct CodeRange {
     pub start: u16,
     pub end: u16,
     pub span: Span,
-    /// Where faults go that have no place.
+    /// Position of faults without their own.
     pub fault: Span,
     /// The variable or array that is poisoned by a fault, and its declaration.
     pub poison: Option<(Poisonable, u16)>,
 }
 
-/// What a declaration that fails leaves without meaning.
+/// Variables that a failed declaration leaves undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Poisonable {
     Variable(u16),
@@ -478,17 +478,17 @@ pub(super) struct CodeUnit<T: Real> {
     pub formals: Vec<Option<Poisonable>>,
     /// The formal arguments that are variables of the file: their names, declarations, and whose they are.
     pub references: Vec<(Name, Span, Name)>,
-    /// What the registers hold when a call begins: constants.
+    /// Registers at the start of a call: constants.
     pub template: Vec<T>,
     pub sites: Vec<CodeSite>,
     pub notes: Vec<(u16, CodeNote)>,
     pub ranges: Vec<CodeRange>,
-    /// The code of subscripts and dimensions, and what is asked again after a fault in it: which of several faults
-    /// comes first is the interpreter's to say.
+    /// Code of subscripts and dimensions, with the expression to evaluate again after a fault in
+    /// it: the interpreter determines the first of several faults.
     pub inner: Vec<(u16, u16, CodeNote)>,
-    /// Where variables are declared, and as what.
+    /// Positions of declarations, with types.
     pub origins: Vec<(Span, Type)>,
-    /// The statements, each with its module: code of other routines may stand in that of a unit.
+    /// The statements, each with its module: a unit may contain inlined code of other routines.
     pub statements: Vec<(usize, StmtId)>,
     /// The marks of the variables when a call begins.
     pub marks: Vec<u32>,
@@ -527,13 +527,13 @@ impl<T: Real> CodeUnit<T> {
         *inner.expect("all code belongs to a statement")
     }
 
-    /// What a declaration that fails at a place leaves without meaning.
+    /// The variable that a failed declaration at a position leaves undefined.
     pub fn poison(&self, at: usize) -> Option<(Poisonable, u16)> {
         let holds = |range: &&CodeRange| (range.start as usize..range.end as usize).contains(&at);
         self.ranges.iter().filter(holds).find_map(|range| range.poison)
     }
 
-    /// What a fault at a place is.
+    /// Source of a fault at a position.
     pub fn note(&self, at: usize) -> Option<CodeNote> {
         let holds = |(start, end, _): &&(u16, u16, CodeNote)| {
             (*start as usize..*end as usize).contains(&at)
@@ -545,7 +545,7 @@ impl<T: Real> CodeUnit<T> {
     }
 }
 
-/// What a region begins with.
+/// Start of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum RegionStart {
     Loop(StmtId),
@@ -558,14 +558,14 @@ pub(super) struct CodeRegion<T: Real> {
     pub units: Vec<CodeUnit<T>>,
     /// The unit that is executed: the first itself at file level, else the second.
     pub entry: usize,
-    /// Names and what they must mean: in the innermost frame, or in the file.
+    /// Names with their required bindings: in the innermost frame, or in the file.
     pub guards: Vec<(Name, NamePlace, Captured)>,
     pub functions: Vec<(&'static str, Elementary<T>)>,
-    /// What was loaded when it was compiled.
+    /// Loaded modules at compilation.
     pub generation: Generation,
 }
 
-/// Where a name is looked for.
+/// Scope in which a name is looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamePlace {
     Frame,

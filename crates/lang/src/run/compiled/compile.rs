@@ -1,7 +1,8 @@
 //! Statements to code.
 //!
-//! What code cannot say is left to the interpreter, statement by statement. A name that such a statement declares is
-//! the interpreter's alone; when that shows after the name was used, the region is compiled once more.
+//! Unsupported statements are left to the interpreter. A name declared by such a statement belongs
+//! to the interpreter alone; if that is found after a use of the name, the region is compiled
+//! again.
 
 use super::code::{
     ActiveLoop, Captured, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit, Generation,
@@ -35,7 +36,7 @@ pub(super) enum Unfit {
     Unit,
 }
 
-/// What is sure of a variable at a place of the text.
+/// Known state of a variable at a position of the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sure {
     /// It was declared.
@@ -89,7 +90,7 @@ pub(super) struct RegionCompiler<'a, T: Scalar> {
     closed: Vec<Vec<usize>>,
 }
 
-/// The code of a loop or a routine's body that stands in module `module`; `None` when the interpreter does it as well.
+/// The code of a loop or a routine's body in `module`; `None` if compilation has no advantage.
 pub(super) fn compile<T: Scalar>(
     modules: &Modules,
     scope: &Scope<T>,
@@ -258,7 +259,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let m = self.units[unit].m.clone();
         let routine = m.program[at.routine];
         let plain = |ty: Type| matches!(ty, Type::Int | Type::Float | Type::Vector);
-        // What becomes of a fault depends on whose routine it is.
+        // The handling of a fault depends on the kind of the routine.
         if m.library != self.units[self.entry].m.library
             || routine.result.is_some_and(|(ty, _)| !plain(ty))
         {
@@ -484,7 +485,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 code.origins.truncate(origins);
                 code.inner.truncate(inner);
                 let done = &mut self.progress[unit];
-                // Names that were met for the first time are known to be what they are.
+                // Names met for the first time keep their state.
                 sure.0.iter().enumerate().for_each(|(k, sure)| done.variables[k] = *sure);
                 sure.1.iter().enumerate().for_each(|(k, sure)| done.arrays[k] = *sure);
                 (done.compiled, done.left) = counts;
@@ -669,7 +670,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         at
     }
 
-    /// The body of a loop and what follows each turn; the loop stays open for the jumps out of it.
+    /// The body of a loop and the code after each iteration; the loop stays open for jumps out of
+    /// it.
     pub(super) fn looped(
         &mut self,
         at: u16,
@@ -712,7 +714,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         jumps.iter().try_for_each(|&jump| self.land(jump))
     }
 
-    /// What a loop's statements declare is not sure at the head of the loop.
+    /// Declarations in a loop are not certain at its head.
     pub(super) fn forget(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
         let m = self.units[self.unit].m.clone();
         let mut all = Vec::new();
@@ -731,7 +733,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         (progress.variables.clone(), progress.arrays.clone())
     }
 
-    /// Back to what was sure; what was met since keeps what is known of it.
+    /// Restores an earlier state; names met since keep theirs.
     pub(super) fn restore(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
         let (n, k) = (self.units[self.unit].variables.len(), self.units[self.unit].arrays.len());
         let captured: Vec<bool> = (0..n)
@@ -759,7 +761,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    /// What is sure on both ways.
+    /// State that is certain on both paths.
     fn meet(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
         let both = |a: &mut Sure, b: &Sure| {
             a.bound &= b.bound;
@@ -809,7 +811,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let op = ScalarOp::ForTest { at, variable: number, register, origin, exit: 0, kept };
         let test = self.emit(op)?;
         self.set_known(what, true, true);
-        // Its number stands behind the four of the loop.
+        // Its number follows the four registers of the loop.
         self.looped(at + 4, true, body, None, |this| {
             this.emit(ScalarOp::ForNext { at, test: test as u16 }).map(drop)
         })?;
@@ -860,7 +862,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    /// Code that goes on when the expression holds, else jumps.
+    /// Code that continues if the expression is true, and otherwise jumps.
     pub fn unless(
         &mut self,
         stmt: StmtId,

@@ -16,7 +16,8 @@ use moldloft_syntax::sdl::{
 };
 
 impl<T: Scalar> RegionCompiler<'_, T> {
-    /// The register of the value; `want`, if that is given. What was in `want` stays there until the last moment.
+    /// The register of the value; `want`, if given. `want` is overwritten only by the last
+    /// operation.
     pub fn value(&mut self, stmt: StmtId, id: ExprId, want: Option<u16>) -> Result<u16, Unfit> {
         let m = self.units[self.unit].m.clone();
         let expr = m.program[id];
@@ -228,7 +229,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.noted(op, note).map(drop)
     }
 
-    /// The register of what a name means.
+    /// The register of a name.
     pub fn name(&mut self, symbol: Symbol, span: Span) -> Result<u16, Unfit> {
         let what = self.meaning(symbol)?;
         if self.variable_type(what) == Some(Type::Vector) {
@@ -399,7 +400,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     /// The variable of the file that a returned argument names.
     ///
     /// # Errors
-    /// For what else may be passed by reference, and what may not.
+    /// For other arguments by reference, and invalid ones.
     fn root_of(&mut self, arg: ExprId, asked: Type) -> Result<Name, Unfit> {
         let m = self.units[self.unit].m.clone();
         let symbol = m.program.as_name(m.program.bare(arg)).ok_or(Unfit::Statement)?;

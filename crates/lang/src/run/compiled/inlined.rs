@@ -1,8 +1,8 @@
-//! Short functions whose code stands where they are called.
+//! Inlining of short functions.
 //!
-//! A function of numbers that does nothing but return arithmetic on its arguments needs no registers of its own. What
-//! fails in it is reported at its own place, and the statement of the caller goes without the value: a fault in its
-//! code does the same.
+//! A function of numbers that only returns arithmetic on its arguments needs no registers of its
+//! own. A fault in it is reported at its own position, and the caller's statement has no value, as
+//! with compiled code of its own.
 
 use super::code::{CodeNote, CodeRange, ScalarOp};
 use super::compile::{RegionCompiler, Unfit};
@@ -183,7 +183,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 }
 
-/// The statement that a function consists of, and what it returns.
+/// The only statement of a function, and its value.
 fn returned(of: &Module, routine: &Routine) -> Option<(StmtId, ExprId)> {
     let [only] = of.program[routine.body] else { return None };
     match of.program[only].kind {

@@ -1,4 +1,4 @@
-//! What a run keeps of its code.
+//! Cache of compiled regions in a run.
 
 use super::code::{CodeRegion, Generation, RegionStart};
 use crate::source::module::Name;

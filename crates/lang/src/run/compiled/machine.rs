@@ -19,10 +19,10 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{StmtKind, Type};
 
-/// So many steps, and the machine looks whether it may go on.
+/// Number of steps between checks of limits.
 const STEPS_BETWEEN_LOOKS: u64 = 256;
 
-/// How code goes on after something that is not an operation on registers.
+/// Continuation after an operation outside the registers.
 enum CodeOutcome<T: Scalar> {
     Next,
     Return(Option<Value<T>>),
@@ -132,8 +132,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// Executes code until something else than registers is asked for. The machine stands at the operation that asks
-    /// then.
+    /// Executes code up to an operation outside the registers, at which the machine stops.
     fn of_call(
         &self,
         region: &CodeRegion<T>,
@@ -205,7 +204,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
                 let at = $at;
                 let k = at!(at + 3).re();
-                // Not a number of turns is none.
+                // NaN as the number of iterations means zero.
                 if k <= at!(at + 1).re() {
                     let x = at!(at) + at!(at + 2) * k;
                     at!($register) = x;
@@ -256,7 +255,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 ScalarOp::MulThenAdd { to, a, b, sum, c } => {
                     finite!(to, at!(a) * at!(b));
                     let x = at!(to) + at!(c);
-                    // A sum that is not finite is told by the operation that follows.
+                    // A sum that is not finite is reported by the next operation.
                     if x.is_finite() || ieee {
                         at!(sum) = x;
                         pc += 1;
@@ -786,7 +785,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// What is wrong where the machine stands.
+    /// The fault at the machine's position.
     #[cold]
     fn fault(
         &mut self,
@@ -858,7 +857,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.faulty(region, machine, diagnostic)
     }
 
-    /// What the interpreter says of the same, all variables where it finds them.
+    /// The interpreter's diagnostic for the same fault, with all variables handed over.
     fn again(
         &mut self,
         region: &CodeRegion<T>,
@@ -869,7 +868,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         outcome.expect_err("the interpreter finds the same fault")
     }
 
-    /// Reports a fault and goes on behind its statement.
+    /// Reports a fault and continues after its statement.
     fn faulty(
         &mut self,
         region: &CodeRegion<T>,
@@ -905,7 +904,7 @@ fn type_by<T: Real>(code: &CodeUnit<T>, variable: u16, mark: u32) -> Type {
     }
 }
 
-/// What is said of a number that an int does not hold.
+/// The error for a number that an int cannot represent.
 fn no_int<T: Real>(x: T) -> Diagnostic {
     match variables::converted(Type::Int, Value::Number(x)) {
         Err(diagnostic) => diagnostic,

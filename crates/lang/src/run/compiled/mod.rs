@@ -1,16 +1,17 @@
-//! Code for what is done on numbers: loops and routines, one operation on registers after the other.
+//! Compiled code for numeric loops and routines: a sequence of operations on registers.
 //!
 //! `loop or routine -> code -> registers`
 //!
-//! A loop, or the body of a routine, is compiled when it is met, together with the routines that it calls. Names
-//! become registers; a statement that is not about numbers (whole arrays, texts, objects, files) stands in the code as
-//! one operation: the variables go to where the interpreter finds them, it executes the statement, they come back. The
-//! same happens for most faults, so that the interpreter itself says what is wrong. Code counts steps as the
-//! interpreter does, and looks for its limits and for a request to stop every few hundred steps.
+//! A loop, or the body of a routine, is compiled when it is met, together with the routines that it
+//! calls. Names become registers; a statement that is not numeric (whole arrays, texts, objects,
+//! files) is one operation of the code: the variables are handed to the interpreter, it executes
+//! the statement, and they are taken back. The same happens for most faults, so that the
+//! interpreter reports them. Code counts steps as the interpreter does, and checks its limits and
+//! cancellation every few hundred steps.
 //!
-//! Invariant: a run gives the same values, bit by bit, the same diagnostics and the same count of steps with code and
-//! without; `tests/it/scalar_code.rs` of the crate `document` compares them. What code finds when it is entered is what it was
-//! compiled for: the guards of its region say so.
+//! Invariant: a run gives the same values, bit by bit, the same diagnostics and the same number of
+//! steps with code and without; `tests/it/scalar_code.rs` of the crate `document` compares them.
+//! The guards of a region ensure at entry that bindings are those of the compilation.
 
 mod assignments;
 mod code;
@@ -127,7 +128,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         (scope.executed.len(), scope.routines.len(), self.components.len())
     }
 
-    /// True when names mean what they meant when the region was compiled.
+    /// True if names have the bindings for which the region was compiled.
     fn fits(&self, region: &CodeRegion<T>) -> bool {
         region.generation == self.generation()
             && (region.entry == 0) == self.env.scope.frame().global

@@ -1,4 +1,4 @@
-//! The names that statements declare, and what names mean where code is compiled.
+//! Declarations of statements, and bindings of names in compiled code.
 
 use super::code::{Captured, CodeArray, CodeVariable, NamePlace, Poisonable};
 use super::compile::{RegionCompiler, Unfit};
@@ -8,13 +8,13 @@ use crate::source::scope::{Binding, Scope, ScopedBinding};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, NodeList, StmtId, StmtKind, Symbol, Type};
 
-/// How a statement gives names a meaning.
+/// Kind of a declaration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Declares {
     /// A number or a vector.
     Variable(Type),
     Array(Type),
-    /// An element of what the expression means.
+    /// An element of the expression's value.
     Element(ExprId),
     /// Something that code does not hold.
     Other,
@@ -83,14 +83,14 @@ pub(super) fn declared(
 /// Storage class of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum RoomKind {
-    /// A number; of no type when that depends on what is executed.
+    /// A number; `None` if its type depends on the executed path.
     Number(Option<Type>),
     Vector,
     Array(Type),
 }
 
 impl RoomKind {
-    /// The room for what is declared in these ways; `None` when there is none for all.
+    /// The storage class for these declarations; `None` if they need different ones.
     fn of(hows: &[Declares]) -> Option<Self> {
         let (&first, rest) = hows.split_first()?;
         let alike = rest.iter().all(|how| *how == first);
@@ -106,7 +106,7 @@ impl RoomKind {
         }
     }
 
-    /// True when it is the room of what was there before as well.
+    /// True if the previous binding has the same storage class.
     fn takes(self, captured: Captured) -> bool {
         match captured {
             Captured::Variable(Type::Vector) => self == RoomKind::Vector,
@@ -117,7 +117,7 @@ impl RoomKind {
     }
 }
 
-/// What a name means in code.
+/// Meaning of a name in code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meaning {
     /// A variable or array of the call under way.
@@ -127,7 +127,7 @@ pub(super) enum Meaning {
     Constant(f64),
 }
 
-/// What is bound, as far as code can hold it.
+/// A binding, if code supports it.
 pub(super) fn held<T: Scalar>(scope: &Scope<T>, bound: &ScopedBinding<T>) -> Option<Captured> {
     match &bound.what {
         Binding::Variable { ty, value, .. } => match (ty, value) {
@@ -161,7 +161,7 @@ pub(super) fn element_type(ty: Type) -> Type {
 }
 
 impl<T: Scalar> RegionCompiler<'_, T> {
-    /// Makes room for the variables that statements of a unit declare.
+    /// Reserves registers for the variables that statements of a unit declare.
     pub fn reserve(&mut self, unit: usize, list: &[StmtId]) -> Result<(), Unfit> {
         let m = self.units[unit].m.clone();
         let mut all: Vec<(Name, Declares)> = Vec::new();
@@ -198,7 +198,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 self.hide(unit, name);
                 continue;
             };
-            // What it is before the region begins.
+            // Binding before the region begins.
             let before = match unit == self.entry {
                 true => self.bound_here(name),
                 false => None,
@@ -237,7 +237,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(())
     }
 
-    /// What a `foreach` declares follows from what it walks through.
+    /// The declaration of a `foreach` depends on its sequence.
     fn resolved(&self, unit: usize, how: Declares, all: &[(Name, Declares)]) -> Declares {
         let Declares::Element(list) = how else { return how };
         let m = &self.units[unit].m;
@@ -270,14 +270,14 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         array.map_or(Declares::Other, |ty| Declares::Variable(element_type(ty)))
     }
 
-    /// Notes that a formal argument is declared again in its routine: code does not hold what changes its type.
+    /// Excludes a formal argument that is declared again in its routine, since its type may change.
     fn redeclared(&mut self, unit: usize, name: Name) {
         if self.names[unit].contains_key(&name) || self.references[unit].contains_key(&name) {
             self.hide(unit, name);
         }
     }
 
-    /// What a name is in the frame that the region begins in.
+    /// The binding of a name in the frame of the region's start.
     fn bound_here(&self, name: Name) -> Option<&ScopedBinding<T>> {
         match self.entry {
             0 => self.scope.global(name),
@@ -329,7 +329,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    /// What a name means in the unit under way.
+    /// The meaning of a name in the current unit.
     pub fn meaning(&mut self, symbol: Symbol) -> Result<Meaning, Unfit> {
         let unit = self.unit;
         let m = self.units[unit].m.clone();

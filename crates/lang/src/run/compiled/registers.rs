@@ -38,7 +38,7 @@ pub(super) struct ArrayRegister<T> {
 pub(super) const UNDECLARED: u32 = 0;
 pub(super) const AS_BEFORE: u32 = 1;
 
-/// The mark of what that declaration made.
+/// Mark of a variable made by that declaration.
 #[inline(always)]
 pub(super) fn declared_by(origin: u16) -> u32 {
     2 + 2 * u32::from(origin)
@@ -153,7 +153,7 @@ impl<T: Real> ArrayRegister<T> {
         }
     }
 
-    /// The value that it is, and what is known of it; the register holds nothing afterwards.
+    /// The value with its initialised elements; the register is empty afterwards.
     fn give(&mut self) -> (Value<T>, Known) {
         let value = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
             ArrayItems::Owned(items) => {
@@ -196,7 +196,7 @@ pub(super) struct WaitingCall {
     pub registers: usize,
     pub marks: usize,
     pub arrays: usize,
-    /// Where the value of the call that it made goes, and its place.
+    /// Register for the value of the call, and its position.
     pub to: u16,
     pub site: u16,
     pub errors: usize,
@@ -211,7 +211,7 @@ pub(super) struct RegisterMachine<T> {
     pub waiting: Vec<WaitingCall>,
     pub unit: usize,
     pub pc: usize,
-    /// Where the registers, marks and arrays of the call under way begin.
+    /// Start of the current call's registers, marks and arrays.
     pub first: usize,
     pub first_mark: usize,
     pub first_array: usize,
@@ -257,7 +257,7 @@ impl<T: Scalar> RegisterMachine<T> {
         machine
     }
 
-    /// The call that waited goes on; it stands where it made the other.
+    /// Returns to a waiting call, at its call instruction.
     pub fn back_to(&mut self, call: WaitingCall) {
         self.arrays.truncate(self.first_array.max(call.arrays));
         self.unit = call.unit;
@@ -293,7 +293,7 @@ impl<T: Scalar> RegisterMachine<T> {
         region.units[self.unit].result
     }
 
-    /// Takes its meaning from what the declaration under way, which fails, was to declare.
+    /// Makes the variable of the failed current declaration undefined.
     pub fn poison(&mut self, region: &CodeRegion<T>) {
         let Some((what, origin)) = region.units[self.unit].poison(self.pc) else { return };
         match what {
@@ -307,7 +307,7 @@ impl<T: Scalar> RegisterMachine<T> {
         }
     }
 
-    /// Leaves the calls under way: what is left is the region's own part.
+    /// Leaves the current calls; the region's own part remains.
     pub fn unwind(&mut self) {
         if let Some(&call) = self.waiting.first() {
             self.back_to(call);
@@ -315,7 +315,8 @@ impl<T: Scalar> RegisterMachine<T> {
         }
     }
 
-    /// Where the part of the call number `at` begins, 0 being the region's own: unit, registers, marks, arrays.
+    /// Start of the part of call number `at`, 0 for the region itself: unit, registers, marks,
+    /// arrays.
     fn part(&self, at: usize) -> [usize; 4] {
         match self.waiting.get(at) {
             Some(call) => [call.unit, call.registers, call.marks, call.arrays],
@@ -342,7 +343,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The same, or what it stands for, when it was passed by reference.
+    /// The binding, or its target if it was passed by reference.
     fn root_in(&mut self, frame: VariableFrame, name: Name) -> Option<&mut ScopedBinding<T>> {
         match self.bound_in(frame, name)?.what {
             Binding::Reference(place) => self.env.scope.root_mut(&place),
@@ -469,7 +470,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// Where the parts that the interpreter can see stand: the file's, the region's own, the call's under way.
+    /// Starts of the parts visible to the interpreter: the file's, the region's own, the current
+    /// call's.
     fn visible(
         &self,
         region: &CodeRegion<T>,
@@ -503,7 +505,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .collect()
     }
 
-    /// Puts all variables to where the interpreter finds them; a frame is made for each call that has none.
+    /// Hands all variables to the interpreter; frames are made for calls without one.
     pub(super) fn hand_over(&mut self, region: &CodeRegion<T>, machine: &mut RegisterMachine<T>) {
         let depth = machine.waiting.len();
         for at in self.env.scope.frames.len() - machine.frames + 1..=depth {
@@ -558,7 +560,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         done
     }
 
-    /// What a name is bound to, as far as code can hold it.
+    /// The binding of a name, if code supports it.
     pub(super) fn guarded(&self, name: Name, of_file: bool) -> Option<Captured> {
         let bound = match of_file {
             true => self.env.scope.global(name),

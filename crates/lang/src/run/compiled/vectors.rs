@@ -427,8 +427,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(())
     }
 
-    /// An assignment to a vector variable, to an element that is one, or to a component; false when the target is
-    /// none of them.
+    /// An assignment to a vector variable, to a vector element, or to a component; false for other
+    /// targets.
     pub fn assigned_vector(
         &mut self,
         id: StmtId,
@@ -532,7 +532,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    /// What an assignment puts into its target.
+    /// The new value of an assignment's target.
     fn new_value(
         &mut self,
         id: StmtId,
@@ -547,7 +547,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.combined(op, a, b, spans[0].to(spans[1]))
     }
 
-    /// True when what a name was captured as is a parameter, which nothing assigns.
+    /// True if the captured name is a parameter, which cannot be assigned.
     pub fn is_param(&self, what: Meaning) -> bool {
         let captured = match what {
             Meaning::Own(Poisonable::Variable(k)) => {

@@ -1,4 +1,4 @@
-//! How often each operand winds around the space between regions.
+//! Winding numbers of the operands in the cells between regions.
 
 use super::plane::{PlaneCoordinates, facet_winding};
 use super::pool::Pool;
@@ -86,7 +86,7 @@ pub(super) fn windings(
         .collect())
 }
 
-/// The windings just in front of a region: what a ray from it leaves, less what it enters.
+/// The windings in front of a region: the number of exits of a ray from it, less the entries.
 fn in_front(
     pool: &Pool,
     facets: &[Facet],

@@ -1,10 +1,10 @@
 //! Bodies made valid and combined: the arrangement of oriented plane facets.
 //!
-//! Facets of one or two closed surfaces divide each other into regions; every cell of space between
-//! regions has a number of windings per operand, counted across the regions (a facet passed against
-//! its outward normal adds one). A rule on these numbers says what is solid: `a > 0 || b > 0` is the
-//! union, `a > 0` alone makes one body of a surface that crosses itself, where a hole that has left
-//! the body winds -1 and so encloses nothing.
+//! Facets of one or more closed surfaces divide each other into regions; every cell of space
+//! between regions has a winding number per operand, counted across the regions (a facet passed
+//! against its outward normal adds one). A rule on these numbers defines the solid: `a > 0 || b >
+//! 0` is the union, `a > 0` alone makes one body of a self-intersecting surface, where a hole
+//! outside the body has the winding -1 and so encloses nothing.
 //!
 //! `facets -> sheets -> segments -> split edges -> regions -> windings -> faces`
 //!
@@ -22,7 +22,7 @@ pub(super) use pool::overlapping;
 use pool::{Pool, bounds};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// The tag of an edge that no edge of the body stands for.
+/// Tag of an edge that is not on an edge of the body.
 pub const INNER: u32 = u32::MAX;
 
 /// An oriented plane polygon of an operand.
@@ -32,7 +32,7 @@ pub struct Facet {
     pub operand: usize,
     /// Its face in that body.
     pub tag: u32,
-    /// Whether that face is plane, so that parts of it may join with others of the same plane.
+    /// True if that face is plane, so that parts of it may be joined with others of the same plane.
     pub plane: bool,
     /// The outward unit normal.
     pub normal: Vec3,
@@ -66,9 +66,9 @@ fn edges_of(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
 pub struct ArrangedFace {
     /// The faces that cover it: operand and tag; the first one gives its surface.
     pub sources: Vec<(usize, u32)>,
-    /// Whether its outward side is the inside of the first source.
+    /// True if its outward side is the inside of the first source.
     pub reversed: bool,
-    /// Whether it is plane.
+    /// True if it is plane.
     pub plane: bool,
     /// The outward normal of a plane one.
     pub normal: Vec3,
@@ -92,9 +92,9 @@ pub struct Arrangement {
     pub faces: Vec<ArrangedFace>,
     /// The edges of the operands that each side is part of: operand and tag, by points in order.
     pub edges: HashMap<(u32, u32), Vec<(usize, u32)>>,
-    /// Whether facets are left out, or a place has windings other than 0 and 1.
+    /// True if facets are left out, or a cell has windings other than 0 and 1.
     pub changed: bool,
-    /// Where surfaces lie in each other; lines when they were asked for.
+    /// Coincident surfaces; also lines, if requested.
     pub shared: Vec<SurfaceCoincidence>,
 }
 
@@ -105,14 +105,15 @@ pub struct SurfaceCoincidence {
     pub points: Vec<u32>,
     /// The faces: operand and tag.
     pub sources: Vec<(usize, u32)>,
-    /// Whether it is a region.
+    /// True for a region.
     pub region: bool,
 }
 
 /// Why there is no body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ArrangeError {
-    /// Windings differ on different ways: a surface is open or lies nearly in another at this place.
+    /// Windings depend on the path: a surface is open or almost coincides with another at this
+    /// position.
     Inconsistent(Vec3),
     /// There are more pieces than can be handled.
     TooLarge,
@@ -122,7 +123,7 @@ pub enum ArrangeError {
 struct ArrangedRegion {
     sheet: usize,
     loops: regions::Loops,
-    /// By operand, how often facets cover it, signed by the side of their normal.
+    /// Number of facets that cover it, by operand, signed by the side of their normal.
     turns: cells::Turns,
     inner: Vec3,
     /// The facets that cover it.
@@ -278,8 +279,8 @@ fn shared_lines(
 
 type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
 
-/// Which facets lie in one plane and touch (by the lowest of them), and the segments in which others
-/// meet.
+/// Facets that are coplanar and touch (by the lowest of them), and the segments of intersection
+/// with others.
 fn meet(
     pool: &Pool,
     facets: &[Facet],
@@ -411,7 +412,8 @@ fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
     }
 }
 
-/// The regions of all sheets, whether facets cancel each other anywhere, and what several faces cover.
+/// The regions of all sheets, whether facets cancel anywhere, and the regions covered by several
+/// faces.
 #[allow(clippy::type_complexity)]
 fn all_regions(
     pool: &Pool,

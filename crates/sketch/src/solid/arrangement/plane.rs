@@ -34,7 +34,7 @@ impl PlaneCoordinates {
     }
 }
 
-/// How often edges run round a point, counter-clockwise positive.
+/// Winding number of edges about a point, counter-clockwise positive.
 pub(super) fn winding(edges: impl Iterator<Item = [[f64; 2]; 2]>, [x, y]: [f64; 2]) -> i32 {
     let mut turns = 0;
     for [a, b] in edges {
@@ -60,7 +60,7 @@ pub(super) fn facet_winding(pool: &Pool, facet: &Facet, frame: &PlaneCoordinates
 /// A stop on the common line of two planes: where along it, and the exact place.
 type Stop = (f64, Vec3);
 
-/// The intervals of a line in the plane of a facet that lie in it, its border included.
+/// The intervals of a line in the plane of a facet that are in it, its border included.
 fn intervals(
     pool: &Pool,
     facet: &Facet,

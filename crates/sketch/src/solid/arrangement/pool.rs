@@ -20,7 +20,7 @@ impl Pool {
         p.to_array().map(|x| (x / size).floor().clamp(-9e15, 9e15) as i64)
     }
 
-    /// The number of the point at `p`, a new one if there is none.
+    /// Number of the point at `p`, a new one if necessary.
     pub fn add(&mut self, p: Vec3) -> u32 {
         let own = self.cell(p);
         let mut best: Option<(f64, u32)> = None;
@@ -81,7 +81,7 @@ pub(in crate::solid) fn overlapping(
         let [own_low, own_high] = boxes[k];
         let kind = usize::from(mixed && k >= first);
         let passed = own_low[axis] - margin;
-        // Wide enough for rounding: what overlaps is decided below.
+        // Wide enough for rounding: the exact test follows.
         let (from, to) =
             (cell(own_low[across] - 2.0 * margin), cell(own_high[across] + 2.0 * margin));
         hits.clear();

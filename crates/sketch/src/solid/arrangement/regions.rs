@@ -95,7 +95,7 @@ fn figures(edges: &BTreeSet<(u32, u32)>) -> BTreeMap<u32, u32> {
     all.iter().enumerate().map(|(k, &v)| (v, all[sets.find(k)])).collect()
 }
 
-/// A point inside a region: half the way from the middle of its longest edge to what is opposite.
+/// A point inside a region: halfway from the middle of its longest edge to the opposite side.
 pub(super) fn inner_point(
     pool: &Pool,
     frame: &PlaneCoordinates,

@@ -5,11 +5,11 @@ use super::wire::Wireframe;
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 
-/// A candidate as it stands at an edge.
+/// A candidate at an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wing {
     pub region: usize,
-    /// Whether the counter-clockwise side (about the edge) is the side of the normal.
+    /// True if the counter-clockwise side (about the edge) is the side of the normal.
     pub forward: bool,
     angle: f64,
 }

@@ -1,9 +1,9 @@
-//! Which cells are solid.
+//! Selection of the solid cells.
 //!
-//! A drawn edge must be an edge of the solid: the cells around it are neither all solid nor all void.
-//! A cut edge must not be one: nothing, or one flat face, passes through it. Every labelling that
-//! satisfies this is an answer; they are ranked by what people rarely mean: edges with more than two
-//! faces, then edges between faces of one plane, then less volume.
+//! A drawn edge must be an edge of the solid: the cells around it are neither all solid nor all
+//! void. A cut edge must not be one: at most one flat face passes through it. Every labelling with
+//! these properties is a solution; they are ranked by features that are rarely intended: edges with
+//! more than two faces, then edges between coplanar faces, then less volume.
 
 use super::cells::CellComplex;
 use super::regions::SheetRegion;
@@ -183,7 +183,7 @@ struct LabelSearch<'a> {
 impl LabelSearch<'_> {
     /// Depth first with unit propagation, without recursion.
     fn run(&mut self) {
-        // Per decision: the cell, whether its second value was tried, what was set since.
+        // Per decision: the cell, whether its second value was tried, and the cells set since.
         let mut decisions: Vec<(usize, bool, Vec<usize>)> = Vec::new();
         let mut trail = Vec::new();
         let all: Vec<usize> = self.order.clone();
@@ -224,7 +224,7 @@ impl LabelSearch<'_> {
         }
     }
 
-    /// Sets what follows from the labels of `changed`; false at a contradiction.
+    /// Sets the labels implied by those of `changed`; false at a contradiction.
     fn propagate(&mut self, changed: &[usize], set: &mut Vec<usize>) -> bool {
         let mut queue: Vec<usize> =
             changed.iter().flat_map(|&c| self.of_cell[c].iter().copied()).collect();

@@ -57,7 +57,7 @@ pub struct Fitted {
     pub cells: usize,
     /// The solids, the likeliest first.
     pub fits: Vec<WireframeFit>,
-    /// Whether these are all.
+    /// True if these are all.
     pub complete: bool,
     /// Edges with a loose end; they were left out.
     pub dangling: Vec<[usize; 2]>,
@@ -67,7 +67,7 @@ pub struct Fitted {
     pub first_open: Vec<[usize; 2]>,
     /// Places where edges cross without a vertex.
     pub crossings: Vec<Vec3>,
-    /// Whether it was given up as too large.
+    /// True if the search was abandoned as too large.
     pub too_large: bool,
 }
 
@@ -123,9 +123,9 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
     fitted
 }
 
-/// The regions of a wireframe that lies in one plane, counter-clockwise against `normal`: the faces of
-/// a cross section. A closed figure inside another is a hole, one inside a hole is material again.
-/// Edges with a loose end are left out. Where edges cross without a vertex there is no fit.
+/// The regions of a plane wireframe, counter-clockwise against `normal`: the faces of a cross
+/// section. A closed figure inside another is a hole, one inside a hole is material again. Edges
+/// with a loose end are left out. Edges that cross without a vertex are an error.
 pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Fitted {
     let mut fitted = Fitted { complete: true, ..Fitted::default() };
     let mut wire = Wireframe::new(positions, edges);
@@ -253,7 +253,8 @@ impl FitBuilder<'_> {
     }
 }
 
-/// How far points are from the plane that fits their polygon (Newell's normal through their centre).
+/// Maximum distance of points from the plane that fits their polygon (Newell's normal through their
+/// centre).
 pub fn flatness(points: &[Vec3]) -> f64 {
     let n = points.len();
     if n < 4 {

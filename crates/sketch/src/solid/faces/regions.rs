@@ -105,7 +105,7 @@ fn area(wire: &Wireframe, sheet: &SpannedPlane, cycle: &[Half]) -> f64 {
         .sum()
 }
 
-/// Whether a point is inside a loop (even-odd), for points that are not on it.
+/// True if a point is inside a loop (even-odd), for points that are not on it.
 pub(super) fn encloses(
     wire: &Wireframe,
     sheet: &SpannedPlane,
@@ -295,7 +295,7 @@ fn common_segments(
                 (low, high) = (low.min(x).min(y), high.max(x).max(y));
                 continue;
             }
-            // The edge lies in the sheet with the line, so `a` and `b` are parallel.
+            // The edge is in the sheet with the line, so `a` and `b` are parallel.
             let width = b - a;
             let part = -(a.dot(width)) / width.norm_sq();
             let margin = tol / width.norm();

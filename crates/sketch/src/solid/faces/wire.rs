@@ -88,7 +88,7 @@ impl Wireframe {
         best
     }
 
-    /// The vertex at `p`, made if needed; edges that it lies on are split.
+    /// The vertex at `p`, made if needed; edges that contain it are split.
     pub fn vertex(&mut self, p: Vec3) -> usize {
         if let Some(v) = self.find(p) {
             return v;
@@ -98,7 +98,7 @@ impl Wireframe {
         v
     }
 
-    /// Where along `ends` the point lies, if it is inside the edge.
+    /// Parameter of the point along `ends`, if it is inside the edge.
     fn inside(&self, ends: [usize; 2], p: Vec3) -> Option<f64> {
         let (a, b) = (self.vertices[ends[0]], self.vertices[ends[1]]);
         let d = b - a;
@@ -188,7 +188,7 @@ impl Wireframe {
     }
 }
 
-/// Where two segments cross inside both, if they come within `tolerance`.
+/// Intersection of two segments inside both, if they are within `tolerance`.
 fn crossing([p, q]: [Vec3; 2], [r, s]: [Vec3; 2], tolerance: f64) -> Option<Vec3> {
     let apart = |k: usize| {
         let (a, b) = (p[k].min(q[k]), p[k].max(q[k]));

@@ -23,7 +23,7 @@ impl Parser {
         }
     }
 
-    /// Whether `||` stands here as an operator: outside any magnitude of this bracket.
+    /// True if `||` is an operator here: outside any magnitude of this bracket.
     fn at_double_pipe(&self) -> bool {
         let (first, second) = (self.token(), self.peek(1));
         self.magnitudes == 0
@@ -222,7 +222,8 @@ impl Parser {
         self.push_above(ExprKind::Chain(list), span, below.saturating_add(links))
     }
 
-    /// Asks for parentheses in canonical text where sets group otherwise than numbers would: around what `^` joins.
+    /// Marks parentheses for the canonical text where the grouping of sets differs from that of
+    /// numbers: around operands of `^`.
     fn clarify(&mut self, root: ExprId) {
         if self.layout.is_none() {
             return;
@@ -299,7 +300,8 @@ impl Parser {
         let last = self.at;
         let number = self.tokens[last];
         if last > first && number.kind == Kind::Number {
-            // `--3` would be two signs: a negative number goes into parentheses, so that the literal keeps its value.
+            // `--3` would be two signs: a negative number is put in parentheses, so that the
+            // literal keeps its value.
             self.program.literals[number.payload as usize].wrap_negative = true;
         }
         let mut expr = operand(self)?;
@@ -538,7 +540,7 @@ impl Parser {
     }
 }
 
-/// What a chain contains, which decides how it is grouped.
+/// Content of a chain, which determines its grouping.
 #[derive(Default)]
 struct Found {
     /// `|` or `&`: only sets have them.

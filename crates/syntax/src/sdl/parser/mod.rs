@@ -21,8 +21,8 @@ pub const MAX_HEIGHT: u16 = 1000;
 /// More faults than this are counted, not listed.
 pub const MAX_DIAGNOSTICS: usize = 100;
 
-/// Parses a program. It never fails: whatever is wrong with the text is in the diagnostics, in the order of the text,
-/// and stands in the tree as an `Error` node.
+/// Parses a program. It never fails: errors are in the diagnostics, in the order of the text, and
+/// are `Error` nodes of the tree.
 pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (Program, Vec<Diagnostic>) {
     let mut parser = Parser::new(text.into(), file, false);
     // A text in a newer version cannot be judged: it has no statements.
@@ -35,7 +35,7 @@ pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (Program, Vec<Diagnosti
     (program, diagnostics)
 }
 
-/// Parses a text that is one expression. The expression is an `Error` node if the text is none.
+/// Parses a text as one expression, which is an `Error` node if the text is not one.
 pub fn parse_expr(text: impl Into<Arc<str>>, file: FileId) -> (Program, ExprId, Vec<Diagnostic>) {
     let mut parser = Parser::new(text.into(), file, false);
     let expr = parser.expr().and_then(|expr| {
@@ -53,13 +53,13 @@ pub fn parse_expr(text: impl Into<Arc<str>>, file: FileId) -> (Program, ExprId, 
     (program, expr, diagnostics)
 }
 
-/// What was found, as it is named after "unexpected".
+/// The found item as named after "unexpected".
 fn without_article(found: &str) -> &str {
     let articles = ["the ", "a ", "an "];
     articles.iter().find_map(|article| found.strip_prefix(article)).unwrap_or(found)
 }
 
-/// Parses a program and says what each token is for.
+/// Parses a program with the role of each token.
 pub(crate) fn parse_marked(
     text: Arc<str>,
     file: FileId,
@@ -69,7 +69,7 @@ pub(crate) fn parse_marked(
     parser.finish()
 }
 
-/// What a token is for, as far as its spacing depends on it.
+/// Role of a token, as far as its spacing depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TokenRole {
     Plain,
@@ -79,7 +79,7 @@ pub(crate) enum TokenRole {
     Infix,
     /// No blanks on either side: `^`, the colon of a range, the second `|` of `||`.
     Tight,
-    /// `(` or `[` that belongs to what stands before it.
+    /// `(` or `[` that belongs to the preceding expression.
     Applied,
     /// Opens a list or a magnitude.
     Open,
@@ -93,7 +93,7 @@ pub(crate) enum TokenRole {
     Redundant,
 }
 
-/// What the formatter needs besides the tree.
+/// Data of the formatter besides the tree.
 pub(crate) struct SourceLayout {
     pub tokens: Vec<Token>,
     pub comments: Vec<Comment>,
@@ -350,7 +350,7 @@ impl Parser {
         Reported
     }
 
-    /// What a spelling of C, Python or MATLAB is in this language: the current token is not understood.
+    /// The equivalent of a spelling of C, Python or MATLAB, if the unexpected token is one.
     fn habit(&self) -> Option<&'static str> {
         let token = self.token();
         let before = self.at.checked_sub(1).map(|at| self.tokens[at]);
@@ -459,7 +459,7 @@ impl Parser {
     }
 }
 
-/// What a word of another language is in this one.
+/// The equivalent of another language's word.
 fn foreign_word(word: &str) -> Option<&'static str> {
     Some(match word {
         "def" | "fn" | "func" => {

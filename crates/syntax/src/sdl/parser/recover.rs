@@ -1,4 +1,4 @@
-//! Where to go on after a fault.
+//! Continuation after an error.
 
 use super::super::token::Kind;
 use super::{Parse, Parser, Reported};
@@ -52,12 +52,12 @@ impl Parser {
         }
     }
 
-    /// Whether the only open bracket is the head of the `for` that starts at `start`.
+    /// True if the only open bracket is the head of the `for` that starts at `start`.
     fn in_for_head(&self, open: &[Kind], start: usize) -> bool {
         self.tokens[start].kind == Kind::For && open == [Kind::LParen]
     }
 
-    /// Whether a new line starts here that looks like a statement.
+    /// True if a new line starts here that looks like a statement.
     pub(super) fn at_fresh_statement(&self) -> bool {
         let token = self.token();
         if !token.new_line {
@@ -85,7 +85,8 @@ impl Parser {
         }
     }
 
-    /// Takes the `;` at a statement's end. If it is missing at a line's end, that is reported and the statement stands.
+    /// Reads the `;` at a statement's end. If it is missing at the end of a line, that is reported
+    /// and the statement is valid.
     pub(super) fn expect_semi(&mut self, expected: &str) -> Parse<()> {
         let token = self.token();
         if token.kind == Kind::Semi {
@@ -95,7 +96,7 @@ impl Parser {
         if !(token.new_line || matches!(token.kind, Kind::RBrace | Kind::End)) {
             return Err(self.unexpected(expected));
         }
-        // A line that goes on with an operator is a fault in the expression, not a missing `;`.
+        // A line that begins with an operator is an error in the expression, not a missing `;`.
         let starts_something =
             token.is_word() || matches!(token.kind, Kind::RBrace | Kind::LBrace | Kind::End);
         if !starts_something {

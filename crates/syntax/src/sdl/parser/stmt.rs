@@ -521,7 +521,7 @@ impl Parser {
     }
 }
 
-/// Whether an operand can start with such a token, so that `assert` before it is the statement.
+/// True if an operand can start with such a token, so that `assert` before it is the statement.
 fn starts_operand(kind: Kind) -> bool {
     matches!(
         kind,
