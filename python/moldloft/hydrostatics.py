@@ -304,6 +304,91 @@ class Hydrostatics:
             raise UnknownNameError(f"unknown figure `{figure}`; expected one of: {known}")
         return self.units.of(figure)
 
+    def stiffness(
+        self,
+        cg: Sequence[float],
+        *,
+        mass: float | None = None,
+        about: Sequence[float] | None = None,
+        by: str | None = None,
+    ) -> NDArray[np.float64]:
+        """The hydrostatic stiffness matrix: surge, sway, heave, roll, pitch, yaw.
+
+        In level axes: x and y horizontal, x along the body; rotations in radians. With the centre
+        of buoyancy B, of gravity G and of flotation F from ``about``, the waterplane's area A and
+        moments about that point, weight W and buoyancy D:
+        ``C33 = gamma A``, ``C34 = gamma A y_F``, ``C35 = -gamma A x_F``,
+        ``C44 = gamma I_yy + D z_B - W z_G``, ``C55 = gamma I_xx + D z_B - W z_G``,
+        ``C45 = -gamma I_xy``, ``C46 = W x_G - D x_B``, ``C56 = W y_G - D y_B``; all others are 0
+        (J. N. Newman, Marine Hydrodynamics, 1977, section 6.16). A body under water has no
+        waterplane, and the moments alone.
+
+        Parameters
+        ----------
+        cg
+            Centre of gravity in the model's axes, ``(3,)``.
+        mass
+            The mass, where it is not the displacement: a moored or supported body.
+        about
+            The point that the rotations are about, in the model's axes; default: ``cg``.
+        by
+            A parameter of ``by`` of these figures: the derivative of the matrix by it.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(6, 6)``, in the units of force and length of :attr:`units`.
+
+        Raises
+        ------
+        Error
+            When the figures have no density, or are of one side.
+        UnknownNameError
+            When the figures have no derivatives by ``by``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> from moldloft.starter import BOX
+        >>> state = moldloft.loads(BOX).hydrostatics(density=1.0, gravity=1.0)
+        >>> k = state.stiffness((0, 0, 0.1))
+        >>> bool(abs(k[2, 2] - state.waterplane_area) < 1e-9)
+        True
+        """
+        from moldloft.stiffness import stiffness
+
+        return stiffness(self, cg, mass=mass, about=about, by=by)
+
+    def write_kh(
+        self, folder: str | os.PathLike[str], cg: Sequence[float], *, mass: float | None = None
+    ) -> list[Path]:
+        """Write ``KH.dat`` and ``Hydrostatics.dat``, as Nemoh's mesher does for its solver.
+
+        Parameters
+        ----------
+        folder
+            An existing folder.
+        cg, mass
+            See :meth:`stiffness`.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The two files.
+
+        Raises
+        ------
+        Error
+            When the figures have no density, or are of one side.
+        FileError
+            When there is no such folder, or it cannot be written to.
+        """
+        from moldloft.files import Output, commit
+        from moldloft.stiffness import kh_files
+
+        files = kh_files(self, cg, mass)
+        return commit(Path(folder), [Output(*pair) for pair in files.items()], make=False)
+
     def converted(self, to: Units | str) -> Hydrostatics:
         """The same in other units, such as ``"m t kN"``; dimensions that are not named stay.
 

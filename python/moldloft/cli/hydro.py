@@ -128,6 +128,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--by", metavar="NAME", action="append", default=[], help="differentiate by a parameter"
     )
     parser.add_argument(
+        "--stiffness",
+        action="store_true",
+        help="the 6 x 6 stiffness about the centre of gravity; needs --cg and --density",
+    )
+    parser.add_argument(
+        "--kh", metavar="FOLDER", help="write the stiffness as KH.dat and Hydrostatics.dat of Nemoh"
+    )
+    parser.add_argument(
         "--keep-going",
         action="store_true",
         help="figures of what was made, though objects failed or the skin is open below the water",
@@ -192,6 +200,11 @@ def run(options: argparse.Namespace) -> int:
     rows_of = options.table or options.gz or options.sections
     if options.plot and not rows_of:
         raise Error("--plot is of the rows of --table, --gz, --kn or --sections")
+    stiff = options.stiffness or options.kh
+    if stiff and (rows_of or options.units or options.cg is None or options.density is None):
+        raise Error(
+            "--stiffness and --kh are of one attitude in the model's units, with --cg and --density"
+        )
     if options.csv and not (rows_of or options.criteria):
         raise Error("--csv is of the rows of --table, --gz, --kn, --sections or --criteria")
     with Progress() as progress:
@@ -224,11 +237,19 @@ def run(options: argparse.Namespace) -> int:
         if rows is not None and options.plot:
             progress.stage("drawing")
             written.append(rows.plot(options.plot))
+        if options.kh:
+            written += flotation.write_kh(options.kh, options.cg)
     _warn([flotation] if rows is None else list(rows))
+    matrix = flotation.stiffness(options.cg).tolist() if options.stiffness else None
     if options.json:
-        print_json(_data(flotation) if rows is None else [_data(row) for row in rows])
+        more = {} if matrix is None else {"stiffness": matrix}
+        print_json({**_data(flotation), **more} if rows is None else [_data(row) for row in rows])
     elif rows is None:
         print(_one(flotation))
+        if matrix is not None:
+            words = ["surge", "sway", "heave", "roll", "pitch", "yaw"]
+            cells = [[w, *map(_number, row)] for w, row in zip(words, matrix, strict=True)]
+            print(f"\nstiffness about the centre of gravity\n{table(['', *words], cells)}")
     else:
         print(_table(rows))
     if not options.json:
