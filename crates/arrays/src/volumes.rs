@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Label in the budget.
 pub fn folded<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<usize, Spent> {
     let quality = grid.cell_quality_until(budget)?;
-    // A left-handed block has all its corners the other way.
+    // A left-handed block has all its corners reversed.
     let hand = if grid.re().volume() < 0.0 { -1.0 } else { 1.0 };
     let turned = |[jacobian, _]: &&[f64; 2]| !(jacobian * hand > 0.0);
     if hand > 0.0 {

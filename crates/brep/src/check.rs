@@ -27,7 +27,7 @@ impl ShellFacts {
 pub enum Fault {
     /// A loop's sides do not follow one another: face, loop.
     Broken(usize, usize),
-    /// Two sides of an edge run along it the same way: edge.
+    /// Two sides of an edge have the same direction: edge.
     Senses(usize),
 }
 
@@ -106,8 +106,8 @@ impl Brep {
         Some(sum / 6.0)
     }
 
-    /// Plane faces that are less than `width` across, by number, with a place of each: their area over half their
-    /// border. Of such faces between fitted edges it is not known whether these cross.
+    /// Plane faces that are less than `width` across (area over half the border), by number, with a
+    /// point of each. Fitted edges of such faces may cross each other.
     pub fn thin_faces(&self, width: f64) -> Vec<(usize, Vec3)> {
         let thin = |(f, face): (usize, &BrepFace)| {
             let SurfaceShape::Plane { normal, .. } = face.surface else { return None };
@@ -124,7 +124,7 @@ impl Brep {
         self.faces.iter().enumerate().filter_map(thin).collect()
     }
 
-    /// Twice the area between a place and an edge, seen against the normal, and the edge's length.
+    /// Twice the area between a point and an edge, seen against the normal, and the edge's length.
     fn swept(&self, edge: usize, place: Vec3, normal: Vec3) -> (f64, f64) {
         const STEPS: usize = 16;
         let curve = &self.edges[edge].curve;

@@ -7,7 +7,8 @@ use moldloft_spline::nurbs::Nurbs;
 /// Directions of two normals that differ less than this count as one: the surfaces touch.
 const TOUCH: f64 = 1e-3;
 
-/// Pieces that a stretch between two places of the guide is divided into at most, as a power of 2.
+/// The most pieces into which a stretch between two points of the guide is divided, as a power of
+/// 2.
 const DEEPEST: u32 = 12;
 
 /// Most turn of the tangent along a piece, radians.
@@ -201,7 +202,7 @@ fn good(surfaces: [&SurfaceShape; 2], piece: Piece, accuracy: f64) -> bool {
         && surfaces.iter().all(|f| distance_bound(f, &points) <= accuracy)
 }
 
-/// True when the places of a guide are within reach of a piece.
+/// True when all points of a guide are within reach of a piece.
 fn near(guide: &[Vec3], piece: Piece, reach: f64) -> bool {
     const PLACES: usize = 32;
     let (points, _) = bezier(piece);
@@ -242,9 +243,9 @@ fn divided(
     divided(surfaces, [end, piece[1]], accuracy, deep - 1, pieces)
 }
 
-/// Places along the crossing from the first place of a guide to its last, that need not be near the straight ways between
-/// others; all of these must be near one of them. With `sign` -1 it sets out against the first tangent, of which the guide may be
-/// wrong.
+/// Points along the crossing from the first point of a guide to its last. The points of the guide
+/// in between need not be on the way; all points found must be near one of the guide's chords. With
+/// `sign` -1 it starts against the first tangent, whose sense the guide may have wrong.
 fn walked(
     surfaces: [&SurfaceShape; 2],
     guide: &[Vec3],
@@ -278,7 +279,7 @@ fn walked(
                     (p, along) = (to, turned.unwrap_or(along));
                     break;
                 }
-                // It turns on the way.
+                // The crossing turns before the target.
                 step *= 0.5;
             }
             let guess = p + along * step;
@@ -380,9 +381,10 @@ pub fn distance_bound(surface: &SurfaceShape, points: &[Vec3; 4]) -> f64 {
     }
 }
 
-/// A bound of the distance of a Bézier curve from an ellipsoid, an elliptic cylinder or cone of which the coordinates are
-/// those of the unit sphere or cylinder, or of a cone as wide as high: with F half of its polynomial, which is zero on it, within
-/// 2 |F| / |F'| along the normal there is a zero, if F turns little on that way.
+/// A bound of the distance of a Bézier curve from an ellipsoid or an elliptic cylinder or cone,
+/// given as the image of the unit sphere, the unit cylinder or a cone as wide as high. With F half
+/// the polynomial that is zero on it, there is a zero within 2 |F| / |F'| along the normal if F'
+/// changes little over that distance.
 fn image_bound(image: &SurfaceImage, points: &[Vec3; 4]) -> f64 {
     let of = image.of();
     let (signs, one) = match of {
@@ -392,7 +394,7 @@ fn image_bound(image: &SurfaceImage, points: &[Vec3; 4]) -> f64 {
         _ => return f64::INFINITY,
     };
     let Some(axes) = of.axes() else { return f64::INFINITY };
-    // Of a cone the radius is that at a height; its coordinates begin at the apex.
+    // The radius of a cone belongs to a height; its coordinates begin at the apex.
     let origin = of.apex().unwrap_or(axes.origin);
     let axes = SurfaceAxes { origin, ..*axes };
     let local = points.map(|p| axes.local(image.local(p)));

@@ -121,7 +121,7 @@ impl Brep {
                 SurfaceShape::Image(image) => {
                     SurfaceShape::Image(Box::new(image.mirrored(|p| mirrored(p, axis))))
                 }
-                // Their normals follow from their places, as those of the images do.
+                // Their normals follow from their axes, as those of images do.
                 round => {
                     let made = round.axes().map(|a| {
                         round.with_axes(SurfaceAxes {

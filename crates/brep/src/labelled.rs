@@ -1,6 +1,6 @@
 //! Labelled triangles into faces: each face on the surface of its label, its edges where that surface meets the next.
 //!
-//! `triangles with surfaces -> faces that hang together -> seams -> chains of sides -> edges -> loops`
+//! `triangles with surfaces -> connected faces -> seams -> chains of sides -> edges -> loops`
 //!
 //! The triangles determine connectivity and which part of a curve is an edge; their coordinates are
 //! not in the result.
@@ -92,7 +92,7 @@ impl BorderChain {
 }
 
 impl Brep {
-    /// Adds the faces of a body; gives a place on its face for each triangle.
+    /// Adds the faces of a body; returns a point on its face for each triangle.
     ///
     /// # Errors
     /// Triangles that do not show its faces; finer ones may.
@@ -185,9 +185,9 @@ impl LabelledBody {
         (self.step * self.size).sqrt()
     }
 
-    /// The middles of the triangles, moved onto their surfaces; without those beside a border along which surfaces
-    /// touch, for there they are on either of both, and without those beside the border of an image, onto which the way is not
-    /// the shortest: it may go beyond the border.
+    /// The middles of the triangles, moved onto their surfaces. Omitted are those beside a border
+    /// along which surfaces touch, because they may be on either surface, and those beside the
+    /// border of an image: the move onto an image is not the shortest and may cross the border.
     fn places(&self) -> Vec<Vec3> {
         let mut touching: FxHashSet<u32> = FxHashSet::default();
         let mut border: FxHashSet<u32> = FxHashSet::default();
@@ -455,7 +455,7 @@ impl LabelledBody {
         }
     }
 
-    /// Lines, circles and ellipses where the chains run along one.
+    /// Chooses lines, circles and ellipses for the chains that follow one.
     fn choose_curves(&mut self) {
         let near = NEAR * self.size;
         let cusp = self.cusp();
@@ -564,7 +564,7 @@ impl LabelledBody {
         Ok(())
     }
 
-    /// The curve of a chain between the places of its ends.
+    /// The curve of a chain between the points of its ends.
     fn curve(&self, chain: &BorderChain) -> Option<(Nurbs<1>, Option<ExactCurve>)> {
         let n = chain.vertices.len();
         let [p, q] = [chain.vertices[0], chain.vertices[n - 1]].map(|v| self.corners[&v]);
@@ -577,8 +577,8 @@ impl LabelledBody {
             }
             None => {
                 let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
-                // Beside a corner of small angles vertices are on one surface only, beyond the corner: the way does not
-                // go there and back.
+                // Near a corner of small angles some vertices are beyond the corner and on one
+                // surface only; the guide must not go there and back.
                 let strayed = |r: &Vec3| {
                     let far = |s: &SurfaceShape| {
                         s.distance(*r).is_some_and(|d| d.abs() > STRAYED * self.step)
@@ -602,7 +602,7 @@ impl LabelledBody {
     }
 
     fn into_brep(self, brep: &mut Brep) -> Result<(), FacetFault> {
-        // Corners in one place, joined by a chain without length, are one.
+        // Corners at one point, joined by a chain without length, are one.
         let mut one: BTreeMap<u32, u32> = BTreeMap::new();
         fn root(one: &BTreeMap<u32, u32>, mut v: u32) -> u32 {
             while let Some(&w) = one.get(&v) {
@@ -721,7 +721,8 @@ impl LabelledBody {
     }
 }
 
-/// The part of an ellipse between two places, by way of others; and that ellipse, run by increasing angle.
+/// The part of an ellipse between two points, via others; and that ellipse, traversed by increasing
+/// angle.
 pub fn span(
     ellipse: ExactCurve,
     [p, q]: [Vec3; 2],
@@ -780,7 +781,8 @@ pub fn faced(
     (surface, reversed)
 }
 
-/// A surface with the axes of a face, of which a place in the middle and others are known: of a cone at its widest place.
+/// A surface with the axes of a face with a known point in the middle and known others; the origin
+/// of a cone is moved to its widest point.
 fn placed(
     surface: &SurfaceShape,
     axes: Option<&SurfaceAxes>,

@@ -91,7 +91,7 @@ pub struct BrepFace {
 /// A side of a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coedge {
-    /// The edge that it runs along.
+    /// The edge.
     pub edge: usize,
     /// True when the loop runs from the edge's first vertex to its second.
     pub forward: bool,
@@ -192,7 +192,7 @@ pub struct PartPoint {
     pub place: Vec3,
 }
 
-/// Faces that hang together.
+/// Connected faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shell {
     /// The faces.
@@ -217,7 +217,7 @@ pub struct Wire {
 }
 
 impl FacetedPart {
-    /// True when each side has two triangles that run along it in opposite senses.
+    /// True when each side belongs to two triangles that traverse it in opposite senses.
     pub fn closed(&self) -> bool {
         let mut sides = std::collections::HashSet::new();
         let all = self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
@@ -308,7 +308,7 @@ impl Brep {
             }
             face.reversed = false;
             for side in face.loops.iter_mut().flatten() {
-                // Of other surfaces the parameters are not those of the NURBS.
+                // The parameters of other surfaces are not those of the NURBS.
                 side.trace = side.trace.take().filter(|_| known);
                 for p in side.trace.iter_mut().flat_map(|trace| &mut trace.points) {
                     p.x = 1.0 - p.x;

@@ -4,13 +4,14 @@ use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::f64::consts::PI;
 
-/// Places at which the distance of a patch is taken, along each parameter.
+/// Number of parameters in each direction at which the distance of a patch is measured.
 const DISTANCES: usize = 8;
 
-/// Those of them that are tried first.
+/// Those tried first.
 const TRIED: [usize; 2] = [1, 5];
 
-/// Places at which the normal of a patch is compared with that of the surface, along each parameter.
+/// Parameters in each direction at which the normal of a patch is compared with that of the
+/// surface.
 const NORMALS: [f64; 5] = [0.04, 0.3, 0.5, 0.7, 0.96];
 
 /// The highest degree.
@@ -31,7 +32,7 @@ pub struct PatchBasis {
     inverse: Vec<Vec<f64>>,
     /// The Bernstein polynomials where distances are taken.
     rows: [BernsteinRow; DISTANCES],
-    /// And at the places.
+    /// The Bernstein polynomials at the parameters `at`.
     own: Vec<BernsteinRow>,
     /// For each order, the factors of the values there in the Chebyshev coefficient.
     chebyshev: [[f64; DISTANCES]; DISTANCES],
@@ -69,7 +70,7 @@ impl PatchBasis {
         Self { degree, at, inverse, rows, own, chebyshev, normals }
     }
 
-    /// The control points of a curve through points at the places.
+    /// The control points of a curve through points at the parameters `at`.
     pub fn curve(&self, through: &[Vec3]) -> Vec<Vec3> {
         let mut net: Vec<Vec3> = self
             .inverse
@@ -87,7 +88,7 @@ impl PatchBasis {
         row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w)
     }
 
-    /// The points of a curve at the places.
+    /// The points of a curve at the parameters `at`.
     pub fn at_places(&self, net: &[Vec3]) -> Vec<Vec3> {
         let at = |row: &BernsteinRow| {
             row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w)
@@ -110,7 +111,8 @@ impl PatchBasis {
         if bound.is_finite() { bound } else { f64::INFINITY }
     }
 
-    /// The patch through points at the places, with these control points along its sides u = 0 and 1, v = 0 and 1.
+    /// The patch through points at the parameters `at`, with these control points along its sides u
+    /// = 0 and 1, v = 0 and 1.
     pub fn patch(&self, through: &[Vec<Vec3>], sides: [&[Vec3]; 4]) -> Vec<Vec3> {
         let d = self.degree;
         let rows: Vec<Vec<Vec3>> = through.iter().map(|line| self.curve(line)).collect();

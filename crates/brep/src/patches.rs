@@ -66,8 +66,8 @@ impl Brep {
         body.into_brep(self, patches)
     }
 
-    /// Adds those faces of a body that are on some of its surfaces, for each of which `shown` says whether it is one; gives
-    /// places on them. The other surfaces say where these faces end.
+    /// Adds the faces of a body that are on the surfaces marked by `shown`; returns points on them.
+    /// The other surfaces only bound these faces.
     ///
     /// # Errors
     /// As [`Self::add_patches`].
@@ -527,7 +527,7 @@ impl<'a> PatchedBody<'a> {
                 patient.then(|| all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect());
             if corrected && let Some(moved) = self.untangle(round_bad.as_ref()) {
                 self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
-                // Sides may have given way to others, too.
+                // Sides may have been replaced, too.
                 near_sides.clear();
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
@@ -613,7 +613,7 @@ impl<'a> PatchedBody<'a> {
         let middles = patches.iter().map(|(.., patch)| self.basis.middle(&patch.net));
         let mut places: Vec<Vec3> = middles.collect();
         places.extend(self.round_places());
-        // Faces: those that are whole, by triangles that hang together, and each patch.
+        // Faces: whole ones, by connected triangles, and each patch.
         let mut group = self.net.connected();
         let plane_groups = group.iter().max().map_or(0, |g| g + 1);
         for (number, (corners, triangle, _)) in patches.iter().enumerate() {
@@ -657,7 +657,7 @@ impl<'a> PatchedBody<'a> {
             edges.push(brep.edges.len());
             brep.edges.push(BrepEdge { ends, curve, ellipse });
         }
-        // Of a sheet no side is the outer one.
+        // No side of a sheet is the outer one.
         let whole = self.shown.iter().all(|s| *s);
         let cavities = self.net.cavities().into_iter().map(|c| c && whole).collect::<Vec<_>>();
         let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -818,7 +818,8 @@ mod tests {
 
     #[test]
     fn a_plane_sheet_ends_at_the_planes_beside_it() {
-        // A block of which the top is wanted; each side of a face is of two triangles' edges.
+        // A block whose top face is needed; each side of a face consists of the edges of two
+        // triangles.
         let corner = |k: u32| Vec3::from([0, 1, 2].map(|axis| f64::from(k >> axis & 1)));
         let quads =
             [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

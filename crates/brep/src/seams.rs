@@ -64,7 +64,7 @@ impl FacetNet {
         Some(net)
     }
 
-    /// The same with one vertex for those within reach of a place.
+    /// The same with the vertices within reach of a point merged into one.
     pub fn pinned(&self, place: Vec3, reach: f64) -> Option<Self> {
         let inside: Vec<bool> = self.positions.iter().map(|p| p.distance(place) <= reach).collect();
         let Some(one) = inside.iter().position(|i| *i) else {
@@ -105,7 +105,8 @@ impl FacetNet {
         }
     }
 
-    /// The number of the face of each triangle: those of one surface that hang together, seams apart.
+    /// The number of the face of each triangle: connected triangles of one surface form one face,
+    /// seams excepted.
     pub fn connected(&self) -> Vec<u32> {
         let mut groups = vec![u32::MAX; self.triangles.len()];
         let mut count = 0;

@@ -32,7 +32,7 @@ impl SurfaceImage {
         Some(Self { of, centre, columns, rows })
     }
 
-    /// The surface of which it is the image.
+    /// The surface whose image it is.
     pub fn of(&self) -> &SurfaceShape {
         &self.of
     }
@@ -68,7 +68,7 @@ impl SurfaceImage {
         self.columns[0] * v.x + self.columns[1] * v.y + self.columns[2] * v.z
     }
 
-    /// The vector of which this is the image.
+    /// The vector whose image this is.
     pub fn linear_back(&self, v: Vec3) -> Vec3 {
         Vec3::from(self.rows.map(|row| row.dot(v)))
     }
@@ -125,7 +125,7 @@ impl SurfaceImage {
 
     /// The image in the plane on which a coordinate is zero.
     pub fn mirrored(&self, flip: impl Fn(Vec3) -> Vec3) -> Self {
-        // Right-handed again: the second axis is turned round, of the surface as well.
+        // Keeps the axes right-handed: the second axis is reversed, that of the surface too.
         let back = |q: Vec3| Vec3::of(q.x, -q.y, q.z);
         let of = self.of.axes().map_or_else(
             || self.of.clone(),

@@ -17,11 +17,13 @@ const GAIN: f64 = 1e-3;
 /// Walks over all triangles.
 const PASSES: usize = 8;
 
-/// A piece of a surface of less than this share of a cell's side is one of the surfaces beside it, if these are as near.
+/// A piece of a surface of less than the square of `PIECE` in area is given to a surface beside it
+/// that is within `NEAR`; both relative to a cell's side.
 const PIECE: f64 = 0.3;
 const NEAR: f64 = 0.02;
 
-/// Surfaces of which the normals differ by a smaller sine touch; their border turns by less than this cosine.
+/// Surfaces touch where the sine of the angle of their normals is below `TOUCHING`; their border is
+/// smoothed where the cosine of its turn is below `STRAIGHT`.
 const TOUCHING: f64 = 0.2;
 const STRAIGHT: f64 = 0.75;
 

@@ -259,8 +259,8 @@ mod tests {
     use super::*;
     use crate::LabelledFacets;
 
-    /// Triangles of a profile (radius, height) turned about an axis, out of which its sides run upwards; a profile that
-    /// is not closed begins and ends on the axis.
+    /// Triangles of a profile (radius, height) rotated about an axis; seen from outside, its sides
+    /// go upwards. A profile that is not closed begins and ends on the axis.
     fn turned(
         profile: &[[f64; 2]],
         labels: &[u32],

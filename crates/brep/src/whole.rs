@@ -52,7 +52,8 @@ impl WholeSurfaces {
         Self { round: vec![false; count], before, ..Self::default() }
     }
 
-    /// The surfaces of a place: of both sides of a cut one, and its plane.
+    /// The surfaces at a point: where both sides of a cut surface meet, the plane of the cut
+    /// replaces one of them.
     pub fn with_cuts(&self, labels: &[u32]) -> Vec<u32> {
         let mut own = labels.to_vec();
         for i in 0..own.len() {
@@ -113,7 +114,8 @@ impl<'a> RoundSurface<'a> {
     }
 }
 
-/// Finds the surfaces of which faces may be whole, and cuts those that go round; `shown` says which are wanted.
+/// Finds the surfaces whose faces may be whole, and cuts faces around an axis; `shown` marks those
+/// needed.
 pub fn cut_round(
     net: &mut FacetNet,
     facets: &mut LabelledFacets,
@@ -267,7 +269,7 @@ impl PatchedBody<'_> {
         [(a, b), (b, a)].map(|side| self.net.labels[self.net.across[&side] as usize])
     }
 
-    /// The line or ellipse that a side between two whole faces runs along, if it runs along one.
+    /// The line or ellipse of a side between two whole faces, if it is one.
     pub fn exact_side(&self, a: u32, b: u32) -> Option<ExactCurve> {
         let [l, r] = self.beside(a, b);
         if l == r || !(self.is_whole(l) && self.is_whole(r)) {
@@ -358,7 +360,7 @@ impl PatchedBody<'_> {
         Ok(found)
     }
 
-    /// The edge along a line or an ellipse through vertices between two places.
+    /// The edge along a line or an ellipse through vertices between two points.
     pub fn exact_edge(
         &self,
         curve: ExactCurve,

@@ -34,7 +34,7 @@ extern "C" {
 /* A model. */
 typedef struct mlf_model mlf_model;
 
-/* A curve or surface of a model as it was when it was asked for. */
+/* A curve or surface of a model at the time of its request. */
 typedef struct mlf_shape mlf_shape;
 
 /* The version of the interface: 1. */
@@ -58,7 +58,7 @@ void mlf_v1_free(mlf_model *model);
 int32_t mlf_v1_set(mlf_model *model, const char *name, size_t length, double value);
 
 /* Evaluates an expression: a number, a vector or an array. Stores the numbers at `values`, which
- * has room for `room` of them, and how many they are at `count`.
+ * has a capacity of `room`, and their number at `count`.
  */
 int32_t mlf_v1_eval(mlf_model *model, const char *expression, size_t length, double *values, size_t room, size_t *count);
 

@@ -9,8 +9,8 @@
 //!
 //! `include/moldloft.h` is generated from this file by `include/generate.py`.
 //!
-//! Invariant: nothing is computed here: `document` answers. It is the one crate besides the extension with unsafe
-//! code, all of which is about pointers of the caller.
+//! Invariant: nothing is computed here: `document` answers. It is the only crate besides the
+//! extension with unsafe code, all of it for pointers of the caller.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // The functions are for C, which has no `unsafe`: the header states the obligations of callers.
@@ -94,7 +94,7 @@ fn store(model: *mut *mut mlf_model, document: Document) -> Result<(), StatusErr
     }
     sound(&document)?;
     let handle = Box::into_raw(Box::new(mlf_model(document)));
-    // SAFETY: the caller gives a pointer to a place for a handle; it is not null.
+    // SAFETY: the caller gives a pointer to memory for a handle; it is not null.
     unsafe { *model = handle };
     Ok(())
 }
@@ -227,7 +227,7 @@ pub extern "C" fn mlf_v1_shape(
                 )));
             }
         };
-        // SAFETY: the caller gives a pointer to a place for a handle; it is not null.
+        // SAFETY: the caller gives a pointer to memory for a handle; it is not null.
         unsafe { *shape = Box::into_raw(Box::new(mlf_shape(found))) };
         Ok(())
     })

@@ -1,4 +1,4 @@
-//! Diagnostics with their places resolved, for JSON and other outer forms.
+//! Diagnostics with resolved positions, for JSON and other outer forms.
 
 use crate::{Diagnostic, Label, Sources, Span};
 

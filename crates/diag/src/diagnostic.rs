@@ -124,7 +124,7 @@ impl Diagnostic {
         Self::new(Severity::Note, id, message)
     }
 
-    /// Sets the place at fault. An unknown place is not recorded.
+    /// Sets the span at fault. An unknown span is not recorded.
     #[must_use]
     pub fn at(mut self, span: Span) -> Self {
         if span.is_known() {
@@ -150,13 +150,13 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the place at fault and the words printed under it.
+    /// Sets the span at fault and the words printed under it.
     #[must_use]
     pub fn labelled(self, span: Span, text: impl Into<String>) -> Self {
         self.at(span).label(text)
     }
 
-    /// Adds a place that explains the fault. An unknown place is not recorded.
+    /// Adds a span that explains the fault. An unknown span is not recorded.
     #[must_use]
     pub fn note_at(mut self, span: Span, text: impl Into<String>) -> Self {
         if span.is_known() {
@@ -193,7 +193,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a way to fix it, if there is one.
+    /// Adds a help text, if there is one.
     #[must_use]
     pub fn maybe_help(self, text: Option<impl Into<String>>) -> Self {
         match text {
@@ -271,7 +271,7 @@ impl DerefMut for Diagnostic {
 }
 
 impl fmt::Display for Diagnostic {
-    /// The line without its place: `error[id]: message`, followed by expected and found.
+    /// The line without its position: `error[id]: message`, followed by expected and found.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}[{}]: {}", self.severity, self.id, self.message)?;
         if let Some(text) = self.expectation() {

@@ -1,7 +1,7 @@
 //! The nearest name, for "did you mean".
 
-/// Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`, each place being
-/// touched once (the restricted Damerau–Levenshtein distance), in characters.
+/// Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`,
+/// each position being changed once (the restricted Damerau–Levenshtein distance), in characters.
 ///
 /// ```
 /// assert_eq!(moldloft_diag::edit_distance("hull", "hlul"), 1);

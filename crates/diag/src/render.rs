@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Columns of a printed line; of a longer source line the piece around the marks is shown.
 const WIDTH: usize = 140;
-/// A place that runs over more lines than this is marked on its first alone.
+/// A span of more lines than this is marked on its first line alone.
 const MOST_LINES: u32 = 8;
 
 /// The diagnostic as text with its source lines, ending with a line end.
@@ -60,7 +60,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     below.extend(diagnostic.notes.iter().map(|text| (Level::NOTE, text.clone())));
     below.extend(diagnostic.help.iter().map(|text| (Level::HELP, text.clone())));
     if places.is_empty() {
-        // Without a source there is no margin to hang them on.
+        // Without a source there is no margin to attach them to.
         let mut out = Renderer::plain().render(&[group]) + "\n";
         for (level, text) in below {
             let word = if level == Level::HELP { "help" } else { "note" };

@@ -1,4 +1,4 @@
-//! Places in source text.
+//! Spans of source text.
 
 /// A source text of a [`Sources`](crate::Sources) table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

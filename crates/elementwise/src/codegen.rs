@@ -53,7 +53,7 @@ pub struct Planner {
     sources: Vec<(Option<u16>, u16)>,
     /// Operands of the current instruction.
     read: Vec<Src>,
-    /// Slots of constants for the order under way.
+    /// Slots of constants of the current order.
     filled: Vec<u16>,
 }
 
@@ -158,8 +158,8 @@ impl Planner {
         (node.uses == 1 && !node.own).then_some(p as usize)
     }
 
-    /// The factors of a product that can be made on the way; an instruction of its own when it takes one
-    /// in.
+    /// The factors of a product that can be computed within the instruction that uses it; otherwise
+    /// also an instruction of its own, when it absorbs one.
     fn product(&self, code: &[Instr], k: usize) -> Option<(PendingTerm, Option<usize>)> {
         let Instr { code: Code::Mul, of: [a, b] } = code[k] else { return None };
         let scaled = |src: Src| {
@@ -401,7 +401,7 @@ impl Planner {
                 Code::Neg => VmInstruction::Neg(self.row(a, program)),
                 Code::Abs => VmInstruction::Abs(self.row(a, program)),
                 Code::Sqrt => VmInstruction::Sqrt(self.row(a, program)),
-                // Of two constants.
+                // Both operands are constants.
                 Code::Add | Code::Sub => {
                     let sign = if code == Code::Add { Sign::Plus } else { Sign::Minus };
                     let [x, y] = [a, b].map(|src| Term::Row(self.row(src, program)));

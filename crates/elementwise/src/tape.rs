@@ -45,7 +45,7 @@ pub enum Code {
     Abs,
     /// The square root of a number.
     Sqrt,
-    /// A function of one number, by its place in the tape's list.
+    /// A function of one number, by its index in the tape's list.
     Unary(u16),
     /// A function of two numbers.
     Binary(u16),
@@ -92,7 +92,7 @@ impl<T: Real> NumberSource<T> {
 pub struct Cell(pub u16);
 
 impl Cell {
-    /// Of a value that a recording does not know to find again.
+    /// The cell of a value that a recording cannot find again.
     pub const NONE: Cell = Cell(u16::MAX);
 }
 
@@ -106,7 +106,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a constant that is the same whatever the values are.
+    /// The origin of a constant that does not depend on the values.
     pub const FIXED: Origin = Origin { cell: Cell(u16::MAX - 1), part: 0 };
 
     /// A number, or component `part` of a vector or row of vectors.
@@ -287,7 +287,7 @@ impl<T: Real> Tape<T> {
     /// elements. Evaluates one instruction at a time, so call it only after a failure.
     fn failure(&self, planes: &[&Vec<T>], count: usize) -> Option<usize> {
         let mut first = self.checked.len();
-        // Of operands that are shorter there is nothing.
+        // Shorter operands have no value here.
         let mut results: Vec<Option<T>> = vec![None; self.code.len()];
         for element in 0..count {
             let mut check = 0;

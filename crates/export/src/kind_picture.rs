@@ -14,7 +14,7 @@ const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
 const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];
 /// Colour of its parents' names.
 const NAME: [u8; 3] = [0x2f, 0x3a, 0x46];
-/// The way to a point.
+/// Colour of the path to a point.
 const WAY: [u8; 3] = [0xa9, 0xb4, 0xbf];
 /// Surfaces of the subject, and others.
 const SURFACES: [[u8; 3]; 2] = [[0x78, 0xa5, 0xe0], [0xd5, 0xdb, 0xe2]];

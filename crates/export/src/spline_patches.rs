@@ -80,7 +80,7 @@ pub fn spline_patches(
         let fit = SurfaceFit { name, surface: &**surface, size, allowed };
         for mut part in fit.whole()? {
             if !block.reversed {
-                // Panels face the water along S_u x S_v: u is turned round.
+                // Panels face the water along S_u x S_v: u is reversed.
                 part.turn();
             }
             for axis in (0..2).filter(|&axis| mirrored[axis]) {
@@ -302,7 +302,7 @@ fn transposed(points: &[Vec3], width: usize) -> Vec<Vec3> {
     (0..points.len()).map(|k| points[k % height * width + k / height]).collect()
 }
 
-/// Places between the knots at which a form is compared with the surface.
+/// Parameters between the knots at which a form is compared with the surface.
 fn tests(spans: usize) -> Vec<f64> {
     let inner = [0.11, 0.37, 0.52, 0.83];
     let at = |k: usize, x: f64| -1.0 + 2.0 * (k as f64 + x) / spans as f64;

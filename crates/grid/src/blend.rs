@@ -21,7 +21,7 @@ pub enum Blend {
     /// 1967).
     Hermite,
     /// By arc length without the intersection: s1 and s2 in the ratio of the mean of t1 and t2, and
-    /// the other way round.
+    /// vice versa.
     Soni2,
 }
 

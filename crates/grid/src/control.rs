@@ -75,7 +75,7 @@ impl WallReport {
 /// Unlike those of Steger and Sorenson (1979), which solve for them, they give the cell itself, and two walls
 /// converge.
 pub struct WallTerms<T> {
-    /// Of each wall, at each of its points: the terms along and away from it.
+    /// The terms along and away from each wall, at each of its points.
     terms: Vec<Vec<[T; 2]>>,
 }
 
@@ -132,7 +132,7 @@ impl<T: Real> WallTerms<T> {
                     let q = if view.far() { -*q } else { *q };
                     let (by_tangent, by_depth) = (*p * *fade, q * *fade);
                     let at = i * n + j;
-                    // Rows run along j.
+                    // Rows are along j.
                     if view.along_i() {
                         control.across[at] += by_tangent;
                         control.along[at] += by_depth;
@@ -171,7 +171,7 @@ struct EdgeView<'a, T> {
 }
 
 impl<T: Real> EdgeView<'_, T> {
-    /// True when the edge runs along i.
+    /// True when the edge is along i.
     fn along_i(&self) -> bool {
         matches!(self.edge, GridSide::FirstJ | GridSide::LastJ)
     }

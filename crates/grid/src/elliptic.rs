@@ -41,7 +41,7 @@ pub struct Elliptic<'a, T: Real> {
     /// The most sweeps; each solves every grid line of one direction once, the directions taking
     /// turns, two sweeps each.
     pub sweeps: usize,
-    /// Stops when no point moves by more than this share of the size.
+    /// Stops when no point moves by more than this, relative to the size.
     pub tolerance: f64,
     /// Over-relaxation, between 0 and 2.
     pub omega: f64,
@@ -64,7 +64,7 @@ pub struct Smoothed<T> {
     pub sweeps: usize,
     /// Largest step of the last sweep, relative to the size.
     pub change: f64,
-    /// That of each sweep.
+    /// The largest step of each sweep, relative to the size.
     pub history: Vec<f64>,
     /// Deviations of the walls from their specification.
     pub walls: Vec<WallReport>,
@@ -204,7 +204,7 @@ fn smoothed<T: Real, const L: usize>(
     Ok(Smoothed { grid, sweeps: done, change, history, walls, converged })
 }
 
-/// The points under way, as rows along j, or along i when they are turned.
+/// The current points, as rows along j, or along i when they are turned.
 enum SmoothedPoints<'a, T: Real, const L: usize> {
     Free(Banks<T, L>),
     On(Constraint<'a, T>),

@@ -17,7 +17,7 @@ pub struct BoundaryPatch {
     pub faces: Vec<[usize; 4]>,
 }
 
-/// A mesh of hexahedra, of which some may be collapsed at poles.
+/// A mesh of hexahedra, some of which may be collapsed at poles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HexMesh {
     /// Nodes.
@@ -40,7 +40,7 @@ pub const HEX_FACES: [[usize; 4]; 6] =
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
 
 impl HexMesh {
-    /// The number of cells of which corners coincide, as at poles.
+    /// The number of cells with coincident corners, as at poles.
     pub fn collapsed(&self) -> usize {
         let is_collapsed = |cell: &&[usize; 8]| (1..8).any(|k| cell[..k].contains(&cell[k]));
         self.cells.iter().filter(is_collapsed).count()
@@ -194,7 +194,7 @@ fn nodes_while<T: Real>(
     Ok((nodes.points, numbers))
 }
 
-/// Nodes found again by their place.
+/// Nodes found by position.
 struct Nodes {
     tolerance: f64,
     points: Vec<Vec3>,
@@ -202,7 +202,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The node at a point; only `shared` ones, of faces, are looked for.
+    /// The node at a point; only `shared` ones, on faces, are searched for duplicates.
     fn id(&mut self, p: Vec3, shared: bool) -> usize {
         let new = self.points.len();
         if !shared || self.tolerance == 0.0 {

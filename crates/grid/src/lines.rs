@@ -8,7 +8,7 @@ use moldloft_parallel::prelude::*;
 pub struct ZebraRows<T> {
     pub m: usize,
     pub n: usize,
-    /// Of each component the even rows and the odd rows.
+    /// The even rows and the odd rows of each component.
     pub colours: [Vec<Vec<T>>; 2],
 }
 

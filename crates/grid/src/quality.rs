@@ -21,7 +21,7 @@ pub enum QualityMetric {
     GrowthI,
     /// The same along j.
     GrowthJ,
-    /// Distance of the corners from the plane half-way between the diagonals, over the root of the
+    /// Distance of the corners from the plane midway between the diagonals, over the root of the
     /// area.
     Warp,
     /// The largest angle, in radians, by which a grid line turns at a corner of the cell.

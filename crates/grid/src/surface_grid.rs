@@ -45,7 +45,8 @@ impl fmt::Display for GridSide {
     }
 }
 
-/// Below this share of the size two points count as one: rounding of coordinates, and no more.
+/// Two points nearer to each other than this, relative to the size, count as one: the rounding of
+/// coordinates, no more.
 pub(crate) const SAME: f64 = 1e-10;
 
 /// Ratio of the first step of an edge to the next above which it is a gap.
@@ -136,7 +137,7 @@ impl<T: Real> SurfaceGrid<T> {
         SurfaceGrid { m: self.m, n: self.n, planes: [plane(0), plane(1), plane(2)] }
     }
 
-    /// Refuses grids of fewer than `least` points each way.
+    /// Refuses grids of fewer than `least` points in either direction.
     pub(crate) fn check_count(&self, least: usize) -> Result<(), GridError> {
         if self.m.min(self.n) >= least {
             return Ok(());

@@ -19,7 +19,7 @@ type Pack<T, const L: usize> = [T; L];
 pub struct Banks<T, const L: usize> {
     pub m: usize,
     pub n: usize,
-    /// Of the even rows and of the odd ones, of each component: row 2 (b L + l) + colour is lane l of the
+    /// The even rows and the odd ones of each component: row 2 (b L + l) + colour is lane l of the
     /// packs b n .. (b + 1) n. Lanes behind the last row repeat it.
     colours: [Vec<Vec<Pack<T, L>>>; 2],
     /// Memory of the banks before rows became columns, for the next time.
@@ -360,7 +360,7 @@ impl<T: Real, const L: usize, const C: usize> Bank<'_, T, L, C> {
     }
 }
 
-/// The points after and before those of a bank's rows, at place `j`.
+/// The points after and before those of a bank's rows, at index `j`.
 #[inline(always)]
 fn sides<T: Real, const L: usize, const C: usize, const ODD: bool>(
     facing: &[&[Pack<T, L>]; C],

@@ -90,7 +90,7 @@ fn first(text: &str, n: usize) -> String {
     text.chars().take(n).collect()
 }
 
-/// A number in ten columns, at the left of which one stays blank, with as many digits as fit.
+/// A number in ten columns, the leftmost of them blank, with as many digits as fit.
 fn fixed(x: f64) -> Option<String> {
     let x = x + 0.0;
     (0..=7).rev().map(|digits| format!("{x:.digits$}")).find(|s| s.len() < WIDTH).map(|s| {

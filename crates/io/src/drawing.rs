@@ -7,7 +7,7 @@
 use crate::text::{put, xml};
 use std::fmt::Write as _;
 
-/// A step that falls short of the wanted one by this share is the wanted one.
+/// A step may be shorter than the required one by this, relatively.
 const ROUNDING: f64 = 1e-12;
 
 /// A cut of the model with a plane of constant coordinate.

@@ -215,10 +215,11 @@ pub(crate) fn check_positions(mesh: &Mesh, limit: f64) -> Result<(), WriteError>
     Ok(())
 }
 
-/// The share of a patch's area that single precision may turn or change.
+/// The largest change of the area vectors of a patch by single precision, relative to its area.
 const LOST: f64 = 0.01;
 
-/// Refuses a mesh with a patch that loses its shape in single precision, its places taken from `origin`.
+/// Refuses a mesh with a patch that loses its shape in single precision, with positions relative to
+/// `origin`.
 pub(crate) fn check_single(
     mesh: &Mesh,
     origin: Vec3,

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashMap};
 /// plane.
 const IN_PLANE: f64 = 1e-9;
 
-/// An opening whose points are within this share of its size of a plane is flat.
+/// An opening is flat when its points are within this of a plane, relative to its size.
 const FLAT: f64 = 1e-6;
 
 /// Volume, relative to the sum of the absolute volumes of its cones, below which it is zero: a
@@ -54,7 +54,7 @@ pub fn turned(surfaces: &[StructuredGrid], go_on: &dyn Fn() -> bool) -> Option<V
     let mut free: Vec<RimStep> = Vec::new();
     for run in steps.chunk_by(|a, b| a.pair() == b.pair()) {
         match run {
-            // Neighbours that face alike run along a common edge in opposite directions.
+            // Neighbours with the same orientation traverse a common edge in opposite directions.
             [a, b] if a.grid != b.grid => bodies.join(a.grid, b.grid, a.nodes == b.nodes),
             // A seam of a grid with itself.
             [_, _] => {}
@@ -104,7 +104,8 @@ fn rim_steps(surfaces: &[StructuredGrid], points: &[Vec<Vec3>]) -> Vec<RimStep> 
     steps
 }
 
-/// The way round a grid of `m` by `n` points along its four edges and back to the first, as places in memory.
+/// The path round a grid of `m` by `n` points along its four edges and back to the first, as
+/// indices in memory.
 fn rim([m, n, _]: [usize; 3]) -> Vec<usize> {
     let low = (0..m - 1).map(|i| i * n);
     let last = (0..n - 1).map(|j| (m - 1) * n + j);

@@ -358,7 +358,7 @@ mod tests {
         "\u{feff}",
     ];
 
-    /// A copy with some places changed, doubled, taken out, or with a scrap in them.
+    /// A copy with some parts changed, doubled or removed, or with a scrap inserted.
     fn damaged(seed: &[u8], chance: &mut Chance) -> Vec<u8> {
         let mut bytes = seed.to_vec();
         for _ in 0..=chance.below(4) {

@@ -200,7 +200,7 @@ pub struct PeriodicPartner {
     pub name: String,
     /// Its partner.
     pub partner: String,
-    /// From the boundary to its partner.
+    /// The map from the boundary to its partner.
     pub how: Periodicity,
 }
 

@@ -200,7 +200,7 @@ impl File {
                 flat = made.0;
                 (&flat, Some(made.1))
             }
-            // Of cylinders, cones, spheres and tori; their curves are in space alone.
+            // Cylinders, cones, spheres and tori; their curves are in space alone.
             _ => {
                 let Some(made) = brep.nurbs(face) else { return };
                 flat = made;
@@ -212,7 +212,7 @@ impl File {
         if let [cycle] = &face.loops[..]
             && doubly_closed(cycle)
         {
-            // Its loop runs along two seams alone: the face is all of the surface.
+            // The loop consists of two seams alone: the face is all of the surface.
             let fields = [number, 0, 0].map(|x| x.to_string());
             self.add(144, 0, "00000000", &style, &fields);
             return;
@@ -331,7 +331,7 @@ impl File {
     }
 }
 
-/// True for a loop of which each edge has two sides.
+/// True for a loop each of whose edges has two sides.
 fn doubly_closed(cycle: &[Coedge]) -> bool {
     cycle.iter().all(|a| cycle.iter().filter(|b| a.edge == b.edge).count() == 2)
 }

@@ -61,7 +61,7 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(out)
 }
 
-/// The longest header that is looked for.
+/// The longest header accepted.
 const LONGEST_HEADER: usize = 1 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -280,7 +280,7 @@ impl PlyBody<'_> {
         ReadError { format: FORMAT, place: self.here(), expected, found }
     }
 
-    /// Of a text; binary numbers follow one another.
+    /// Skips blanks of a text; binary numbers follow one another.
     fn skip_blanks(&mut self) {
         if self.encoding == PlyEncoding::Text {
             while let Some(blank) = self.rest.first().filter(|b| b.is_ascii_whitespace()) {
@@ -408,7 +408,7 @@ fn vertices(
 #[derive(Default)]
 struct PlyCorners {
     all: Vec<i64>,
-    /// Of each face: where its corners end, and its place.
+    /// For each face the end of its corners, and its position.
     faces: Vec<(usize, FilePosition)>,
     strips: bool,
 }

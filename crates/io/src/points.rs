@@ -26,8 +26,8 @@ pub struct PointTable {
     pub head: Vec<String>,
     /// Separator of the columns of the first row; `None` for blanks.
     pub delimiter: Option<char>,
-    /// Of an aerofoil in two halves, each from the nose, the numbers of their points. The rows are
-    /// one run then, from the upper trailing edge round the nose.
+    /// The numbers of points of an aerofoil in two halves, each from the nose. The rows are then
+    /// one run, from the upper trailing edge round the nose.
     pub halves: Option<[usize; 2]>,
 }
 

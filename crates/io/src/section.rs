@@ -10,7 +10,7 @@ const FORMAT: &str = "aerofoil";
 /// Order of points in an aerofoil file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listing {
-    /// From the trailing edge along the upper side to the nose and back along the lower.
+    /// From the trailing edge along the upper side to the nose and back along the lower side.
     Selig,
     /// Two lists, upper and lower, each from the nose to the trailing edge.
     Lednicer,

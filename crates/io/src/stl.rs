@@ -217,8 +217,9 @@ fn text(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
 }
 
 /// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
-/// area at poles are dropped. Facets face out of closed bodies, whichever way their surfaces run, and out of open ones
-/// as far as their rims say where that is; else along r_i x r_j. With `flip` they face the other way.
+/// area at poles are dropped. Facets face out of closed bodies, whatever the orientation of their
+/// surfaces, and out of open ones where their rims determine the outside; else along r_i x r_j.
+/// With `flip` they are reversed.
 ///
 /// # Errors
 /// Empty grids; blocks that are not surfaces; coordinates that are not finite in single precision;

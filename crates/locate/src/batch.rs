@@ -258,7 +258,7 @@ impl NearestSurface {
             if tree.exact || exhausted {
                 return Nearest::lost();
             }
-            // No descent in a cell settled, as at a crease of which nothing is known.
+            // No descent in a cell converged, as at an unknown crease.
             let Solution { at, report, .. } = nearest_in_surface(surface, tree, p, None);
             let xyz = surface.jet(at[0], at[1], Order::Zero).p;
             return Nearest { at, xyz, distance: xyz.distance(p), status: report.status };
@@ -404,7 +404,8 @@ impl<'a> Search<'a> {
             return;
         }
         if let Some((w, h)) = foot {
-            // The foot's own second derivatives against the third ones on the way to the corners.
+            // The foot's own second derivatives against the bound of the third ones up to the
+            // corners.
             let d = [1.0 + w[0].abs(), 1.0 + w[1].abs()];
             let by = [
                 (n0 * d[0] + n1 * d[1]) / 3.0,

@@ -30,16 +30,16 @@ use smallvec::SmallVec;
 /// Minimum length of branches that are found, relative to the size.
 pub const SMALLEST: f64 = 0.02;
 
-/// Pairs that a search looks at before it gives up, as it does where shapes coincide.
+/// Maximum number of pairs in a search, which coincident shapes exceed.
 const MOST_PAIRS: usize = 400_000;
 
-/// More branches than this are not looked for.
+/// Maximum number of branches.
 const MOST_BRANCHES: usize = 2_000;
 
 /// Sides of the grid of bins in which stretches of branches are looked up.
 const BINS: usize = 48;
 
-/// A touch is a gap of less than this share of the size.
+/// Maximum gap of a touch, relative to the size.
 const TOUCH: f64 = 1e-9;
 
 /// Planes of cells at a smaller angle than this have no reliable line in common.
@@ -65,7 +65,7 @@ pub struct Touch {
 pub struct Branches {
     /// The branches, in the order in which they were found, which depends on the shapes only.
     pub branches: Vec<Branch>,
-    /// Places of contact without a branch.
+    /// Contacts without a branch.
     pub touches: Vec<Touch>,
     /// False when the search ran into its limit, as it does where shapes coincide or touch along a
     /// line.
@@ -187,7 +187,7 @@ impl CellPart {
         [[low[0], high[0]], [low[1], high[1]]]
     }
 
-    /// The surface's parameters at a place of the part's own, held within it.
+    /// The surface's parameters at the part's own ones, limited to the part.
     fn place(&self, cells: &Cells, [s, t]: [f64; 2]) -> [f64; 2] {
         let at = |k: usize, x: f64| self.middle[k] + self.half[k] * x.clamp(-1.0, 1.0);
         cells.pieces[self.piece as usize].place(at(0, s), at(1, t))
@@ -197,7 +197,7 @@ impl CellPart {
 /// A node of a tree in a search.
 #[derive(Clone, Copy)]
 struct TreeNode<'a> {
-    /// Of a fork, or of a cell with [`LEAF`] added.
+    /// Number of a fork, or of a cell with [`LEAF`] added.
     number: u32,
     bounds: &'a Box3,
 }
@@ -253,7 +253,7 @@ impl CutSurface {
     }
 }
 
-/// The forks with the numbers of items instead of those of their places in the order of leaves.
+/// The forks with the numbers of items instead of their indices in the order of leaves.
 fn numbered(mut forks: Vec<Fork>, order: &[u32]) -> Vec<Fork> {
     for below in forks.iter_mut().flat_map(|fork| &mut fork.below) {
         if *below & LEAF != 0 {
@@ -263,16 +263,16 @@ fn numbered(mut forks: Vec<Fork>, order: &[u32]) -> Vec<Fork> {
     forks
 }
 
-/// A search under way.
+/// State of a search.
 struct Finder<'a> {
     crossing: Crossing<'a>,
     first: &'a CutSurface,
     second: Option<&'a CutSurface>,
-    /// Stretches of branches, and their numbers by the place of their first unknowns.
+    /// Stretches of branches, and their numbers by their first unknowns.
     chords: Vec<Chord>,
     bins: Vec<SmallVec<[u32; 6]>>,
     trails: Trails,
-    /// Parts that are still to be looked at in pairs.
+    /// Parts to be tested in pairs.
     parts: Vec<(CellPart, CellPart)>,
     found: Branches,
     pairs: usize,
@@ -337,7 +337,7 @@ fn root(cells: &Cells) -> (u32, &Box3) {
     (if cells.forks.is_empty() { LEAF } else { 0 }, &cells.tree.bounds)
 }
 
-/// Half the way round a box, to compare sizes.
+/// Half the girth of a box, to compare sizes.
 fn girth(b: &Box3) -> f64 {
     let side = b.high - b.low;
     side.x + side.y + side.z
@@ -578,7 +578,7 @@ impl Finder<'_> {
         PlaneMeeting::Line { at: at + d * middle, reach, places }
     }
 
-    /// True when a stretch of a branch passes within `reach` of a place of the cell with these
+    /// True if a stretch of a branch passes within `reach` of a point of the cell with these
     /// parameters.
     fn covered(&self, x: Vec3, reach: f64, uv: [f64; 2]) -> bool {
         self.passing(uv).any(|chord| {
@@ -587,7 +587,7 @@ impl Finder<'_> {
         })
     }
 
-    /// The stretches of branches near a place of the first surface.
+    /// The stretches of branches near a point of the first surface.
     fn passing(&self, [u, v]: [f64; 2]) -> impl Iterator<Item = &Chord> {
         let bin = bins_between(u, u).start * BINS + bins_between(v, v).start;
         self.bins[bin].iter().map(|&k| &self.chords[k as usize])
@@ -634,7 +634,7 @@ impl Finder<'_> {
         })
     }
 
-    /// Looks for a place of contact near a pair that is nearly parallel.
+    /// Searches for a contact near a nearly parallel pair.
     fn touch(&mut self, guess: Unknowns, ranges: &[[f64; 2]; 4]) {
         let Some(touch) = self.crossing.contact(guess, ranges) else {
             return;
@@ -695,7 +695,7 @@ struct Chord {
     /// Maximum distance of the branch from it: an eighth of its turn.
     bow: f64,
     branch: u32,
-    /// Of the first station.
+    /// Index of the first station.
     number: usize,
 }
 
@@ -706,7 +706,7 @@ impl Chord {
         Self { from: a.x, way, inverse: 1.0 / way.norm_sq(), bow, branch, number }
     }
 
-    /// The square of the distance of a place.
+    /// Squared distance of a point.
     #[inline]
     fn off_sq(&self, x: Vec3) -> f64 {
         let away = x - self.from;

@@ -12,8 +12,8 @@ use crate::tree::{Boxes, SurfaceTree};
 use moldloft_num::{Box3, Order, SurfJet, Surface, Vec3};
 use pulp::WithSimd;
 
-/// Pieces are halved until they bend by less than this share of their length, for nearest points,
-/// for many intersections, and for one …
+/// Curvature relative to their length up to which pieces are halved, for nearest points, for many
+/// intersections, and for one …
 const BEND: f64 = 0.06;
 const FINE_BEND: f64 = 0.05;
 const COARSE_BEND: f64 = 0.12;
@@ -44,7 +44,7 @@ pub(crate) struct Flat {
     pub products: [f64; 3],
     /// One over their determinant, a . a and b . b.
     pub inverses: [f64; 3],
-    /// From the point of equal s and t, slack included.
+    /// Bound of the distance from the point of equal s and t, slack included.
     pub bend: f64,
 }
 
@@ -108,7 +108,7 @@ impl Quad {
 /// The same tree with four children each.
 fn quads(forks: &[Fork]) -> Vec<Quad> {
     let mut out = Vec::with_capacity(forks.len() / 2 + 1);
-    // Forks to be turned into quads, with the place that waits for their number.
+    // Forks to be turned into quads, with the entry that waits for their number.
     let mut todo: Vec<(u32, Option<(usize, usize)>)> = Vec::new();
     if !forks.is_empty() {
         todo.push((0, None));
@@ -166,7 +166,7 @@ pub(crate) struct Cells {
     pub twigs: Vec<Twig>,
 }
 
-/// A piece or a part of one, on the way from pieces to cells.
+/// A piece or a part of one, between pieces and cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Twig {
     pub patch: BezierPatch,
@@ -175,7 +175,7 @@ pub(crate) struct Twig {
     pub below: u32,
     /// The cell that it is, if it is one.
     pub cell: u32,
-    /// From and to in the piece's own parameters.
+    /// Range in the piece's own parameters.
     place: [[f64; 2]; 2],
 }
 
@@ -534,7 +534,7 @@ fn scaled([x, s, t]: &[[f64; 4]; 3], [by_u, by_v]: [f64; 2]) -> [Vec3; 3] {
 }
 
 impl Polynomials {
-    /// The number of the piece at (u, v), its scales, and the place in its own parameters.
+    /// The number of the piece at (u, v), its scales, and its own parameters there.
     #[inline]
     fn locate(&self, u: f64, v: f64) -> (usize, [f64; 2], [f64; 2]) {
         let [us, vs] = &self.ends;

@@ -15,20 +15,20 @@ use crate::roots::{RootCollector, TANGENT, from_all, taken};
 use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Vec3};
 
-/// Curves nearer to each other than this share of the size meet: curves in space that are made to meet do so to
-/// rounding only.
+/// Distance, relative to the size, below which curves intersect: curves in space that are
+/// constructed to intersect do so to rounding only.
 const JOINED: f64 = 1e-9;
 
-/// A contact without a transversal crossing counts from this share of the size on.
+/// Minimum distance, relative to the size, of separate contacts without a transversal crossing.
 const TOUCH: f64 = 1e-10;
 
-/// Pairs smaller than this share of the size are not halved.
+/// Size of pairs, relative to that of the curves, below which they are not halved.
 const SMALLEST: f64 = 1e-6;
 
-/// Pairs that are looked at for the nearest place of curves that do not meet.
+/// Maximum number of pairs in the search for the nearest points of curves that do not intersect.
 const MOST_NEAREST: usize = 20_000;
 
-/// A place that is nearer by less than this share is no other one.
+/// Relative difference of distances below which a pair of points is not nearer.
 const NEARER: f64 = 1e-12;
 
 /// The most steps of a descent.
@@ -84,7 +84,7 @@ fn apart(p: &CurvePiece, q: &CurvePiece) -> f64 {
 /// A set of vectors: its centre, and its radius.
 type VectorBall = (Vec3, f64);
 
-/// The places, slopes and curvatures of a piece by its share of the way.
+/// Positions, slopes and curvatures of a piece with respect to its relative parameter.
 fn balls(piece: &CurvePiece) -> [VectorBall; 3] {
     let b = &piece.net;
     let first = [0, 1, 2].map(|k| (b[k + 1] - b[k]) * 3.0);
@@ -146,8 +146,9 @@ fn square(
     (0.5 * r.norm_sq(), [x[1].dot(r), -y[1].dot(r)], second, plain)
 }
 
-/// Descent from a place to a least distance within a rectangle: Newton's steps, projected to the rectangle and halved
-/// while the distance does not fall; the terms with second derivatives are left out where they are not convex.
+/// Descent to a minimum of the distance within a rectangle: Newton's steps, projected to the
+/// rectangle and halved while the distance does not decrease; terms with second derivatives are
+/// left out if they are not convex.
 fn descend(
     a: &dyn Curve<f64>,
     b: &dyn Curve<f64>,
@@ -268,7 +269,8 @@ struct PairSearch<'a> {
     found: RootCollector<2>,
     /// A distance that the curves have somewhere.
     bound: f64,
-    /// The pairs that may still be looked at for the nearest place, when that is sought instead of meetings.
+    /// Remaining number of pairs for the nearest points, if these are searched instead of
+    /// intersections.
     nearest: Option<usize>,
 }
 

@@ -2,12 +2,11 @@
 //!
 //! `shape -> pieces with bounds -> candidates -> Newton on the shape itself -> solution + report`
 //!
-//! From a given start the solution is the one that a damped Newton iteration leads to; when that
-//! fails, or without a start, subdivision looks for all solutions and takes the nearest. Each
-//! answer depends on the shapes and the start only, never on earlier answers, and comes with a
-//! [`LocateReport`]. Searches run in plain numbers ([`PlainCurve`], [`PlainSurface`] show shapes of any
-//! scalar so); derivatives follow from the solution by the implicit function theorem
-//! ([`implicit`]).
+//! From a given start the solution is the one that a damped Newton iteration leads to; if that
+//! fails, or without a start, subdivision finds all solutions and takes the nearest. Each answer
+//! depends on the shapes and the start only, never on earlier answers, and has a [`LocateReport`].
+//! Searches use plain numbers ([`PlainCurve`], [`PlainSurface`] are such views of shapes of any
+//! scalar); derivatives follow from the solution by the implicit function theorem ([`implicit`]).
 //!
 //! Guarantees of completeness are stated in [`pieces`], [`roots`], [`curve_pairs`] and
 //! [`branches`].

@@ -38,7 +38,7 @@ pub struct Crossing<'a> {
     pub first: &'a dyn Surface<f64>,
     /// The plane or the other surface.
     pub other: Other<'a>,
-    /// The length that accuracies are shares of.
+    /// The length to which accuracies are relative.
     pub size: f64,
     /// For each unknown, whether its 0 and 1 are one seam of a closed surface.
     pub closed: [bool; 4],
@@ -106,7 +106,7 @@ const CLOSE: f64 = 1e-8;
 struct MarchResidual {
     /// Between the shapes.
     gap: f64,
-    /// From the plane across.
+    /// Distance from the normal plane.
     off: f64,
     /// Normal of the second shape; not normalised.
     normal: Vec3,
@@ -152,7 +152,7 @@ const SAME_POINT: f64 = 1e-9;
 /// the step: larger ones indicate another branch, or a bend that requires shorter steps.
 const MAX_STEP_DEVIATION: f64 = 0.05;
 
-/// Steps of a walk as shares of the size: the first, the longest, the least.
+/// Steps of a walk, relative to the size: the first, the longest, the least.
 const STEPS: [f64; 3] = [1.0 / 48.0, 1.0 / 24.0, 1e-8];
 
 impl<'a> Crossing<'a> {
@@ -189,8 +189,8 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// For single points of an intersection of which the size is known: no branch can be followed
-    /// across a seam.
+    /// For single points of an intersection with a known size: no branch can be followed across a
+    /// seam.
     pub fn local(first: &'a dyn Surface<f64>, other: Other<'a>, size: f64) -> Self {
         Self { first, other, size, closed: [false; 4], quick: [None; 2] }
     }
@@ -289,7 +289,7 @@ impl<'a> Crossing<'a> {
         })
     }
 
-    /// Both shapes at a place, the first one's unit normal, and a normal of the second.
+    /// Both shapes at a point, the first one's unit normal, and a normal of the second.
     fn normals(&self, q: Unknowns) -> (Tangents, Option<Tangents>, Vec3, Vec3) {
         let view = self.view(q, Vec3::zero(), Vec3::zero());
         let [_, u, v] = view.j;
@@ -349,7 +349,7 @@ impl<'a> Crossing<'a> {
         Some(TracePoint { q, rate: [u, v, p, r], x: j[0], tangent })
     }
 
-    /// Both shapes at a place near the point in the plane through `x` across `d`.
+    /// Both shapes near the point in the plane through `x` normal to `d`.
     fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> MarchResidual {
         struct Look<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2]);
         impl pulp::WithSimd for Look<'_> {
@@ -433,8 +433,8 @@ impl<'a> Crossing<'a> {
         Lanes::new().run(NewtonSteps(self, guess, [x, d], until))
     }
 
-    /// The same, until a step is so short that nothing is evaluated again: the tangent is that of the
-    /// place before it then.
+    /// The same, up to a step so short that nothing is evaluated again: the tangent is then that of
+    /// the previous point.
     #[inline(always)]
     fn steps_by<S: pulp::Simd>(
         &self,
@@ -480,7 +480,7 @@ impl<'a> Crossing<'a> {
         None
     }
 
-    /// One way from a station until an edge, the start, or a place of contact.
+    /// One direction from a station until an edge, the start, or a contact.
     fn walk(&self, start: TracePoint, sign: f64) -> (Vec<TracePoint>, BranchEnd) {
         struct Walk<'a>(&'a Crossing<'a>, TracePoint, f64);
         impl pulp::WithSimd for Walk<'_> {
@@ -639,7 +639,7 @@ impl<'a> Crossing<'a> {
         lines
     }
 
-    /// True when the normals on both sides of a joint are different near a place.
+    /// True if the normals on both sides of a joint differ near a point.
     fn creased(&self, q: Unknowns, k: usize, value: f64) -> bool {
         let normal = |by: f64| {
             let mut q = q;
@@ -660,9 +660,9 @@ impl<'a> Crossing<'a> {
         branch.extend(&both[usize::from(skipped)..]);
     }
 
-    /// The place on the way to `ahead` at which a surface is creased, so that the branch turns there:
-    /// two stations with the tangents of both sides. It is in front of `from`: the way to a guess may
-    /// lead back over a crease that the branch has passed.
+    /// The point on the step to `ahead` at which a surface has a crease, so that the branch turns
+    /// there: two stations with the tangents of both sides. It is in front of `from`: the step to a
+    /// guess may lead back over a crease that the branch has passed.
     fn crease(
         &self,
         lines: &[(usize, f64)],
@@ -720,7 +720,7 @@ impl<'a> Crossing<'a> {
         same && a.x.distance(b.x) <= 1e-7 * self.size
     }
 
-    /// The first edge between two stations, the second of which is outside.
+    /// The first edge between two stations; the second one is outside.
     fn edge_between(&self, a: &TracePoint, b: &TracePoint) -> Option<(TracePoint, BranchEnd)> {
         let n = self.unknowns();
         let mut best: Option<(f64, TracePoint, BranchEnd)> = None;
@@ -765,7 +765,7 @@ impl<'a> Crossing<'a> {
                 seed[k] = edge;
             }
         }
-        // Shapes that touch cross at such angles within the rounding of the place.
+        // Shapes that touch cross at such angles within the rounding of the position.
         let start = self.station(seed).filter(|_| self.direction(seed).norm() >= TANGENT)?;
         let (mut forward, end) = self.walk(start, 1.0);
         if end == BranchEnd::Closed {
@@ -774,14 +774,14 @@ impl<'a> Crossing<'a> {
         let (mut stations, begin) = self.walk(start, -1.0);
         stations.reverse();
         if begin == BranchEnd::Closed {
-            // The other way round it did not come past a narrow place, such as near a saddle.
+            // In the opposite direction it did not pass a narrow point, such as near a saddle.
             return Some(Branch { stations, ends: [BranchEnd::Closed; 2] });
         }
         stations.extend(forward.drain(1..));
         Some(Branch { stations, ends: [begin, end] })
     }
 
-    /// The point of the intersection near the place (u, v) of the first surface, in the plane
+    /// The point of the intersection near the point (u, v) of the first surface, in the plane
     /// through both normals there.
     pub fn near(&self, [u, v]: [f64; 2], second: Option<[f64; 2]>) -> Option<Unknowns> {
         let x = self.first.jet(u, v, Order::Zero).p;
@@ -814,7 +814,7 @@ impl<'a> Crossing<'a> {
 /// The place a step on from two stations: their cubic by the length, carried on. Also in space.
 #[inline(always)]
 fn onward(a: &TracePoint, b: &TracePoint, step: f64, sign: f64) -> (Unknowns, Vec3) {
-    // A chord of turn w is shorter than its arc by w^2 / 24, the way along a tangent by w^2 / 6.
+    // A chord of turn w is shorter than its arc by w^2 / 24, the path along a tangent by w^2 / 6.
     let (chord, turn) = (a.x.distance(b.x), a.tangent.distance(b.tangent));
     let arc = chord * (1.0 + turn * turn / 24.0);
     let turn = turn * step / arc;

@@ -8,7 +8,7 @@ use moldloft_num::period::{breaks_between, principal};
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
 
-/// Feet whose distances differ by less than this share of the size are equally near.
+/// Difference of distances, relative to the size, within which feet are equally near.
 const TIE: f64 = 1e-9;
 
 /// Distance, in sizes, at which a farther point is replaced by one in the same direction: from
@@ -26,7 +26,7 @@ const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
 /// The most feet that are distinguished.
 const MOST_FEET: usize = 256;
 
-/// The point to which the nearest one is sought.
+/// The point whose nearest one is searched.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sought {
     /// At most [`FAR`] away: for distances.
@@ -399,8 +399,8 @@ fn across_poles(surface: &dyn Surface<f64>, p: Vec3, mut foot: Foot<2>, size: f6
     foot
 }
 
-/// A surface whose normals on both sides of a place this near it are at an angle of at least this
-/// cosine is creased between.
+/// Distance from a position at which the normals on both sides are compared; with a larger angle
+/// than this cosine there is a crease between.
 const CREASE_WITHIN: f64 = 1e-4;
 const CREASE: f64 = 0.9999;
 
@@ -575,8 +575,8 @@ fn nearest_of<const N: usize>(mut feet: Vec<Foot<N>>, p: Vec3, size: f64) -> Vec
 
 /// The point of a curve nearest to `p`.
 ///
-/// From a `start` it is the foot that descent from there leads to, a local minimum; when the
-/// descent fails, the nearest point of all, reported as [`LocateStatus::Fallback`]. Without a start it is
+/// From a `start` it is the foot that descent from there leads to, a local minimum; if the descent
+/// fails, the nearest point of all, reported as [`LocateStatus::Fallback`]. Without a start it is
 /// the nearest point of all; equally near ones (to 1e-9 of the size) are reported as
 /// [`LocateStatus::Multiple`]. Ends count: [`LocateStatus::EdgeClamped`].
 pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> Solution<1> {
@@ -640,7 +640,7 @@ pub fn nearest_in_curve(
             }
         }
     }
-    // From the border of a piece on into the neighbours, and to full accuracy.
+    // From the border of a piece into the neighbours, and to full accuracy.
     let whole = |foot: Foot<1>| on_whole_curve(curve, p, foot.at[0], tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
     let mut feet = nearest_of(feet, near, tree.size);
@@ -730,7 +730,7 @@ pub fn nearest_in_surface(
                 feet.push(foot);
                 continue;
             }
-            // The nearer half last, so that it is looked at first.
+            // The nearer half last, so that it is tested first.
             let mut parts =
                 patch.halves(usize::from(b > a)).map(|q| (distance_sq(&q.bounds(), near), q));
             if parts[0].0 < parts[1].0 {
@@ -740,7 +740,7 @@ pub fn nearest_in_surface(
         }
     }
     feet.push(foot);
-    // From the border of a piece on into the neighbours, and to full accuracy.
+    // From the border of a piece into the neighbours, and to full accuracy.
     let whole = |foot: Foot<2>| on_whole_surface(surface, p, foot.at, tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
     let mut feet = nearest_of(feet, near, tree.size);

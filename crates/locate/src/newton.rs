@@ -12,7 +12,7 @@ pub const OUTSIDE: f64 = 1e-6;
 /// Maximum number of steps.
 pub const MOST_STEPS: u32 = 50;
 
-/// Residuals below this share of the size count as zero.
+/// Residual, relative to the size, that counts as zero.
 pub const ACCURACY: f64 = 1e-12;
 
 /// Result of an iteration.

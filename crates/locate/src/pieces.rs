@@ -29,8 +29,8 @@ pub struct CurvePiece {
     pub slack: f64,
     /// Its part of the piece that the slack was measured on.
     pub share: f64,
-    /// True at a side, first and last, beyond which the curve may go on in another direction or
-    /// does not go on: an end or a corner.
+    /// For each side, first and last, true if the curve may continue in another direction beyond it
+    /// or not at all: an end or a corner.
     pub open: [bool; 2],
 }
 
@@ -45,8 +45,8 @@ pub struct BezierPatch {
     pub slack: f64,
     /// Its parts, along u and v, of the piece that the slack was measured on.
     pub share: [f64; 2],
-    /// True at a side, low and high in u and in v, beyond which the surface may go on in another
-    /// direction or does not go on: an edge or a crease.
+    /// For each side, low and high in u and in v, true if the surface may continue in another
+    /// direction beyond it or not at all: an edge or a crease.
     pub open: [[bool; 2]; 2],
 }
 
@@ -308,8 +308,8 @@ pub fn distance_sq(b: &Box3, p: Vec3) -> f64 {
     d.norm_sq()
 }
 
-/// The length that accuracies are shares of: the diagonal of the box, and a little of its distance
-/// from the origin, whose rounding is part of every coordinate.
+/// The length to which accuracies are relative: the diagonal of the box, and a fraction of its
+/// distance from the origin, whose rounding is part of every coordinate.
 pub fn size_of(b: &Box3) -> f64 {
     let far = b.low.norm().max(b.high.norm());
     let size = b.diagonal() + 1e-3 * far;
@@ -381,8 +381,8 @@ pub fn curve_pieces(curve: &dyn Curve<f64>) -> Vec<CurvePiece> {
     done
 }
 
-/// Pieces with less slack than this share of the size are near enough to the shape to tell whether
-/// its tangents on both sides of a border are the same.
+/// Slack of pieces, relative to the size, below which they determine whether the tangents on both
+/// sides of a border are equal.
 const SMOOTH: f64 = 1e-9;
 
 /// True when two tangents are the same, to rounding.

@@ -108,7 +108,8 @@ mod tests {
         }
     }
 
-    /// The error falls with the sixth power of the step, and the place is in the plane across.
+    /// The error decreases with the sixth power of the step, and the prediction is in the normal
+    /// plane.
     #[test]
     fn the_outlook_is_of_the_sixth_order() {
         for sign in [1.0, -1.0] {

@@ -13,7 +13,7 @@ use crate::tree::{CurveTree, SurfaceTree};
 use moldloft_num::period::parameter_distance;
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 
-/// Pairs of pieces that a search looks at before it gives up.
+/// Maximum number of pairs of pieces in a search.
 const MOST_PAIRS: usize = 100_000;
 
 /// Relative flatness at which a piece has at most one root.
@@ -25,7 +25,7 @@ pub(crate) const TANGENT: f64 = 1e-6;
 /// Residual, relative to the size, of contacts without a transversal root.
 const TOUCH: f64 = 1e-10;
 
-/// A function g of space of which a level is sought along a curve: zero on it.
+/// A function g of space whose zeros along a curve are searched.
 #[derive(Clone, Copy)]
 pub enum Level<'a> {
     /// n . X - offset, with a unit normal n.
@@ -237,7 +237,7 @@ pub(crate) struct RootCollector<const N: usize> {
 }
 
 impl<const N: usize> RootCollector<N> {
-    /// `closed` states which unknowns run round.
+    /// `closed` is true for closed unknowns.
     pub fn new(size: f64, slack: &[f64; N], closed: [bool; N]) -> Self {
         Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack, closed }
     }

@@ -9,14 +9,15 @@ use crate::cells::{Cells, Flat, MOST_HALVINGS, derivative, patch_powers};
 use crate::march::{TracePoint, Unknowns};
 use moldloft_num::{Box3, Vec3};
 
-/// A branch that passes this share of a plate's half sides beside it passes it: where a line runs
-/// along the border of two plates each of them has it.
+/// Margin, relative to a plate's half sides, within which a branch counts for the plate: a line
+/// along the border of two plates counts for both.
 const NEIGHBOUR_MARGIN: f64 = 0.15;
 
-/// Turns are bounded on plates this much larger, so that there is one line at most beside them, too.
+/// Factor of the plates on which turns are bounded, so that there is at most one line beside them
+/// too.
 const GROWTH_MARGIN: f64 = 1.2;
 
-/// Boxes that overlap by less than this share of the size only touch.
+/// Overlap, relative to the size, below which boxes only touch.
 const TOUCH_TOLERANCE: f64 = 1e-12;
 
 /// A multiple of the rounding of single precision, relative to the input numbers.
@@ -36,7 +37,7 @@ const STACK: usize = 2 * MOST_HALVINGS as usize + 2;
 struct Slab {
     /// By axis: c from the middle of the surface's box, a, b, and the unit normal.
     rows: [[f32; 4]; 3],
-    /// The normal's share of c.
+    /// Component of c along the normal.
     height: f32,
     bend: f32,
     /// The longer side.
@@ -118,7 +119,7 @@ impl SlabBox {
 struct NormalVariation {
     /// By axis the coefficients of s, t, s^2, s t.
     rows: [[f32; 4]; 3],
-    /// That of t^2, and a number for rounding.
+    /// Coefficient of t^2, and a bound of the rounding.
     last: [f32; 4],
 }
 
@@ -319,7 +320,7 @@ impl Plates {
 #[derive(Clone, Copy, Debug)]
 struct Leg {
     from: Unknowns,
-    /// One over the way to its end.
+    /// One over the displacement to its end.
     inverse: Unknowns,
 }
 
@@ -371,7 +372,7 @@ impl Trails {
         }
     }
 
-    /// True when a branch passes both plates at one place, or beside them.
+    /// True if a branch passes both plates at the same point, or beside them.
     pub fn pass(&self, p: &Sight, q: &Sight) -> bool {
         let [p, q] = [p, q].map(|at| at.all.ranges[at.number]);
         let wider = |[a, b]: [f64; 2]| {
@@ -379,7 +380,7 @@ impl Trails {
             [a - more, b + more]
         };
         let ranges = [p[0], p[1], q[0], q[1]].map(wider);
-        // A bin beside another that the plate only touches need not be looked at.
+        // An adjacent bin that the plate only touches need not be tested.
         let [us, vs] = p.map(|[a, b]| {
             let less = 1e-9 * (b - a);
             self.bin(a + less)..self.bin(b - less) + 1
@@ -422,11 +423,11 @@ pub(crate) trait Visitor {
     fn cells(&mut self, p: &Sight, q: &Sight) -> bool;
 }
 
-/// Two surfaces of which the pairs of plates are gone through.
+/// Two surfaces whose pairs of plates are visited.
 #[derive(Clone, Copy)]
 pub(crate) struct Pairs<'a> {
     both: [&'a Plates; 2],
-    /// From the place that the first one is measured from to that of the second.
+    /// Displacement from the origin of the first one's coordinates to that of the second's.
     shift: [f32; 3],
     margin: f32,
 }

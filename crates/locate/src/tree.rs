@@ -64,7 +64,7 @@ impl Boxes {
         self.grow(bounds, begin + middle, end, leaf);
     }
 
-    /// Calls `f` with every item of which `wanted` may hold for the box of each node above it.
+    /// Calls `f` with every item for which `wanted` holds for the box of each node above it.
     pub fn visit(&self, wanted: impl Fn(&Box3) -> bool, mut f: impl FnMut(u32)) {
         if self.nodes.is_empty() {
             return;
@@ -93,7 +93,7 @@ pub struct CurveTree {
     pub pieces: Vec<CurvePiece>,
     /// The box around all.
     pub bounds: Box3,
-    /// The length that accuracies are shares of.
+    /// The length to which accuracies are relative.
     pub size: f64,
 }
 
@@ -115,7 +115,7 @@ pub struct SurfaceTree {
     pub boxes: Boxes,
     /// The box around all.
     pub bounds: Box3,
-    /// The length that accuracies are shares of.
+    /// The length to which accuracies are relative.
     pub size: f64,
     /// True when every piece is the surface itself, to rounding.
     pub exact: bool,

@@ -31,7 +31,7 @@ pub struct Asked<'a> {
     pub folder: Option<PathBuf>,
 }
 
-/// Roles of names as the protocol calls them; the place in this list is the number in a message.
+/// Roles of names as the protocol calls them; the index in this list is the number in a message.
 const TOKEN_TYPES: [SemanticTokenType; 5] = [
     SemanticTokenType::TYPE,
     SemanticTokenType::VARIABLE,
@@ -351,7 +351,7 @@ fn tokens(document: &Document, text: &str, lines: &LineIndex<'_>) -> SemanticTok
     SemanticTokens { result_id: None, data }
 }
 
-/// Places as the editor spells them; those of one file follow each other.
+/// Locations as the editor spells them; those of one file follow each other.
 fn located(places: &[WorkspacePlace], open: &[OpenText<'_>]) -> Vec<(String, Range)> {
     let names: Vec<String> = open.iter().map(|(uri, ..)| Index::name_of(uri)).collect();
     let mut found = Vec::with_capacity(places.len());

@@ -108,7 +108,7 @@ struct EditorFront<'c> {
     texts: BTreeMap<String, TextDocumentItem>,
     /// Texts that ended an engine, with the message about them.
     held: BTreeMap<String, String>,
-    /// Runs under way: text and number.
+    /// Current runs: text and number.
     running: HashSet<(String, u64)>,
     /// Requests without an answer so far.
     pending: HashMap<RequestId, String>,

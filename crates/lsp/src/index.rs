@@ -8,7 +8,7 @@ use std::time::SystemTime;
 
 /// The most files that are followed.
 pub const MOST_FILES: usize = 5_000;
-/// The most folders and files that are looked at.
+/// The most folders and files searched.
 const MOST_ENTRIES: usize = 100_000;
 
 /// An open text: address, number of changes, text.

@@ -1,4 +1,4 @@
-//! Places: bytes of a text, and the protocol's lines and UTF-16 units, both from 0.
+//! Positions: bytes of a text, and the protocol's lines and UTF-16 units, both from 0.
 
 use lsp_types::{Position, Range};
 

@@ -67,7 +67,7 @@ enum RunState {
     Unknown,
 }
 
-/// A run under way, on a thread of its own.
+/// A run in progress, on a thread of its own.
 struct Running {
     /// Number of the run.
     serial: u64,
@@ -91,7 +91,8 @@ impl Running {
     }
 }
 
-/// The open texts. Programs run on threads of their own: whatever a text says, the server answers.
+/// The open texts. Programs run on threads of their own, so the server answers whatever a text
+/// contains.
 pub struct Server {
     open: BTreeMap<String, OpenDocument>,
     folders: Vec<PathBuf>,
@@ -293,7 +294,7 @@ impl Server {
         }
     }
 
-    /// Runs a text again: at once, or as soon as the run under way has stopped.
+    /// Runs a text again: at once, or as soon as the current run has stopped.
     fn run_again(&mut self, uri: &str, afresh: bool) {
         let Some(open) = self.open.get_mut(uri) else { return };
         match std::mem::replace(&mut open.state, RunState::Unknown) {

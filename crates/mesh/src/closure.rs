@@ -80,7 +80,8 @@ impl Closure {
     }
 }
 
-/// Two heights count as one within this share of the mesh's size: waterlines are found by iteration.
+/// Two heights nearer to each other than this, relative to the mesh's size, count as one:
+/// waterlines are found by iteration.
 const LEVEL_ACCURACY: f64 = 1e-9;
 
 /// Open edges with their names.

@@ -17,7 +17,7 @@ pub struct InnerSkin {
     pub around: usize,
     /// True for one with open edges: a plate.
     pub open: bool,
-    /// A point of it that is inside.
+    /// A point of it inside the piece around it.
     pub at: Vec3,
 }
 
@@ -35,7 +35,7 @@ struct SkinPiece {
     places: Vec<Vec3>,
     bounds: Box3,
     open: bool,
-    /// The piece of which it is an image.
+    /// The piece whose image it is.
     image_of: Option<usize>,
 }
 

@@ -24,8 +24,9 @@
 //! # Ok::<(), moldloft_mesh::MeshError>(())
 //! ```
 //!
-//! Invariant: this crate knows vertices by number only, never by the entity they came from; it opens
-//! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
+//! Invariant: this crate knows vertices by number only, never by the entity they came from; it
+//! opens no files. Sums are taken over fixed chunks in fixed order, so their bits do not depend on
+//! threads.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

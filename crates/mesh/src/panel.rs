@@ -96,8 +96,8 @@ impl<T: Real> Panel<T> {
     /// The signed volume of the cone from the origin to the panel.
     ///
     /// For a quad this is exact for the bilinear patch, which halves the tetrahedron of its corners
-    /// and so gives the mean of the two ways to split the quad into triangles:
-    /// (|abc| + |acd| + |abd| + |bcd|) / 12.
+    /// and so gives the mean of both splits of the quad into triangles: (|abc| + |acd| + |abd| +
+    /// |bcd|) / 12.
     #[inline]
     pub fn cone_volume(&self) -> T {
         match *self {

@@ -40,7 +40,7 @@ pub fn planar_triangles(
     loops: &[Vec<usize>],
     inner: &[usize],
 ) -> Vec<[usize; 3]> {
-    // Vertices in one place are one.
+    // Coincident vertices are one.
     let mut placed: HashMap<[u64; 2], usize> = HashMap::new();
     let mut corners: Vec<PlanarVertex> = Vec::new();
     let mut corner_of = |number: usize| {
@@ -50,7 +50,7 @@ pub fn planar_triangles(
             corners.len() - 1
         })
     };
-    // An edge that loops run along an even number of times parts nothing.
+    // An edge used by loops an even number of times separates nothing.
     let mut uses: HashMap<(usize, usize), u32> = HashMap::new();
     let mut edges = Vec::new();
     for l in loops {

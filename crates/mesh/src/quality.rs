@@ -42,8 +42,8 @@ pub struct PatchQuality {
     /// the corner angles a, with e = 90 degrees for quads and 60 for triangles (Ansys Fluent User's
     /// Guide, "Mesh Quality").
     pub skew: Statistics,
-    /// Warp: the distance of the corners from the plane parallel to both diagonals half-way between
-    /// them, over the panel size. 0 for plane panels.
+    /// Warp: the distance of the corners from the plane midway between both diagonals and parallel
+    /// to them, over the panel size. 0 for plane panels.
     pub warp: Statistics,
     /// Smallest angle between two sides of a panel, in radians.
     pub angle: Statistics,
@@ -94,7 +94,7 @@ fn of_patch(mesh: &Mesh, patch: usize, jumps: &[f64]) -> Option<PatchQuality> {
     let faces = mesh.patches()[patch].faces.clone();
     let mut size = Tally::new();
     let mut shape = [Tally::new(); 4];
-    // Of the angle the smallest is the worst.
+    // For the angle the smallest is the worst.
     let mut blunt = Tally::new();
     let (mut quads, mut triangles, mut without_area) = (0, 0, 0);
     for face in faces.clone() {

@@ -23,7 +23,7 @@ pub struct TopologyReport {
     pub closed: bool,
     /// No edge has more than two faces, and the faces around each vertex form one fan.
     pub manifold: bool,
-    /// Wherever two faces share an edge they run along it in opposite directions.
+    /// True when any two faces at an edge traverse it in opposite directions.
     pub oriented: bool,
     /// For a closed, manifold, oriented mesh: whether it encloses a positive volume, so that its
     /// normals point outward. `None` where that question has no answer.
@@ -37,7 +37,7 @@ pub struct TopologyReport {
     pub euler: i64,
     /// Edges with more than two faces.
     pub branching_edges: usize,
-    /// Edges whose two faces run along them in the same direction.
+    /// Edges that both faces traverse in the same direction.
     pub misoriented_edges: usize,
     /// Vertices whose faces form several fans.
     pub pinched_vertices: usize,
@@ -361,7 +361,7 @@ mod tests {
         assert!(!none.closed && none.manifold && none.components == 0 && none.euler == 0);
         let one = of_faces(3, &[[0, 1, 2, 2]]);
         assert_eq!((one.open_loops[0].vertices.clone(), one.euler), (vec![0, 1, 2], 1));
-        // Two triangles on one edge, the second turned the wrong way.
+        // Two triangles on one edge, the second with the wrong orientation.
         let turned = of_faces(4, &[[0, 1, 2, 2], [0, 1, 3, 3]]);
         assert!(!turned.oriented && turned.manifold && turned.misoriented_edges == 1);
         assert!(turned.open_loops.len() == 1 && turned.open_loops[0].edge_count() == 4);

@@ -4,7 +4,8 @@ use crate::half_edge::{edges, half_edges};
 use crate::{Mesh, is_triangle};
 use moldloft_num::{Plane, Vec3, find_root};
 
-/// The root of the chord serves where the height there is at most this share of those at the ends.
+/// The root of the chord is taken where the height there is at most this, relative to those at the
+/// ends.
 const FLAT_HEIGHT: f64 = 1e-12;
 
 /// A run of points.
@@ -18,7 +19,7 @@ pub struct Polyline {
 
 /// The cut of a mesh with a plane, as polylines in the order of their lowest face.
 ///
-/// Each panel side is cut once, so lines run through joined panels without gaps. A vertex in the
+/// Each panel side is cut once, so lines pass through joined panels without gaps. A vertex in the
 /// plane counts to its positive side; panels in the plane give nothing, but open edges in it do (so
 /// the section of half a hull with its centre plane is its profile).
 pub fn section(mesh: &Mesh, plane: &Plane<f64>) -> Vec<Polyline> {

@@ -25,7 +25,7 @@ const WORTH_A_THREAD: usize = 64;
 
 /// The named objects of a model with their dependencies, evaluated with one scalar.
 ///
-/// The only way to change it is [`Graph::apply`]. An object declared with the same name, kind, data
+/// It is changed by [`Graph::apply`] alone. An object declared with the same name, kind, data
 /// bits and parents keeps its shape; others, and their dependants, are evaluated again, until
 /// results are bitwise equal.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ pub struct Graph<T: Scalar> {
     gone: Vec<Key>,
     /// (parent, child) pairs that the parent still lists although they are obsolete.
     loose: HashSet<(Key, Key)>,
-    /// Objects whose rank must be looked at; and those of them that the run has yet to declare.
+    /// Objects whose rank must be checked; and those of them that the run has not declared yet.
     unranked: Vec<Key>,
     unranked_later: HashSet<Key>,
     /// True while a run declares objects.
@@ -64,7 +64,7 @@ pub struct Graph<T: Scalar> {
     context: Context,
 }
 
-/// Whether an application defines the whole model or changes a part of it.
+/// Extent of an application: the whole model or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// A run: objects that it does not declare disappear.
@@ -99,7 +99,7 @@ pub struct Declaration<'a, T: Scalar> {
     pub origin: u32,
 }
 
-/// An application under way: declares, reads and removes objects.
+/// An application in progress: declares, reads and removes objects.
 #[derive(Debug)]
 pub struct Run<'g, T: Scalar> {
     graph: &'g mut Graph<T>,

@@ -2,9 +2,9 @@
 //!
 //! `declarations -> Graph -> values`
 //!
-//! [`Graph::apply`] is the one way to change a model, for a run of a program and for a direct edit
-//! alike. The graph is generic over the scalar: a graph of dual numbers, made by running the same
-//! program with seeded numbers, gives exact derivatives of all that is computed from it.
+//! [`Graph::apply`] alone changes a model, for a run of a program as for a direct edit. The graph
+//! is generic over the scalar: a graph of dual numbers, made by running the same program with
+//! seeded numbers, gives exact derivatives of all that is computed from it.
 //!
 //! Invariant: this crate knows no particular kind, no mesh, no syntax and no file.
 

@@ -42,7 +42,7 @@ impl<T: Scalar> State<T> {
         matches!(self, State::Failed(_))
     }
 
-    /// True when its value was found in a way that deserves a warning.
+    /// True when the search for its value ended with a status that deserves a warning.
     pub fn warns(&self) -> bool {
         self.value().is_some_and(Value::warns)
     }

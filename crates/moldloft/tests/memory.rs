@@ -364,7 +364,7 @@ fn main() {
     assert!(!model(HULL).has_errors(), "{:?}", model(HULL).diagnostics());
     reported(&mut model(HULL)).unwrap();
     reported(&mut model(BODY)).unwrap();
-    // A share of the long run, for a machine that is slow.
+    // A part of the long run, for a slow machine.
     let asked = std::env::var("MOLDLOFT_MEMORY_POINTS").ok().and_then(|n| n.parse().ok());
     let points = asked.unwrap_or_else(|| rounds(6, 420));
     let mut tally = Tally::default();

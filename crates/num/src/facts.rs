@@ -6,11 +6,11 @@
 
 /// Facts of a curve:
 ///
-/// - `smooth`: one formula, of which all derivatives are continuous;
+/// - `smooth`: one formula with continuous derivatives of all orders;
 /// - `broken`: its breaks, stated beside this, are its joints and may be kinks (`joints_at_breaks`, `kinks_at_breaks`: one of
 ///   the two);
 /// - `breaks of [self.curve]`: breaks, joints and kinks of that curve, at equal parameters;
-/// - `open`: parameters do not run round;
+/// - `open`: parameters do not wrap;
 /// - `closed of [self.curve]`: they do where those of that curve do;
 /// - `not_rational`: no rational form is known;
 /// - `rational of [self.curve]`: of the same form as that curve.

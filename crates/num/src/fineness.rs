@@ -33,9 +33,9 @@ impl Fineness {
         if density.is_finite() { density } else { 0.0 }
     }
 
-    /// The metric of a place in which the sides of a panel have a length of about 1: its entries of u u and v v; `None`
-    /// where the surface has no normal. The sides follow the principal curvatures, one direction being at most six times
-    /// as long as the other.
+    /// The metric in which the sides of a panel have a length of about 1 at a point: its entries of
+    /// u u and v v; `None` where the surface has no normal. The sides follow the principal
+    /// curvatures, one direction being at most six times as long as the other.
     pub fn metric(&self, s: &SurfJet<f64>) -> Option<[f64; 2]> {
         let (n, _) = unit_normal(s)?;
         let (e, f, g) = (s.u.dot(s.u), s.u.dot(s.v), s.v.dot(s.v));

@@ -38,7 +38,7 @@ pub struct Axis<T> {
 }
 
 impl<T: Real> Axis<T> {
-    /// From `from` towards `to`, or `None` when they coincide.
+    /// The line from `from` towards `to`, or `None` when they coincide.
     pub fn through(from: Vec3<T>, to: Vec3<T>) -> Option<Self> {
         Some(Self { point: from, direction: (to - from).normalized()? })
     }

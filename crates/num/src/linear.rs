@@ -50,7 +50,7 @@ pub fn solve_dense<T: Real>(a: &mut [T], b: &mut [T]) -> Result<(), SingularMatr
     Ok(())
 }
 
-/// Pivots below this share of the largest are zero.
+/// Pivots below this are zero, relative to the largest.
 const NO_PIVOT: f64 = 1e-11;
 
 /// The solution of a small system, by elimination with full pivoting on rows scaled to equal size; `None`
@@ -116,7 +116,7 @@ pub fn determinant(matrix: &[f64], n: usize) -> f64 {
     product
 }
 
-/// A square matrix of which only the entries with |row - column| <= `width` are not zero, solved
+/// A square matrix whose entries are zero except those with |row - column| <= `width`, solved
 /// without pivoting (for the diagonally dominant or totally positive systems of splines).
 #[derive(Clone, Debug)]
 pub struct Banded<T> {

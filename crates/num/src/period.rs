@@ -1,17 +1,18 @@
-//! Closed shapes run round: which parameters of a curve or surface do, and the place within the first turn.
+//! Closed shapes: which parameters of a curve or surface wrap, and their values within the first
+//! turn.
 
 use crate::{Curve, Order, Real, Surface, Vec3};
 
 /// Distance beyond 0 and 1 at which a parameter still belongs to the end.
 const NEAR: f64 = 1e-9;
 
-/// Ends nearer to each other than this share of the size are one.
+/// Ends nearer to each other than this, relative to the size, are one.
 const GAP: f64 = 1e-9;
 
-/// Derivatives that differ by less than this share are one.
+/// Derivatives that differ by less than this, relatively, are one.
 const SMOOTH: f64 = 1e-9;
 
-/// Places along two opposite sides at which they are compared, corners included.
+/// Positions along two opposite sides at which they are compared, corners included.
 const PLACES: [f64; 9] = [0.37, 0.0, 0.11, 0.25, 0.5, 0.63, 0.79, 0.93, 1.0];
 
 /// The parameter reduced to 0 .. 1 by whole turns; within `NEAR` of 0 and 1 it is unchanged.
@@ -111,9 +112,9 @@ pub fn smooth_seams<T: Real>(surface: &dyn Surface<T>, closed: [bool; 2]) -> [bo
     })
 }
 
-/// The derivatives of the place `t` of a corner of a curve, as a number whose real part is 0; its sides are
-/// looked at `near` before and after it. `None` where the tangent does not turn: there the place does not
-/// matter to a first derivative.
+/// The derivatives of the parameter `t` of a corner of a curve, as a number whose real part is 0;
+/// its sides are evaluated `near` before and after it. `None` where the tangent does not turn:
+/// there the parameter does not affect a first derivative.
 ///
 /// Both sides of a corner meet there whatever becomes of it: with C- and C+ the sides,
 /// dt = (dC+ - dC-) . n / n . n with n = C-' - C+'.
@@ -133,16 +134,16 @@ pub fn corner_rate<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> Option<T
     Some(along - along.re())
 }
 
-/// Places along a crease at which its rate is looked for.
+/// Positions along a crease at which its rate is sampled.
 const ALONG: [f64; 7] = [0.03, 0.19, 0.37, 0.52, 0.68, 0.83, 0.96];
 
 /// The derivatives of the parameter of a crease of a surface, the parameter `at` of u (0) or v (1),
 /// as a number whose real part is 0; its sides are evaluated at the given distances before and
 /// after it.
 ///
-/// Both sides of a corner meet there whatever becomes of it: with S- and S+ the sides,
-/// dt = (dS+ - dS-) . n / n . n with n = S-' - S+', over places along the break. Zero where the tangent does not
-/// turn: there the place does not matter to a first derivative.
+/// Both sides meet at the corner whatever the derivatives: with S- and S+ the sides, dt = (dS+ -
+/// dS-) . n / n . n with n = S-' - S+', over positions along the break. Zero where the tangent does
+/// not turn: there the parameter does not affect a first derivative.
 pub fn crease_rate<T: Real>(
     surface: &dyn Surface<T>,
     along: usize,

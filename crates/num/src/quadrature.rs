@@ -86,7 +86,7 @@ pub fn gauss_points(a: f64, b: f64) -> [(f64, f64); 8] {
     })
 }
 
-/// Intervals are halved this often at most: down to the rounding of a place between them.
+/// Maximum number of halvings of an interval: down to the rounding of a number inside it.
 const DEEPEST: i32 = 44;
 
 /// Number of intervals after which the depth is limited.

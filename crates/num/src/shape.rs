@@ -72,8 +72,8 @@ pub trait Curve<T: Real>: Send + Sync {
     /// Rational form of the curve, if known.
     fn rational(&self) -> Rational<1>;
 
-    /// The curve to which this one is parallel, sideways in the plane of that normal, and the distance: a parallel
-    /// of a parallel is one of the first curve, of which no derivative is lost.
+    /// The curve to which this one is parallel, sideways in the plane of that normal, and the
+    /// distance: a parallel of a parallel is one of the first curve, so no derivative is lost.
     fn parallel_to(&self) -> Option<(&dyn Curve<T>, Vec3<T>, T)> {
         None
     }
@@ -87,8 +87,8 @@ pub trait Curve<T: Real>: Send + Sync {
         Trace::own()
     }
 
-    /// The curve object of which this is the image, point by point at equal parameters, under a map
-    /// of space. For joins: coincident images of one curve are one.
+    /// The curve object whose image this is, point by point at equal parameters, under a map of
+    /// space. For joins: coincident images of one curve are one.
     fn image_of(&self) -> Option<Key> {
         None
     }
@@ -148,13 +148,14 @@ pub trait Surface<T: Real>: Send + Sync {
     /// [`Curve::closed`].
     fn closed(&self) -> [bool; 2];
 
-    /// The surface to which this one is parallel, along the natural normal, and the distance: a parallel of a parallel
-    /// is one of the first surface, of which no derivative is lost.
+    /// The surface to which this one is parallel, along the natural normal, and the distance: a
+    /// parallel of a parallel is one of the first surface, so no derivative is lost.
     fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
         None
     }
 
-    /// The parameter planes of the surfaces that this one is a part of: their lines run across it at any angle.
+    /// The parameter planes of the surfaces of which this one is a part: their lines cross it at
+    /// any angle.
     fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
         Vec::new()
     }
@@ -173,14 +174,14 @@ pub trait Surface<T: Real>: Send + Sync {
         Vec::new()
     }
 
-    /// The surface object of which this is the image, point by point at equal parameters, under a
-    /// map of space; and whether the map turns the natural normal round. For joins: images of
-    /// joined surfaces under one map are joined, and so are points that are their own images.
+    /// The surface object whose image this is, point by point at equal parameters, under a map of
+    /// space; and whether the map reverses the natural normal. For joins: images of joined surfaces
+    /// under one map are joined, and so are points that are their own images.
     fn image_of(&self) -> Option<(Key, bool)> {
         None
     }
 
-    /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
+    /// The solid object whose face 0..6 this is, at equal parameters. For joins of blocks.
     fn face_of(&self) -> Option<(Key, u8)> {
         None
     }
@@ -188,7 +189,7 @@ pub trait Surface<T: Real>: Send + Sync {
 
 /// The parameter plane of a surface, in which another one is a part.
 pub struct InnerPlane<'a> {
-    /// The place in the plane of a place (u, v) of the part.
+    /// The point of the plane for a point (u, v) of the part.
     pub place: Box<dyn Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'a>,
     /// The lines of the plane at which one formula ends and another begins; see [`Surface::joints`].
     pub joints: [Vec<f64>; 2],
@@ -277,7 +278,7 @@ pub fn field_differences<T: Real>(
 }
 
 impl<T: Real> dyn Field<T> + '_ {
-    /// The value at a place that is a jet, divided by the size of the gradient there: a length.
+    /// The value at a point that is a jet, divided by the size of the gradient there: a length.
     pub fn at<J: Jet<T>>(&self, p: Vec3<J>) -> J {
         let here = p.map(J::value);
         let (value, gradient, second) = match J::ORDER {

@@ -112,7 +112,7 @@ pub struct Piece<T> {
     pub from: Mark<T>,
     /// End.
     pub to: Mark<T>,
-    /// The share of the alias's own parameter range at which this piece ends (the last: 1).
+    /// The end of this piece in the alias's own parameter range, from 0 to 1 (the last: 1).
     pub until: T,
 }
 
@@ -309,7 +309,7 @@ impl Turn {
     pub const ALL: [Turn; 8] =
         [Turn(0), Turn(1), Turn(2), Turn(3), Turn(4), Turn(5), Turn(6), Turn(7)];
 
-    /// True when the surface's u runs along the face's b.
+    /// True when the surface's u is along the face's b.
     pub fn swaps(self) -> bool {
         self.0 & 1 == 1
     }
@@ -325,7 +325,7 @@ impl Turn {
         [0, 1].map(|k| if self.flips(k) { -p[k] + 1.0 } else { p[k] })
     }
 
-    /// The surface's edge 0..4 along face edge 0..4, and whether it runs against it.
+    /// The surface's edge 0..4 along face edge 0..4, and whether the two have opposite directions.
     pub fn edge(self, k: usize) -> (usize, bool) {
         // Face edges: 0 b = 0, 1 a = 1, 2 b = 1, 3 a = 0. On the surface, `across` is fixed.
         let (along, high) = [(0, 0), (1, 1), (0, 1), (1, 0)][k];
@@ -350,7 +350,7 @@ pub enum Face<T> {
     On {
         /// The surface object; without a name it joins nothing.
         surface: Option<Key>,
-        /// The solid of which that surface is a face, if so.
+        /// The solid whose face that surface is, if it is one.
         face_of: Option<(Key, u8)>,
         /// Relation of the face's parameters to it.
         turn: Turn,

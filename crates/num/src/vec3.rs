@@ -74,7 +74,7 @@ impl<T: Real> Vec3<T> {
         (self - o).norm()
     }
 
-    /// The point at `t` of the way from `self` to `o`.
+    /// The point self + t (o - self).
     #[inline(always)]
     pub fn lerp(self, o: Self, t: T) -> Self {
         self * (-t + 1.0) + o * t

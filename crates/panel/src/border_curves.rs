@@ -1,5 +1,5 @@
-//! Borders of sheets of triangles as patches without panels: each of the curves that a border runs along
-//! is one, so that divisions flow over it and its vertices are those of the neighbours.
+//! Borders of sheets of triangles as patches without panels, one for each curve of a border, so
+//! that divisions propagate across it and its vertices are those of the neighbours.
 //!
 //! Such a patch is the curve itself at any v, with one division along v: its edges v = 0 and v = 1 are
 //! one line, and u = 0 and u = 1 are points.

@@ -183,7 +183,7 @@ impl<'s, T: Real> ContourCutter<'s, T> {
             let mut uv: Vec<[f64; 2]> = chain.iter().map(|e| crossings[e]).collect();
             let mut points: Vec<Vec3> = uv.iter().map(|&at| self.point(at)).collect();
             let closed = chain.len() > 2 && links[&start].len() == 2 && links[&at].contains(&start);
-            // A line may run along a pole: one point of it is enough.
+            // A line may be along a pole: one point of it is enough.
             let mut kept = vec![true; points.len()];
             for k in 1..points.len() {
                 kept[k] = points[k].distance(points[k - 1]) > epsilon;

@@ -1,9 +1,10 @@
 //! Length of sections and the area that they enclose: integrals along the lines on the exact surface, with
 //! derivatives.
 //!
-//! A line is known by points on lines u or v = constant of a grid. Between two of them the section is followed by
-//! Newton steps across the chord in the parameter plane, at the places of a Gauss rule; the chord's ends keep to their
-//! grid lines, so that the whole moves with the surface as the section does.
+//! A line is known by points on lines u or v = constant of a grid. Between two of them the section
+//! is followed by Newton steps across the chord in the parameter plane, at the nodes of a Gauss
+//! rule; the chord's ends stay on their grid lines, so that the whole moves with the surface as the
+//! section does.
 
 use crate::contour::{Contour, body_section};
 use moldloft_num::period::crease_rate;
@@ -32,7 +33,7 @@ const RULE: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Halves of a chord agree with the whole to this share of the section's size.
+/// Relative difference, in section sizes, within which the halves of a chord agree with the whole.
 const ALIKE: f64 = 1e-11;
 
 /// A chord is halved this often at most.
@@ -208,7 +209,7 @@ struct SectionChord<T> {
     along: [T; 2],
     /// Up the slope along the grid line of the first point.
     up: [f64; 2],
-    /// From there to that of the second.
+    /// Displacement from there to that of the second.
     turn: [f64; 2],
 }
 

@@ -417,10 +417,11 @@ impl CountSolver<'_> {
         i64::from(self.class_of[*whole] == class) - parts
     }
 
-    /// Brings the excess of a broken sum one nearer to zero without unsettling another; false when
-    /// there is no way.
+    /// Brings the excess of a violated sum one nearer to zero without violating another; false if
+    /// that is impossible.
     fn step(&mut self, start: usize) -> bool {
-        /// The excess of a sum is to change by `by`; it came from another by way of a class.
+        /// The excess of a sum is to change by `by`; it was reached from another sum through a
+        /// class.
         struct Visit {
             sum: usize,
             by: i64,
@@ -595,7 +596,7 @@ mod tests {
 
     #[test]
     fn a_later_sum_has_its_say_in_time() {
-        // 10 = a + b and 4 = a + c: an equal share of the ten would leave c nothing.
+        // 10 = a + b and 4 = a + c: an equal part of the ten would leave c nothing.
         let sums: [(Node, &[Node]); 2] = [(0, &[2, 3]), (1, &[2, 4])];
         let d = divider(&[Some(10), Some(4), None, None, None], &[], &sums).solved();
         assert_eq!((d.counts[2] + d.counts[3], d.counts[2] + d.counts[4]), (10, 4));

@@ -21,7 +21,7 @@ pub(crate) fn indices([nu, nv]: [usize; 2], part: u8) -> impl Iterator<Item = us
     (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * (nv + 1) + j))
 }
 
-/// The longest chain of images whose first surface is looked for.
+/// Maximum length of a chain of images whose first surface is searched.
 const MOST_IMAGES: usize = 1000;
 
 pub(crate) fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>> {
@@ -87,7 +87,7 @@ pub(crate) struct Draft<'g> {
     pub knuckles: Knuckles,
     /// The draft of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
-    /// False for a hidden surface of which a shown one is the image.
+    /// False for a hidden surface with a visible image.
     pub meshed: bool,
     pub reversed: bool,
     /// The least divisions along u and v where panels are to be near to surfaces, in place of stated ones.
@@ -213,8 +213,8 @@ pub(crate) fn drafts<'g>(
     drafts
 }
 
-/// True when panels run against the natural normal: by the user's word, or because the surface
-/// is a mirror image, whose natural normal points the other way.
+/// True if panels are opposite to the natural normal: by declaration, or because the surface is a
+/// mirror image, whose natural normal is reversed.
 fn reversed(graph: &Graph<f64>, object: &Object<f64>) -> bool {
     let mut turned = false;
     let mut at = Some(object);

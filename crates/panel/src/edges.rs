@@ -27,7 +27,7 @@ pub(crate) struct DivisionRun {
 /// Division of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum EdgePlan {
-    /// From 0 to 1 in one run.
+    /// From 0 to 1 in one stretch.
     Whole(u32, Shares),
     /// Run by run.
     Segments(Vec<DivisionRun>),
@@ -47,7 +47,8 @@ pub(crate) trait PatchLookup<T: Real> {
     fn owner(&self, draft: u32) -> Key;
     /// A point object, by its identity in the graph that was planned.
     fn point(&self, key: Key) -> Option<&Point<T>>;
-    /// The derivatives of the place of a knuckle along u (0) or v (1) of a draft, with a real part of 0.
+    /// The derivatives of the parameter of a knuckle along u (0) or v (1) of a draft, with a real
+    /// part of 0.
     fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T>;
 }
 

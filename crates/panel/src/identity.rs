@@ -87,7 +87,7 @@ impl Identities {
         of.map(|(_, tolerance)| *tolerance).reduce(f64::max)
     }
 
-    /// Those of everything that the patches run along.
+    /// Identities of all curves and points of the patches.
     pub fn new(graph: &Graph<f64>, drafts: &[Draft]) -> Self {
         let mut finder = IdentityFinder::new(graph, drafts);
         finder.join_declared();
@@ -127,7 +127,7 @@ impl Identities {
         }
     }
 
-    /// The one name of a root, and whether that runs against it.
+    /// The representative of a root, and whether it has the opposite direction.
     pub fn root(&self, root: Root) -> (Root, bool) {
         let (mut at, mut against) = self.straightened(root);
         // Names lead to smaller ones and end; a count keeps that from resting on it.
@@ -154,7 +154,7 @@ impl Identities {
         }
     }
 
-    /// The piece on the one root, and whether that runs against its own.
+    /// The piece on the representative root, and whether that has the opposite direction.
     pub fn piece(&self, piece: &Piece<f64>) -> (Piece<f64>, bool) {
         let (root, turned) = self.root(piece.root);
         let mark = |mark: moldloft_num::trace::Mark<f64>| moldloft_num::trace::Mark {
@@ -457,7 +457,7 @@ impl<'g> IdentityFinder<'g> {
             let [Some(a), Some(b)] = [0, 1].map(|k| edges[k].pieces().first().copied()) else {
                 continue;
             };
-            // Rings begin and end in one place: which way they run shows between.
+            // Rings begin and end at the same point: their direction shows between.
             const PLACES: [f64; 5] = [0.0, 0.21, 0.5, 0.79, 1.0];
             let place = |k: usize, t: f64| edges[k].jet(t, Order::Zero)[0];
             let apart = |turned: bool| -> f64 {
@@ -553,7 +553,7 @@ impl<'g> IdentityFinder<'g> {
     }
 }
 
-/// True for an edge that is one place to rounding.
+/// True for an edge of zero length within rounding.
 fn has_no_length(surface: &SurfaceRef<f64>, k: usize) -> bool {
     let place = |t: f64| {
         let [u, v] = [[t, 0.0], [1.0, t], [t, 1.0], [0.0, t]][k];

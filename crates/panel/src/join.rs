@@ -59,7 +59,7 @@ pub(crate) struct Joiner<'s> {
     structure: &'s PanelTopology,
     pub grids: Grids,
     pub joined: UnionFind,
-    /// A vertex at each place.
+    /// A vertex at each position.
     places: Vec<Option<u32>>,
     points: HashMap<Key, u32>,
     /// The vertices of a stretch with a given number of divisions, in the direction of its root.

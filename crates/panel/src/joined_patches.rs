@@ -10,8 +10,8 @@ use moldloft_num::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Two patches whose shared vertices disagree by more than this share of the model's size are
-/// reported.
+/// Difference of the positions of shared vertices, relative to the model's size, from which two
+/// patches are reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
 /// Data that depend on a skeleton alone, except for the vertices that are their own images and the
@@ -25,10 +25,10 @@ pub(crate) struct JoinedPatches {
     pub count: u32,
     /// For each patch, which points of its boundary are their own images.
     pub fixed: Vec<Vec<bool>>,
-    /// Panel edges with one panel: patch and the places of both ends in its grid.
+    /// Panel edges with one panel: patch and the indices of both ends in its grid.
     pub free_edges: Vec<FreeEdge>,
     pub orientation: Orientation,
-    /// For each patch, whether its panels run against its natural normal.
+    /// For each patch, true if its panels are opposite to its natural normal.
     pub turned: Vec<bool>,
 }
 
@@ -95,7 +95,7 @@ impl JoinedPatches {
         self.orientation.turned(structure, points, &self.free_edges)
     }
 
-    /// The pairs of patches whose shared vertices are not in one place.
+    /// The pairs of patches whose shared vertices do not coincide.
     pub fn apart(
         &self,
         structure: &PanelTopology,

@@ -16,8 +16,8 @@ pub struct ChainStep {
 /// Something about the joins that the user may want to know.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PanelNote {
-    /// Two stated counts belong to one chain of patches but differ, so that panels do not join
-    /// somewhere on the way.
+    /// Two given counts belong to one chain of patches but differ, so that panels do not join
+    /// somewhere between.
     Divisions {
         /// The patches from one to the other.
         chain: Vec<ChainStep>,
@@ -36,7 +36,7 @@ pub enum PanelNote {
         /// The pieces of the edge with their counts.
         pieces: Vec<(String, u32)>,
     },
-    /// A shared vertex is not in the same place on both patches.
+    /// A shared vertex has different positions on both patches.
     Apart {
         /// The patches.
         patches: [String; 2],
@@ -79,14 +79,14 @@ pub enum PanelNote {
     Border {
         /// The sheet.
         patch: String,
-        /// The divisions of the curves that its border runs along.
+        /// The divisions of the curves of its border.
         divisions: Vec<usize>,
     },
-    /// A knuckle of the surface that a patch is a part of runs across its panels, which cut it off.
+    /// A knuckle of the original surface of a patch crosses its panels, which cut it off.
     Knuckle {
         /// The patch.
         patch: String,
-        /// (u, v) of a place on the knuckle.
+        /// (u, v) of a point on the knuckle.
         uv: [f64; 2],
         /// Position.
         at: Vec3,
@@ -184,7 +184,7 @@ impl std::fmt::Display for PanelNote {
                      from one to the other: ",
                     a.patch, a.along, b.patch, b.along
                 )?;
-                // Of a long chain the ends and the turns say enough.
+                // The ends and the turns of a long chain suffice.
                 let tells = |k: usize| {
                     k < 6
                         || k + 6 >= chain.len()

@@ -17,7 +17,7 @@ const NEARLY_FLAT: f64 = 0.05;
 /// The same of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
 const NO_VOLUME: f64 = 1e-9;
 
-/// A panel edge with one panel: the patch and the places of both ends in its grid.
+/// A panel edge with one panel: the patch and the indices of both ends in its grid.
 pub(crate) type FreeEdge = (u32, u32, u32);
 
 /// Connectivity of the patches of a mesh.
@@ -36,7 +36,7 @@ impl Orientation {
         let mut all: Vec<((u32, u32), usize, bool)> = Vec::new();
         for (patch, frame) in structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             for k in 0..4 {
-                // A walk round the patch runs along its edges 0 and 1, and against 2 and 3.
+                // A walk around the patch follows its edges 0 and 1, and the reverse of 2 and 3.
                 let walk: Vec<u32> =
                     indices(frame.divisions, k).map(|at| vertices[patch][at]).collect();
                 for ends in walk.windows(2).filter(|ends| ends[0] != ends[1]) {
@@ -50,7 +50,7 @@ impl Orientation {
             if let [(_, p, forward), (_, q, again)] = *run
                 && p != q
             {
-                // Neighbours that face alike run along a common edge in opposite directions.
+                // Neighbours of equal orientation have a common edge in opposite directions.
                 bodies.join(p, q, forward == again);
             }
         }
@@ -64,7 +64,7 @@ impl Orientation {
         Self { sides, closed }
     }
 
-    /// For each patch, whether its panels run against its natural normal.
+    /// For each patch, true if its panels are opposite to its natural normal.
     ///
     /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
     /// positive, however thin it is. Open ones keep their sides towards one another and face outward together: the cone
@@ -105,7 +105,8 @@ impl Orientation {
     }
 }
 
-/// Patches that run along one interval are neighbours even where their counts contradict and no panels of theirs meet.
+/// Patches along one interval are neighbours even if their counts contradict and none of their
+/// panels meet.
 fn join_along_intervals(structure: &PanelTopology, bodies: &mut SignedUnionFind) {
     let mut all: Vec<(u32, usize, bool)> = Vec::new();
     for (patch, frame) in structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {

@@ -32,7 +32,7 @@ pub struct FaceOutline {
 pub struct OutlineSide {
     /// Curve of the side.
     pub along: OutlineCurve,
-    /// True when the loop runs against it.
+    /// True if the loop has the opposite direction.
     pub backwards: bool,
     /// The vertices of the mesh on it, by increasing parameter.
     pub vertices: Vec<u32>,

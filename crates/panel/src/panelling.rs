@@ -1,4 +1,4 @@
-//! From surfaces to panels: patches from their own parameters and divisions, joined by identity.
+//! Panels of surfaces: patches from their own parameters and divisions, joined by identity.
 //!
 //! `surfaces -> drafts -> roots cut into intervals -> counts -> structure -> joined vertices -> panels`
 //!
@@ -189,7 +189,7 @@ impl Panelling {
             Some(before) => before.names.clone(),
             None => Arc::new(names(graph, &structure)),
         };
-        // Divisions that hang on marks of other objects move with these.
+        // Divisions that depend on marks of other objects move with these.
         let hangs = |frame: &PatchTopology| {
             frame.plans.iter().any(|p| matches!(p, EdgePlan::Segments(_) | EdgePlan::Like(_)))
         };
@@ -306,8 +306,8 @@ impl Panelling {
         Some(self.gathered(&points, &self.body_points(graph, &points)?))
     }
 
-    /// Of each structured patch, in the order of the topology's: its surface, and (u, v) of each
-    /// vertex of its block; `None` when a surface has no value.
+    /// For each structured patch, in the order of the topology: its surface, and (u, v) of each
+    /// vertex of its block; `None` if a surface has no value.
     pub fn parameters(&self, graph: &Graph<f64>) -> Option<Vec<(SurfaceRef<f64>, Vec<[f64; 2]>)>> {
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let meshed =

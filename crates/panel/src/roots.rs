@@ -1,7 +1,7 @@
-//! The curves that patches run along, cut at every point that some patch marks on them.
+//! The root curves of patches, divided at every point that some patch marks on them.
 //!
-//! An edge of one patch may run along a whole curve, and those of its neighbours along parts of it,
-//! between beads. All marks of a root cut it into *stretches*; an edge is a chain of these, so the
+//! An edge of one patch may be a whole curve, and those of its neighbours parts of it, between
+//! beads. All marks of a root divide it into *stretches*; an edge is a chain of these, so the
 //! neighbours of a part have their corners among the vertices of the whole.
 
 use crate::draft::Draft;
@@ -13,8 +13,8 @@ use moldloft_registry::{Point, Value};
 use smallvec::SmallVec;
 use std::collections::HashMap;
 
-/// Two marks of the same point object count as one place within this distance in t: rounding of the
-/// ways in which an alias may reach its root.
+/// Distance in t within which two marks of the same point object coincide: rounding of the
+/// different aliases of a root.
 const SAME_MARK: f64 = 1e-9;
 
 /// Source of a mark's parameter, for any scalar.
@@ -31,7 +31,7 @@ pub(crate) enum MarkSource {
 }
 
 impl MarkSource {
-    /// True when the parameter that is had there runs against the root.
+    /// True if the parameter of the source has the opposite direction to the root.
     pub fn turned(self) -> bool {
         match self {
             MarkSource::Piece { turned, .. }
@@ -60,10 +60,10 @@ impl RootPlace {
     }
 }
 
-/// The number of a place among those of all roots.
+/// The number of a mark among those of all roots.
 pub(crate) type RootPlaceId = u32;
 
-/// The stretch from a place to the next on its root has the number of the place.
+/// The stretch from a mark to the next on its root has the number of the mark.
 pub(crate) type IntervalId = u32;
 
 /// The places of all roots in ascending order, root by root.
@@ -82,7 +82,7 @@ pub(crate) struct RootTable {
 pub(crate) struct EdgeInterval {
     /// `None` for a piece without length.
     pub interval: Option<IntervalId>,
-    /// True when the edge runs against the root.
+    /// True if the edge has the opposite direction to the root.
     pub backwards: bool,
     /// The places at its begin and end, in the direction of the edge.
     pub ends: [RootPlaceId; 2],
@@ -95,7 +95,7 @@ pub(crate) struct EdgeInterval {
 pub(crate) enum EdgeParameter {
     /// End of a piece.
     Piece(u16),
-    /// Inside a piece, at a mark of its root; true for a piece that runs on a root against its own.
+    /// Inside a piece, at a mark of its root; true for a piece of opposite direction to its root.
     Inside(u16, MarkSource, bool),
 }
 
@@ -188,7 +188,7 @@ impl RootTable {
                 let name = self.identities.point(key);
                 for (root, t, source) in places_of(point, key) {
                     let (root, against) = self.identities.root(root);
-                    // A root that no patch runs along needs no marks.
+                    // A root of no patch needs no marks.
                     let Some(&root) = self.ids.get(&root) else { continue };
                     let (t, source) =
                         if against { (1.0 - t, against_root(source)) } else { (t, source) };
@@ -227,7 +227,7 @@ impl RootTable {
         self.start.push(self.places.len() as u32);
     }
 
-    /// The number of places; stretches are numbered alike.
+    /// The number of marks; stretches are numbered alike.
     pub fn len(&self) -> usize {
         self.places.len()
     }

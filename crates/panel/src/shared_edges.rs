@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub struct EdgeStretch {
     /// Its number: edges, of any patches, that have a stretch of the same number are one there.
     pub id: u32,
-    /// True when the edge runs against the stretch.
+    /// True if the edge has the opposite direction to the stretch.
     pub backwards: bool,
     /// The edge's parameter where the stretch begins and ends, ascending.
     pub range: [f64; 2],

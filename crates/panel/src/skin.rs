@@ -1,4 +1,5 @@
-//! The skin of a model as a body for measures: its surfaces, which way they face, and where they are open.
+//! The skin of a model as a body for measures: its surfaces, their orientation, and their open
+//! edges.
 
 use crate::panelling::Panelling;
 use moldloft_hydro::{Body, HullSide};
@@ -166,8 +167,8 @@ impl Skin {
     }
 }
 
-/// The edges (patch of the mesh, edge 0..4) that run along intervals all of which another edge of the skin runs
-/// along, too: there the surfaces are joined, even where counts contradict and the panels are not.
+/// The edges (patch of the mesh, edge 0..4) all of whose intervals belong to another edge of the
+/// skin too: there the surfaces are joined, even where counts contradict and the panels are not.
 fn shared_edges(panelling: &Panelling, mesh: &Mesh<f64>) -> HashSet<(usize, u8)> {
     let meshed = panelling.structure.patches.iter().filter(|f| f.meshed).enumerate();
     let skin = meshed.filter(|(k, _)| mesh.patches()[*k].info.tag.is_skin());

@@ -84,14 +84,14 @@ impl OpenEdges {
         Some(Self { sides, cells, longest, size })
     }
 
-    /// The open edges that may come near a place.
+    /// The open edges that may be near a position.
     fn near(&self, p: Vec3) -> impl Iterator<Item = &OpenPanelEdge> {
         let cell = p.to_array().map(|x| (x / self.longest).floor() as i64);
         self.cells.get(&cell).into_iter().flatten().map(|&k| &self.sides[k])
     }
 }
 
-/// Two edges of patches, of which the second comes later.
+/// Two edges of patches, the second of which comes later.
 type EdgePair = [(usize, u8); 2];
 
 impl Panelling {
@@ -117,7 +117,7 @@ impl Panelling {
                 }
                 _ => false,
             });
-            // Of parts of edges a corner says more.
+            // For parts of edges the note of a corner is more specific.
             if found.whole || !said {
                 remarks.push(PanelNote::Unjoined {
                     patches: [name(a), name(b)],
@@ -274,7 +274,8 @@ impl Panelling {
                         let [u, v] = on_edge(side.edge, t);
                         surface.jet(u, v, Order::Zero).p
                     };
-                    // All parameters of a side without length are one place, which the sides beside it hold, too.
+                    // All parameters of a side without length are the same point, which the
+                    // adjacent sides contain too.
                     let [from, to] = side.ts;
                     let first = point(from);
                     let same = |t: f64| point(t).distance(first) <= SAME_PLACE * size;
@@ -301,7 +302,7 @@ impl Panelling {
         remarks
     }
 
-    /// For each vertex along an edge without length, the first of all those in its place.
+    /// For each vertex along an edge without length, the first of the coincident ones.
     fn poles(&self, size: f64) -> HashMap<u32, u32> {
         let mut first: HashMap<u32, u32> = HashMap::new();
         for (patch, frame) in self.structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {

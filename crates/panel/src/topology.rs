@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-/// A length that exceeds a whole number of panels by less than this share of one needs no further panel.
+/// Excess of a length over a whole number of panels, in panels, that needs no further panel.
 const COUNT_SLACK: f64 = 1e-6;
 
 /// The most contradictions that are reported one by one.
@@ -40,7 +40,7 @@ pub(crate) enum EdgeRun {
 }
 
 impl EdgeRun {
-    /// The stretches that the edge runs along, whether or not its panels end where these end.
+    /// The stretches of the edge, whether or not its panels end where these end.
     pub fn spans(&self) -> impl Iterator<Item = &EdgeInterval> {
         let (along, loose): (&[(EdgeInterval, u32)], &[EdgeInterval]) = match self {
             EdgeRun::Along(spans) => (spans, &[]),
@@ -72,7 +72,7 @@ pub(crate) struct PatchTopology {
     pub image: Option<(usize, u32)>,
     /// True if its panels are opposite to its natural normal, by the declaration of its surface.
     pub reversed: bool,
-    /// False for a hidden surface of which a shown one is the image, and for a hem.
+    /// False for a hidden surface with a visible image, and for a hem.
     pub meshed: bool,
     /// For a hem, which of its sheet's.
     pub border_curve: Option<u32>,
@@ -82,7 +82,7 @@ pub(crate) struct PatchTopology {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PanelTopology {
     pub patches: Vec<PatchTopology>,
-    /// The point objects at each place.
+    /// The point objects at each mark.
     pub points: Vec<Vec<Key>>,
     /// The stretches of declared joins, with the maximum distance of their edges.
     pub declared: Vec<(IntervalId, f64)>,
@@ -133,7 +133,7 @@ struct TopologySolver<'a, 'g> {
     /// The patch and edge of each sum.
     summed: Vec<(usize, usize)>,
     lengths: Vec<PartLengths>,
-    /// For each link: true when the two run in opposite directions.
+    /// For each link, true if the two have opposite directions.
     turned: Vec<bool>,
     /// For each patch, the nodes of its stretches between knuckles along u and along v.
     stretches: Vec<[Vec<Node>; 2]>,
@@ -288,7 +288,7 @@ impl TopologySolver<'_, '_> {
             ends.extend(knuckles);
             ends.push(1.0);
             let sides = if direction == 0 { [0, 2] } else { [3, 1] };
-            // Pieces share by length. Within one curve, equal steps of the parameter stay.
+            // Pieces divide by length. Within one curve, equal steps of the parameter are kept.
             let chained = sides.iter().any(
                 |&k| matches!(&self.drafts[patch].edges.edges[k], Edge::Pieces(p) if p.len() > 1),
             );

@@ -138,7 +138,7 @@ pub(crate) fn sewn(
     remarks
 }
 
-/// The edges of a panel in the direction in which it runs round.
+/// The directed edges of a panel.
 fn sides([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = (u32, u32)> {
     [(a, b), (b, c), (c, d), (d, a)].into_iter().filter(|(p, q)| p != q)
 }
@@ -203,7 +203,7 @@ impl MeshedBody {
         None
     }
 
-    /// Turns it so that it faces as its neighbours do: these run along common edges the other way.
+    /// Orients it like its neighbours, which have common edges in the opposite direction.
     fn face_like(&mut self, edges: &HashSet<(u32, u32)>) {
         let (mut alike, mut against) = (0, 0);
         for (a, b) in self.faces().flat_map(sides) {

@@ -36,7 +36,7 @@ impl Generation {
     }
 }
 
-/// Does work whose parallel loops run on threads of this process.
+/// Does work with its parallel loops on threads of this process.
 pub(crate) fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     in_pool_of(&GENERATIONS, std::process::id(), work)
 }

@@ -10,7 +10,7 @@ pub(crate) struct ShadedVertex {
     pub light: [f32; 3],
 }
 
-/// Samples with depth, twice as many each way as the picture has points.
+/// Samples with depth, twice as many in each direction as the picture has points.
 pub(crate) struct Raster {
     width: usize,
     height: usize,
@@ -36,7 +36,7 @@ pub(crate) struct PanelSides {
 }
 
 impl Raster {
-    /// A background that runs from `top` to `bottom`.
+    /// A background with a gradient from `top` to `bottom`.
     pub fn new(width: usize, height: usize, top: [u8; 3], bottom: [u8; 3], gamma: Gamma) -> Self {
         let mut colour = Vec::with_capacity(width * height);
         for y in 0..height {
@@ -83,8 +83,8 @@ impl Raster {
                         self.near[k] = near;
                         let mut shade = 1.0;
                         if let Some((sides, per)) = distances {
-                            // Side k runs from corner k; the weight of the corner opposite falls to
-                            // zero on it.
+                            // Side k begins at corner k; the weight of the opposite corner is zero
+                            // on it.
                             for (n, weight) in [w, u, v].into_iter().enumerate() {
                                 if sides.shown[n] {
                                     let outside = weight * per[n] - sides.half_width;

@@ -38,7 +38,7 @@ pub struct Options {
     pub width: usize,
     /// Picture points down.
     pub height: usize,
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Draw the rims of the patches.
     pub borders: bool,

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
-/// A part of a face: block, face from 0, and the places (i, j, k) where it begins and ends.
+/// A part of a face: block, face from 0, and the indices (i, j, k) of its first and last node.
 type Side = (usize, usize, [usize; 3], [usize; 3]);
 
 /// Volume blocks at one state of a model.

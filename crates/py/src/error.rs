@@ -1,4 +1,4 @@
-//! The one place where faults of Rust become Python's exceptions.
+//! The only module that turns faults of Rust into Python's exceptions.
 
 use crate::diagnostics::PyDiagnostic;
 use moldloft::diag::Sources;
@@ -28,7 +28,7 @@ pub fn model_error(diagnostics: &[moldloft::diag::Diagnostic], sources: &Sources
     }
 }
 
-/// An exception without a place in a model.
+/// An exception without a position in a model.
 pub fn plain_error(message: impl std::fmt::Display) -> PyErr {
     raised::Error::new_err(message.to_string())
 }

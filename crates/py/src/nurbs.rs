@@ -96,7 +96,7 @@ pub fn nurbs<'py>(
     }
 }
 
-/// The points of a NURBS at places of its parameters, `(n, dimension)`; see [`moldloft::spline::nurbs::Nurbs`].
+/// The points of a NURBS at the given parameters, `(n, dimension)`; see [`moldloft::spline::nurbs::Nurbs`].
 #[pyfunction]
 pub fn nurbs_points<'py>(
     py: Python<'py>,

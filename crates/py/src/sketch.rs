@@ -224,7 +224,7 @@ impl PySketch {
         Self { inner: Arc::new(Mutex::new(SketchSession::with_files(Box::new(disk)))), confined }
     }
 
-    /// From now on, lines read files inside of the folder only, as those of a file must, or anywhere.
+    /// From now on lines may read files in the folder only, as lines of a file may, or anywhere.
     fn confine(&self, on: bool) {
         self.confined.store(on, Ordering::Relaxed);
     }
@@ -439,7 +439,7 @@ impl PySketch {
         Bound<'py, PyArray3<f64>>,
         Vec<Option<String>>,
     )> {
-        // Whether the object or one of the numbers is missing.
+        // The object or one of the numbers is missing.
         self.lock(py).object(name).ok_or_else(|| no_object(name))?;
         let wanted = name.to_owned();
         let gradient = self.long(py, move |s| s.gradient(&wanted, &by))?;

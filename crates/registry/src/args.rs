@@ -19,7 +19,7 @@ pub struct Given<'a, T: Real> {
 /// arguments that belong to the head go there.
 ///
 /// # Errors
-/// A [`CallError`] with its place.
+/// A [`CallError`] with its position.
 pub fn bind_arguments<T: Real>(
     row: &Row,
     mut given: Given<T>,

@@ -4,9 +4,9 @@ use crate::Class;
 use moldloft_budget::Spent;
 use moldloft_num::trace::Key;
 
-/// A field of a row: the constants that `#[derive(Kind)]` emits for a struct, `Self::RADIUS` for its field
-/// `radius`. There is no other way to name an argument in a fault, so a field that moves takes its faults
-/// along.
+/// A field of a row: the constants that `#[derive(Kind)]` emits for a struct, `Self::RADIUS` for
+/// its field `radius`. Faults name arguments by these alone, so they stay correct when a field
+/// moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldId(u16);
 
@@ -25,7 +25,7 @@ impl FieldId {
 /// An argument of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
-    /// That of a field.
+    /// The argument of a field.
     Field(FieldId),
     /// The one with this number among the named arguments, as they are written.
     Named(usize),
@@ -51,7 +51,7 @@ impl From<Spent> for CallError {
     }
 }
 
-/// Why a call failed: the data of a diagnostic, before it knows its place in the text.
+/// The reason why a call failed: the data of a diagnostic that has no position in the text yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CallError(Box<CallErrorData>);
 

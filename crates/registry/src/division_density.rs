@@ -47,8 +47,9 @@ impl DivisionDensity {
         parts.map(|x| (x - SLACK).ceil().clamp(1.0, 1e6) as u32).sum::<u32>().max(1)
     }
 
-    /// The ends of `count` divisions of the curve from one parameter to another: shares of the way, ascending, without
-    /// 0 and 1. They have equal integrals; breaks are among them where there are divisions enough.
+    /// The ends of `count` divisions of the curve from one parameter to another: fractions of that
+    /// range, ascending, without 0 and 1. They have equal integrals; breaks are among them if there
+    /// are enough divisions.
     pub fn shares(&self, from: f64, to: f64, count: u32) -> Vec<f64> {
         let mut stops = vec![from];
         let inner = self.ends.iter().map(|&k| self.at[k]);

@@ -325,7 +325,7 @@ impl<T: Real, F: FromValue<T>> FromValue<T> for Option<F> {
 /// Reads a list, or a row of numbers or vectors as the list of its items.
 ///
 /// # Errors
-/// The fault of the first item that is not an `F`, with its place.
+/// The fault of the first item that is not an `F`, with its index.
 pub fn many<T: Real, F: FromValue<T>>(value: &Value<T>) -> Result<Vec<F>, CallError> {
     let item = |(k, v): (usize, &Value<T>)| F::from_value(v).map_err(|fault| fault.in_item(k));
     match value {

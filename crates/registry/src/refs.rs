@@ -12,8 +12,8 @@ use std::any::Any;
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
-/// A point in space that may also know its place on a curve and on a surface: so a bead, a magnet
-/// or a ring is a point with more data.
+/// A point in space with its parameters on a curve and on a surface, if it has any: so beads,
+/// magnets and rings are points with more data.
 #[derive(Clone, Debug)]
 pub struct Point<T: Real> {
     /// Position.
@@ -24,8 +24,8 @@ pub struct Point<T: Real> {
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
     /// Surface and parameters (u, v), for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
-    /// The point of which this is the image under a map of space. For joins: coincident images of
-    /// one point are one.
+    /// The point whose image this is under a map of space. For joins: coincident images of one
+    /// point are one.
     pub image_of: Option<Key>,
     /// Report of the search, if there was one.
     pub found: Option<Arc<SearchReport>>,
@@ -42,7 +42,7 @@ impl<T: Real> Point<T> {
         Self { image_of: of.key, ..Self::free(xyz) }
     }
 
-    /// The point of `curve` at `t`; on a snake it also knows its place on the surface.
+    /// The point of `curve` at `t`; on a snake also with its parameters on the surface.
     ///
     /// At t = 0 or 1 to the bit it is the end of the curve: its key is that of the point object that the
     /// curve ends at, if there is one, or that of the end itself, so that meshes join there.
@@ -115,7 +115,7 @@ pub type Figures = Arc<Vec<(&'static str, f64)>>;
 #[derive(Clone)]
 pub struct CurveRef<T: Real> {
     pub(crate) shape: Arc<dyn Curve<T>>,
-    /// Whether it is closed; computed on first use.
+    /// True when it is closed; computed on first use.
     pub(crate) closed: OnceLock<bool>,
     /// The object, once it has a name.
     pub key: Option<Key>,
@@ -138,9 +138,9 @@ pub struct CurveRef<T: Real> {
 #[derive(Clone)]
 pub struct SurfaceRef<T: Real> {
     pub(crate) shape: Arc<dyn Surface<T>>,
-    /// Whether its parameters are closed; computed on first use.
+    /// Which parameters are closed; computed on first use.
     pub(crate) closed: OnceLock<[bool; 2]>,
-    /// Whether its seams are smooth; computed on first use.
+    /// Which seams are smooth; computed on first use.
     pub(crate) smooth_seams: OnceLock<[bool; 2]>,
     /// The object, once it has a name.
     pub key: Option<Key>,
@@ -300,8 +300,9 @@ impl<T: Real> CurveRef<T> {
         }
     }
 
-    /// The points at its two ends: point objects where it ends at such, else the corner of the surface
-    /// or the end of the curve that it runs along, or its own end; one point for a curve that its kind makes a ring.
+    /// The points at its two ends: a point object if the end is one, else the corner of the surface
+    /// or the end of the curve that it follows, or its own end; one point for a curve that its kind
+    /// makes a ring.
     pub fn end_points(&self) -> [Option<Key>; 2] {
         let own = |k: usize| self.key.and_then(|key| key.end(k));
         match self.shape.trace() {
@@ -323,7 +324,7 @@ impl<T: Real> CurveRef<T> {
     }
 
     /// Origin of its shape, for joins: the object itself or, for one without a name, the original
-    /// of which it is the image.
+    /// whose image it is.
     pub fn made_of(&self) -> Vec<Key> {
         self.key.or_else(|| self.shape.image_of()).into_iter().collect()
     }

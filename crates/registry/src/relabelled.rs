@@ -71,7 +71,7 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
     })
 }
 
-/// Whether the law starts at 0, and ends at 1: a partial one does not.
+/// Whether the law starts at 0, and whether it ends at 1: a partial one may not.
 fn reaches<T: Real>(law: &ReparametrizationRef<T>) -> [bool; 2] {
     [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re() == end)
 }

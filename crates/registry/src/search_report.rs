@@ -38,7 +38,7 @@ pub struct SearchReport {
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SearchStatus {
-    /// From the start that was given, or the only solution.
+    /// Found from the given start, or the only solution.
     Ok,
     /// The iteration from the start failed; the nearest of all solutions was taken.
     Fallback,

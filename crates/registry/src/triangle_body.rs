@@ -39,7 +39,7 @@ pub struct Group {
     pub triangles: Range<usize>,
 }
 
-/// A curve that the border of a sheet runs along, from its begin to its end.
+/// A curve along the border of a sheet, from its beginning to its end.
 #[derive(Clone, Debug)]
 pub struct BorderCurve<T: Real> {
     /// The curve.
@@ -72,7 +72,8 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The curves of the border.
     fn curves(&self) -> &[BorderCurve<T>];
 
-    /// The curves of each loop in order, the outer loop first, and whether each runs against it.
+    /// The curves of each loop in order, the outer loop first, each with true when the loop
+    /// traverses it backwards.
     fn cycles(&self) -> &[Vec<(usize, bool)>];
 
     /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
@@ -124,8 +125,8 @@ pub struct TriangleBody<T: Real> {
     pub triangles: Vec<[u32; 3]>,
     /// Number of panels with four corners: their halves a b c and a c d are the first triangles.
     pub quads: usize,
-    /// The triangles by the surfaces of which they are pieces, in order and without gaps; empty if
-    /// the body is one.
+    /// The triangles grouped by surface, in order and without gaps; empty if the body is one
+    /// surface.
     pub groups: Vec<Group>,
     /// Polylines that belong to the body without being surface.
     pub wires: Vec<Vec<Vec3<T>>>,

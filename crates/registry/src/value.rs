@@ -155,7 +155,7 @@ pub enum Family<T> {
     },
 }
 
-/// Components of unit vectors below this are zero when mirror images are looked for.
+/// Components of unit vectors below this are zero in the search for mirror images.
 const SYMMETRIC: f64 = 1e-12;
 
 /// The axis of contours that are not sections by planes of constant x, y or z.

@@ -32,7 +32,7 @@ fn stair(steps: usize) -> String {
     }
     let all: Vec<String> = (1..=corners.len()).map(|k| k.to_string()).collect();
     let _ = writeln!(text, "POLYLINE {} CLOSE", all.join(" "));
-    // Each step hangs on the one before: a change of the first moves all.
+    // Each step depends on the one before: a change of the first moves all.
     for k in 0..steps {
         let (low, high) = (2 * k + 3, 2 * k + 4);
         let _ = writeln!(text, "DIM W{k} X {high} {low} = 1");

@@ -5,7 +5,7 @@ use crate::solid::operation::Operation;
 use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 use std::sync::Arc;
 
-/// A change of place.
+/// A placement of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Placement {
     /// By a vector.
@@ -33,7 +33,7 @@ pub enum Placement {
 /// Selection of faces that is stable under a change of dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FaceChoice {
-    /// Those of a name.
+    /// Faces of a name.
     Named(String),
     /// The plane faces perpendicular to an axis with the largest or smallest coordinate.
     Extreme {
@@ -59,11 +59,11 @@ impl std::fmt::Display for FaceChoice {
 pub enum EdgeChoice {
     /// All that are not smooth.
     All,
-    /// That of a line of the drawing.
+    /// Edge of a line of the drawing.
     Line(LineId),
     /// The straight ones parallel to an axis.
     Along(CoordinateAxis),
-    /// Those of faces.
+    /// Edges of faces.
     Of(FaceChoice),
     /// Those between two faces.
     Between(FaceChoice, FaceChoice),
@@ -106,7 +106,7 @@ pub enum FeatureKind {
     Place(Placement),
     /// Copies, each placed as the next from the last, united.
     Pattern {
-        /// From one copy to the next.
+        /// Placement of a copy relative to the one before.
         step: Placement,
         /// Number of instances.
         count: DimensionExpr,

@@ -42,9 +42,9 @@ pub struct CircularArc<T> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ArcForm<T> {
-    /// From `from` to `to`; `bulge` is perpendicular to the chord, on the arc's side, as long as
-    /// half the angle times the chord. With h half the angle, d the chord:
-    /// C = P + sin(h t)/sin h (d cos(h (1-t)) + (bulge/h) sin(h (1-t))). `whole` is sin h / h.
+    /// The arc from `from` to `to`; `bulge` is perpendicular to the chord, on the arc's side, as
+    /// long as half the angle times the chord. With h half the angle, d the chord: C = P + sin(h
+    /// t)/sin h (d cos(h (1-t)) + (bulge/h) sin(h (1-t))). `whole` is sin h / h.
     Chord { from: Vec3<T>, to: Vec3<T>, bulge: Vec3<T>, half_sq: T, whole: T },
     /// About `centre` from the radius `spoke`; `turn` is perpendicular to it and as long as the
     /// angle times the radius: C = M + spoke cos(a t) + (turn/a) sin(a t).
@@ -73,8 +73,8 @@ impl<T: Real> CircularArc<T> {
         Ok(Self::bulging(p1, p3, p2 - p1, (p2 - p1).dot(p3 - p2)))
     }
 
-    /// Type 2: from `start` about `centre` to the direction of `toward`, the shorter way.
-    /// Opposite directions give the line to the opposite point of the circle.
+    /// Type 2: the shorter arc about `centre` from `start` to the direction of `toward`. Opposite
+    /// directions give the line to the opposite point of the circle.
     ///
     /// # Errors
     /// [`ArcError::AtCentre`], [`ArcError::NotFinite`].

@@ -23,7 +23,7 @@ impl fmt::Display for BeyondEnd {
 impl std::error::Error for BeyondEnd {}
 
 /// The parameters `a`, the breaks strictly between, `b`, in that order; each break with the
-/// derivatives of its place.
+/// derivatives of its parameter.
 fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
     let (low, high) = (a.re().min(b.re()), a.re().max(b.re()));
     let breaks = breaks_between(&curve.breaks(), curve.closed(), low, high);

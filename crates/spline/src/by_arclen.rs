@@ -34,7 +34,7 @@ pub struct ByArclen<T: Real> {
     breaks: Vec<f64>,
 }
 
-/// Lengths are integrated to this share of the whole.
+/// Tolerance of lengths, relative to the whole length.
 const SHARE: f64 = 1e-14;
 
 impl<T: Real> ByArclen<T> {
@@ -72,7 +72,7 @@ impl<T: Real> ByArclen<T> {
         self.before[self.before.len() - 1]
     }
 
-    /// The span in charge at the length `along`, and the place in it.
+    /// The span at the length `along`, and the parameter in that span.
     fn place(&self, along: T) -> (usize, T) {
         let (s, last) = (along.re(), self.spans.len() - 1);
         let inner = &self.before[1..=last];

@@ -9,7 +9,7 @@ use std::fmt;
 pub enum SplineError {
     /// The knots are at fault.
     Knots(KnotError),
-    /// The knots do not run over [0, 1]; see [`KnotVector::normalized`].
+    /// The knots do not cover exactly [0, 1]; see [`KnotVector::normalized`].
     Domain {
         /// The first parameter.
         start: f64,

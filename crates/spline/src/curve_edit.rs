@@ -91,9 +91,9 @@ impl<T: Real> BSplineCurve<T> {
 
     /// The same curve in the next higher degree.
     ///
-    /// Each new control point is the polar form F of the curve at consecutive new knots, and
-    /// F(t_0 … t_p) is the mean of the old polar form over the ways to leave out one t_j
-    /// (Ramshaw 1989, "Blossoms are polar forms", sections 5 and 8).
+    /// Each new control point is the polar form F of the curve at consecutive new knots, and F(t_0
+    /// … t_p) is the mean of the old polar form over all choices of one t_j left out (Ramshaw 1989,
+    /// "Blossoms are polar forms", sections 5 and 8).
     ///
     /// # Errors
     /// [`SplineError::Knots`] above the highest degree.

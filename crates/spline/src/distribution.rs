@@ -413,8 +413,8 @@ fn distance<T: Real>(start: T, end: T) -> std::result::Result<T, DistributionErr
     Ok((end - start).abs())
 }
 
-/// The numbers at the shares of the way that `shares(i, n - 1 - i)` gives from both ends; each is
-/// measured from the nearer end, which keeps the digits of small cells there.
+/// The numbers at the fractions of the distance that `shares(i, n - 1 - i)` gives from both ends;
+/// each is measured from the nearer end, which keeps the digits of small cells there.
 fn fill<T: Real>(start: T, end: T, n: usize, shares: impl Fn(usize, usize) -> (T, T)) -> Vec<T> {
     let way = end - start;
     let mut all: Vec<T> = (0..n)
@@ -527,7 +527,7 @@ enum SpacedEnds<T> {
 }
 
 impl<T: Real> TanhLaw<T> {
-    /// The law with these slopes per cell, as shares of the distance; not both zero.
+    /// The law with these slopes per cell, relative to the distance; not both zero.
     fn new([start, end]: [T; 2], cells: usize) -> Option<Self> {
         let n = cells as f64;
         let (b, side) = match (start.re() > 0.0, end.re() > 0.0) {
@@ -543,7 +543,7 @@ impl<T: Real> TanhLaw<T> {
         sound.then(|| Self { cells, w: inverse_sinhc(b), side })
     }
 
-    /// The shares of the way before and after number `i`.
+    /// The fractions of the distance before and after number `i`.
     fn shares(&self, i: usize) -> (T, T) {
         let (x, y) = (i as f64 / self.cells as f64, (self.cells - i) as f64 / self.cells as f64);
         match self.side {

@@ -306,7 +306,8 @@ fn parabola<T: Real>(knots: &[T], points: &[Vec3<T>], gaps: &[T]) -> PiecewiseCu
 fn open_slopes<T: Real>(h: &[T], points: &[Vec3<T>], start: End<T>, end: End<T>) -> Short<Vec3<T>> {
     let n = points.len();
     let chord: Short<Vec3<T>> = (0..n - 1).map(|k| (points[k + 1] - points[k]) / h[k]).collect();
-    // At the far end the same conditions hold with the order of everything turned round.
+    // The condition at the far end has the same form, with the order of intervals and chords
+    // reversed.
     let (m, p) = (h.len() - 1, h.len() - 2);
     let (d0, e0, r0) = end_row(start, [h[0], h[1]], [chord[0], chord[1]]);
     let (d1, e1, r1) = end_row(end, [h[m], h[p]], [chord[m], chord[p]]);

@@ -15,7 +15,8 @@ pub enum Parametrization {
     Index,
 }
 
-/// Points that are nearer than this share of their size coincide: they have no chord direction.
+/// Points nearer to each other than this, relative to their size, coincide: they have no chord
+/// direction.
 const NEAR: f64 = 4.0 * f64::EPSILON;
 
 impl Parametrization {

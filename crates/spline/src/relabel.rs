@@ -1,5 +1,5 @@
-//! Closed forms of reparametrizations: B-spline, cosine, geometric, hyperbolic tangent, tables. Each is monotone and
-//! runs from 0 to 1 exactly, or is refused.
+//! Closed forms of reparametrizations: B-spline, cosine, geometric, hyperbolic tangent, tables.
+//! Each is monotone and maps 0 to 0 and 1 to 1 exactly, or is refused.
 
 use crate::even_functions::{cos_of_sq, sinc_of_sq};
 use crate::{KnotError, KnotVector};
@@ -158,8 +158,8 @@ impl<T: Real> ReparametrizationForm<T> {
     /// first and the last are fixed: their derivatives are dropped.
     ///
     /// # Errors
-    /// [`RelabelError`] if the values decrease, do not extend from 0 to 1, are too few, or if so
-    /// many are equal that R has a zero tangent inside.
+    /// [`RelabelError`] if the values decrease, do not extend from 0 to 1, are too few, or if
+    /// enough of them are equal to give R a zero tangent inside.
     pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
         if let [first, .., last] = values.as_mut_slice() {
             let ends = (first.re(), last.re());
@@ -208,8 +208,8 @@ impl<T: Real> ReparametrizationForm<T> {
     /// the cubic would overshoot. The first and the last pair are fixed at (0, 0) and (1, 1).
     ///
     /// # Errors
-    /// [`RelabelError`] when the lengths differ, the pairs do not run from (0, 0) to (1, 1), the
-    /// parameters do not ascend, or the values run back or stay.
+    /// [`RelabelError`] when the lengths differ, the first pair is not (0, 0) or the last not (1,
+    /// 1), the parameters do not ascend, or the values decrease or repeat.
     pub fn table(mut nodes: Vec<T>, mut values: Vec<T>) -> Result<Self, RelabelError> {
         let n = nodes.len();
         if n != values.len() || n < 2 {

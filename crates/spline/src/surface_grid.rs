@@ -1,7 +1,7 @@
 //! Many points of a surface at once.
 //!
 //! Tensor grids are two matrix products: the basis in v is applied once per row of control points,
-//! the basis in u then runs over whole lines of the grid, contiguous in memory.
+//! then the basis in u to whole lines of the grid, contiguous in memory.
 
 use crate::{BSplineSurface, KnotVector};
 use moldloft_num::{Order, Real, Vec3};

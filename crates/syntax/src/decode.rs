@@ -6,10 +6,11 @@ use std::borrow::Cow;
 /// The longest text that is read: spans are 32 bits wide, and a model of this size is a mistake.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// The bytes as text. Carriage returns that alone end the lines of a file are line feeds, so that places stay.
+/// The bytes as text. In a file whose lines end with carriage returns alone, these become line
+/// feeds, so positions do not change.
 ///
 /// # Errors
-/// `binary-file` for NUL bytes or invalid UTF-8, with the place of the first one; `file-too-large` beyond
+/// `binary-file` for NUL bytes or invalid UTF-8, with the position of the first one; `file-too-large` beyond
 /// [`MAX_BYTES`]. The file shown is `name`; the diagnostic has no span, because there is no text to point into.
 pub fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<Cow<'a, str>, Diagnostic> {
     if bytes.len() > MAX_BYTES {

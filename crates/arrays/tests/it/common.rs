@@ -76,7 +76,7 @@ pub fn refused(name: &str, args: &[Value<f64>]) -> (&'static str, Option<usize>,
     (fault.id, fault.field(), fault.item())
 }
 
-/// Every number in `value` becomes x + h * its share of a direction that depends on `seed`.
+/// Every number in `value` becomes x + h times its component of a direction that depends on `seed`.
 fn moved<T: Real>(value: &Value<f64>, move_by: &mut impl FnMut(f64) -> T) -> Value<T> {
     let mut vector = |v: &Vec3| Vec3::new(move_by(v.x), move_by(v.y), move_by(v.z));
     match value {

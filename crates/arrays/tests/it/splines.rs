@@ -39,7 +39,7 @@ fn profile_spacings() -> Vec<f64> {
     numbers(&ok("d_tanh", &[0.0, 1.0, 0.07, 0.01, 60.0].map(number)))
 }
 
-/// True positions: `s` of the way along the quarter circle and the line.
+/// True positions at the fraction `s` of the length of the quarter circle and the line.
 fn exact(share: f64, radius: f64, base: f64) -> Vec3 {
     let s = share * (radius * FRAC_PI_2 + base);
     if s < radius * FRAC_PI_2 {
@@ -359,7 +359,7 @@ fn faults_say_where() {
         refused("distc", &[p.clone(), farray(&[0.0, 1.5])]),
         ("out-of-range", Some(1), Some(1))
     );
-    // An array where a pcurve is asked for, and the other way round: the fault tells how to fix it.
+    // An array instead of a pcurve, and vice versa: the fault says how to fix it.
     let fault = call("distc", &[good, farray(&[0.0])]).unwrap_err();
     assert_eq!((fault.id, fault.help.is_empty()), ("wrong-class", false));
     let fault = call("makecc", &[p]).unwrap_err();

@@ -31,7 +31,7 @@ use std::collections::HashMap;
 const LEVELS: std::ops::RangeInclusive<u32> = 5..=8;
 const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=6;
 
-/// Places along an edge that are compared with the set, for the length of a cell.
+/// Number of points along an edge compared with the set, per length of a cell.
 const PLACES: f64 = 6.0;
 
 /// A part that cells pass over.

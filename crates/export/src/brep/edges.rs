@@ -15,10 +15,10 @@ use std::sync::Arc;
 /// Distance, in accuracies, beyond which curves through the same vertices are two edges.
 const PARTED: f64 = 50.0;
 
-/// And by this share of their length: the tolerance of declared joins is seldom more.
+/// The same relative to their length: the tolerance of declared joins is seldom larger.
 const JOINED: f64 = 1e-4;
 
-/// Curves within this share of the size at equal parameters run alike.
+/// Curves are alike if they differ by less than this at equal parameters, relative to the size.
 const ALIKE: f64 = 1e-9;
 
 /// A side of a loop with derived data.
@@ -301,7 +301,7 @@ impl<'a> Sewing<'a> {
         let mut own = curve.grid(&parameters);
         let apart =
             |own: &[Vec3]| own.iter().zip(&theirs).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-        // A closed edge may run either way.
+        // A closed edge may have either direction.
         let straight = apart(&own);
         own.reverse();
         let turned = apart(&own);
@@ -327,8 +327,8 @@ impl<'a> Sewing<'a> {
     }
 }
 
-/// The distance of a place from a curve, known at even parameters: the least near the nearest chord, by golden
-/// sections. It is never less than the true distance.
+/// The distance of a point from a curve with known points at even parameters: the least near the
+/// nearest chord, by golden sections. It is never less than the true distance.
 fn to_curve(p: Vec3, curve: &Nurbs<1>, places: &[Vec3]) -> f64 {
     /// Sections that leave 1e-7 of two chords.
     const SECTIONS: usize = 32;

@@ -53,7 +53,8 @@ pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>
     Ok(firsts.iter().filter_map(|&k| made[k].clone()).collect())
 }
 
-/// Distances below this share of the size count as rounding between a surface and its moved copy.
+/// Distances below this, relative to the size, count as rounding between a surface and its moved
+/// copy.
 const COPIED: f64 = 1e-11;
 
 /// Rigid motion from one surface to another.
@@ -61,7 +62,7 @@ struct RigidMotion {
     /// A place of each, and axes there.
     origins: [Vec3; 2],
     axes: [[Vec3; 3]; 2],
-    /// Places that are no farther apart are one.
+    /// Points nearer to each other than this are one.
     near: f64,
 }
 

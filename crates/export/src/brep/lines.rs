@@ -144,8 +144,8 @@ impl LinePiece {
     }
 }
 
-/// Cubics along the line that are near enough to the sheets, and how near; else a place that is not on two sheets within
-/// `near`.
+/// Cubics along the line that are near enough to the sheets, and their largest distance; else a
+/// point that is not on two sheets within `near`.
 fn refined(
     line: &[Vec3],
     sheets: &[Primitive],
@@ -170,7 +170,7 @@ fn refined(
                 todo.push(([middle, ends[1]], depth + 1));
                 todo.push(([ends[0], middle], depth + 1));
             } else {
-                // Between the places that were looked at it may be somewhat farther.
+                // Between the sampled points it may be somewhat farther.
                 worst = worst.max(1.5 * off);
                 found.push(piece);
             }

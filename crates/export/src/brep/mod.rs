@@ -2,8 +2,9 @@
 //!
 //! `outlines of panels -> NURBS of surfaces -> runs of sides between common vertices -> edges -> shells -> parts`
 //!
-//! Two sides are one edge when they run through the same vertices of the mesh, which are one by identity, and their
-//! curves do not part by more than the accuracy allows: places are compared to refuse a join, never to make one.
+//! Two sides are one edge when they pass through the same vertices of the mesh, which are one by
+//! identity, and their curves do not differ by more than the accuracy allows: positions are
+//! compared to refuse a join, never to make one.
 
 mod bodies;
 mod edges;

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// Distance of vertices from a plane, relative to the size, within which they are in it.
 const IN_PLANE: f64 = 1e-9;
 
-/// Most triangles that do not hang together with others in their plane, before a body counts as curved.
+/// The most triangles not connected with others in their plane, before a body counts as curved.
 const MOST_ALONE: usize = 64;
 
 /// Adds the faces of the body of that name.

@@ -71,7 +71,7 @@ impl<'a> Tapes<'a> {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    /// Tapes of some blocks with surface.
+    /// Tapes of the blocks with surface for which `which` holds.
     pub(super) fn those(
         &self,
         which: impl Fn(&ExprTape<f64>) -> bool,

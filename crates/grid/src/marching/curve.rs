@@ -11,7 +11,7 @@ use moldloft_num::{Real, Vec3};
 
 /// A surface that a grid stays on while it is marched.
 pub trait Support<T: Real>: Sync {
-    /// Of each point the nearest point of the surface and the unit normal there.
+    /// The nearest point of the surface to each point, and the unit normal there.
     fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)>;
 }
 

@@ -43,10 +43,11 @@ pub(super) trait Front<T: Real> {
     fn place(&self, k: usize) -> [usize; 2];
 }
 
-/// Steps are at most this share of the shortest edge: beyond it some corners of 45 to 60 degrees fail.
+/// The largest step, relative to the shortest edge: beyond it some corners of 45 to 60 degrees
+/// fail.
 const EDGE_SHARE: f64 = 0.5;
 
-/// Steps are at most this share of the height reached.
+/// The largest step, relative to the height reached.
 const HEIGHT_SHARE: f64 = 0.15;
 
 /// Between layers smoothed volumes change at most by this factor where lines do not converge.

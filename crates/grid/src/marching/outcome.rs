@@ -83,7 +83,7 @@ pub enum FailureCause {
     },
     /// A corner of a cell is turned over; its scaled Jacobian.
     Folded(f64),
-    /// Grid lines run into each other: an edge of the layer has shrunk to nothing.
+    /// Grid lines meet: an edge of the layer has shrunk to nothing.
     LinesMeet,
     /// The layer takes more steps than are made.
     TooManySteps(usize),

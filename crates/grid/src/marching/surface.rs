@@ -21,8 +21,8 @@ use moldloft_parallel::prelude::*;
 /// then with more smoothing, and otherwise is an error.
 ///
 /// # Errors
-/// Heights that do not ascend from 0; surfaces without a normal; periodic edges apart; [`GridError::March`] with
-/// the layer, the place and the cause.
+/// Heights that do not ascend from 0; surfaces without a normal; periodic edges that differ;
+/// [`GridError::March`] with the layer, the position and the cause.
 pub fn hyperbolic<T: Real>(
     surface: &SurfaceGrid<T>,
     options: &Hyperbolic<T>,
@@ -169,8 +169,8 @@ impl<T: Real> SurfaceFront<T> {
         [next, last]
     }
 
-    /// Of each axis, which of its lines turn round an edge: at the foot of a post the bisector leans away from
-    /// it, so that less counts than for a prescribed motion.
+    /// For each axis, which of its lines turn round an edge: at the foot of a post the bisector
+    /// leans away from it, so a weaker condition suffices than for a prescribed motion.
     fn lines_that_turn(&self, nodes: &[SurfaceNode<T>]) -> [Vec<bool>; 2] {
         [0, 1].map(|axis| {
             let turns = |line: usize| {

@@ -66,7 +66,7 @@ fn edges_stay_to_the_bit_and_cubic_blending_joins_smoothly() {
         }
         assert!(grid.points().all(|p| p.is_finite()));
     }
-    // Two halves of a surface whose edges run through smoothly: with cubic blending the grid lines
+    // Two halves of a surface whose edges continue smoothly: with cubic blending the grid lines
     // pass the seam without a kink, at a rate of convergence.
     let whole = |k: usize, u: f64, v: f64| {
         let (u, s) = (u + k as f64, 0.2 * v * v);
@@ -134,7 +134,7 @@ fn leaps_are_found_with_corner_and_gap() {
 #[test]
 fn blocks_from_six_faces() {
     let [ni, nj, nk] = [7, 6, 5];
-    // Stretched differently each way, and sheared: linear in each direction.
+    // Stretched differently in each direction, and sheared: linear in each direction.
     let at = |i: usize, j: usize, k: usize| {
         let (u, v, w) = (stretch(i as f64 / 6.0), j as f64 / 5.0, stretch(k as f64 / 4.0));
         Vec3::of(u + 0.2 * v, v * (1.0 + 0.5 * w), w * 2.0 + 0.1 * u)

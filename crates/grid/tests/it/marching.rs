@@ -162,7 +162,7 @@ fn walls_march_to_the_height_asked_or_say_why_not() {
     judged(&all);
 }
 
-/// Of a collection of 2 000 listings the soak takes each fifteenth.
+/// The soak takes each fifteenth of a collection of 2 000 listings.
 #[test]
 fn listings_and_blades_march_or_say_why_not() {
     let all = sections::sections(if is_soak() { 15 } else { 1 });

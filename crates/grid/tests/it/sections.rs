@@ -122,7 +122,8 @@ fn crosses_itself(points: &[Vec3]) -> bool {
     false
 }
 
-/// Points of the natural cubic spline through points, by chord length, at shares of it.
+/// Points of the natural cubic spline through points, by chord length, at the given fractions of
+/// it.
 fn spline(points: &[Vec3], at: &[f64]) -> Vec<Vec3> {
     let n = points.len();
     let mut t = vec![0.0];

@@ -283,7 +283,7 @@ fn walls_listing(n: usize, m: f64, p: f64, t: f64) -> Vec<Vec3> {
     listed(&naca4(n, m, p, t, true), 5)
 }
 
-/// Camber, its place and thickness.
+/// Camber, its position, and thickness.
 fn sections() -> Vec<(f64, f64, f64)> {
     let mut all = Vec::new();
     for t in [0.06, 0.08, 0.09, 0.10, 0.12, 0.15, 0.18, 0.21, 0.24] {

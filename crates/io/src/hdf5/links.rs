@@ -142,7 +142,7 @@ fn dense(
         at.signature(if depth == 0 { "BTLF" } else { "BTIN" })?;
         at.skip(2)?;
         for _ in 0..count {
-            // A hash, then the place in the heap.
+            // A hash, then the position in the heap.
             at.skip(4)?;
             let id = at.take(record as usize - 4)?;
             links.push(link(heap.object(file, id)?)?);
@@ -160,7 +160,7 @@ fn dense(
 
 /// Location of the objects of a heap.
 struct FractalHeap {
-    /// Bytes of a place in the heap, and of a length.
+    /// Bytes of a position in the heap, and of a length.
     place: usize,
     length: usize,
     columns: u64,
@@ -214,7 +214,7 @@ impl FractalHeap {
         Ok(Cursor { bytes: &file.bytes[..at.at], at: at.at - length, ..at })
     }
 
-    /// The address in the file of a place of the heap, inside of the block at `address`.
+    /// The address in the file of a position in the heap, inside the block at `address`.
     fn block(
         &self,
         file: &Hdf5File<'_>,

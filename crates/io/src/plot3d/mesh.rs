@@ -21,7 +21,7 @@ pub(crate) fn structured_patches(mesh: &Mesh) -> Result<Vec<(&str, &Block)>, Wri
     Ok(all.filter_map(|p| Some((p.info.name.as_str(), p.block.as_ref()?))).collect())
 }
 
-/// The grid file of a mesh's structured patches; i runs along u, j along v.
+/// The grid file of a mesh's structured patches; i is along u, j along v.
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when some patch has no grid; positions that are not finite; blocks that
@@ -36,7 +36,7 @@ pub fn write_mesh(mesh: &Mesh, variant: Variant) -> Result<Vec<u8>, WriteError> 
     write(&grids, variant)
 }
 
-/// The grid file of volume blocks; i runs along u, j along v, k along w.
+/// The grid file of volume blocks; i is along u, j along v, k along w.
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite; blocks that the

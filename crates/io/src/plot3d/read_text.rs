@@ -76,7 +76,8 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
         let x = *words.values.get(k)?;
         (words.whole[k] && x.abs() < 1e15).then_some(x as i64)
     };
-    // Of readings that do not fit, one whose sizes end with their line, then the nearest in number.
+    // Among readings that do not fit: one whose sizes end with their line, then the nearest in
+    // number.
     let mut nearest: Option<Misfit> = None;
     // One number in the first line and several in the next: the number of blocks, then sizes.
     let line = |k: usize| words.lines.get(k);

@@ -54,7 +54,7 @@ pub fn structured_files(
         let vertices = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
         let own = fields.iter().filter(|f| f.patch == name).flat_map(|f| &f.fields);
         let fit = own.filter(|f| f.values.len() == f.components * b.vertices.len());
-        // Ours run along v first.
+        // The order of Moldloft has v fastest.
         let turned = |f: &VtkArray| {
             let one = |(i, j): (usize, usize)| {
                 let at = (i * b.nv + j) * f.components;

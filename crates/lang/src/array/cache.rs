@@ -221,7 +221,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         lanes: &TapeArray,
         fill: impl FnOnce(&mut [Vec<T>]) -> bool,
     ) -> Option<Value<T>> {
-        // The target is of another module where a function is called on the way.
+        // The target belongs to another module if a function is called in between.
         let (_, target) = self.arrays.assigning.filter(|(of, _)| *of == key)?;
         let symbol = m.program.as_name(target)?;
         let place = self.env.scope.place_of(m.names[symbol.0 as usize])?;
@@ -262,7 +262,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> Option<Value<T>> {
     match *entry {
         Entry::Binary(op, a, b) => match (op, of(a), of(b)) {
-            // The most frequent ones without the way through the rules.
+            // The most frequent ones without the general rules.
             (BinaryOp::Mul, Value::Number(a), Value::Number(b)) => Some(Value::Number(*a * *b)),
             (BinaryOp::Mul, Value::Number(a), Value::Vector(b)) => Some(Value::Vector(*b * *a)),
             (_, a, b) => ops::binary(op, a, b).ok(),

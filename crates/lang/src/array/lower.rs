@@ -706,7 +706,7 @@ fn described<T>(operand: Loose<T>) -> String {
     }
 }
 
-/// A tape under way.
+/// A tape under construction.
 pub(crate) struct TapeBuilder<T: Real> {
     pub tape: Tape<T>,
     pub calls: Calls,

@@ -29,7 +29,7 @@ pub(crate) enum Slot<T: Real> {
     /// Executed once, or the number of times that a recipe did not fit.
     Seen(u8),
     Kept(Box<Recipe<T>>),
-    /// Under way.
+    /// In use.
     Busy,
     /// No gain, or not possible.
     Never,
@@ -116,7 +116,7 @@ pub(super) enum Entry<T> {
     Function(&'static str, Elementary<T>, [Cell; 2]),
 }
 
-/// A recording under way.
+/// A recording in progress.
 pub(crate) struct Recorder<T: Real> {
     pub(super) entries: Vec<Entry<T>>,
     /// Names of the leaves that are variables.
@@ -288,7 +288,7 @@ impl<T: Real> std::fmt::Debug for Recipe<T> {
 /// Leaves that were read, with their results.
 pub(crate) type Read<T> = Vec<(ExprId, Result<Value<T>, Diagnostic>)>;
 
-/// Result of one way of execution.
+/// Result of an execution.
 pub(crate) enum Course<T: Real> {
     Done(Result<Value<T>, Diagnostic>),
     /// Through the tree, with values that were read already; `misfits` when it is to be recorded.

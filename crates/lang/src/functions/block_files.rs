@@ -128,7 +128,7 @@ pub(crate) struct PlaneAxes {
     pub normal: Vec3,
 }
 
-/// Coordinates that differ by less than this share of the size are constant.
+/// Difference of coordinates, relative to the size, below which they are constant.
 const FLAT: f64 = 1e-9;
 
 /// Surfaces in a plane of constant z, y or x as blocks of one layer of cells, whose sides are called `sides`.
@@ -180,7 +180,7 @@ pub(crate) fn extruded(
     Ok((layers.collect(), PlaneAxes { axes, normal: normal.into() }))
 }
 
-/// Joints and boundaries of the blocks, by the places where their points coincide, and the periodic ones.
+/// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
 pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
     let hexahedra = blocks

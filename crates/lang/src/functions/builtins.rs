@@ -38,7 +38,7 @@ impl Builtin {
         self.help.iter().map(|(name, ..)| name.trim_end_matches('?'))
     }
 
-    /// The words that a text in the place of an argument may hold.
+    /// The allowed words of a text argument.
     pub fn words(&self, argument: usize) -> impl Iterator<Item = &'static str> {
         let words: &[&str] = match (self.action, argument) {
             (Action::WriteGrids(format), 1..) if format.joins => &BOUNDARY_KINDS,

@@ -287,7 +287,7 @@ pub(crate) fn combining<T: Real>(name: &str) -> Option<(&'static str, Elementary
     })
 }
 
-/// `min`, `max` or `sum` of several numbers, of which some need not be finite.
+/// `min`, `max` or `sum` of several numbers, which need not be finite.
 pub(crate) fn combined<T: Real>(name: &str, args: &[Value<T>]) -> Option<Value<T>> {
     let (_, Elementary::Binary(f)) = combining(name)? else { return None };
     let number = |v: &Value<T>| if let Value::Number(x) = v { Some(*x) } else { None };

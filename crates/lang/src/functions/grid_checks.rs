@@ -15,7 +15,7 @@ use moldloft_num::{Box3, Vec3};
 /// surface with different numbers of points differ by less.
 const ABUTTING: f64 = 5e-3;
 
-/// Points of a face, along each of its axes, that are looked for on others.
+/// Number of points of a face, along each of its axes, that are compared with others.
 const SAMPLES: usize = 5;
 
 /// Warnings about blocks, and their connections if the format joins them.

@@ -24,7 +24,7 @@ const LINE_COLOURS: [usize; 7] = [1, 4, 2, 5, 3, 6, 0];
 /// The words that choose a view.
 const VIEWS: &str = "x, y, z, -x, -y, -z or iso";
 
-/// From where: degrees about z and above the horizon.
+/// Direction of the view: degrees about z and above the horizon.
 fn view(word: &str) -> Option<[f64; 2]> {
     Some(match word {
         "x" => [0.0, 0.0],
@@ -166,7 +166,7 @@ pub struct DrawnArrays {
     pub mesh: Mesh,
     /// Curves.
     pub curves: Vec<StyledPolyline>,
-    /// From where they are seen: degrees about z and above the horizon.
+    /// Direction of the view: degrees about z and above the horizon.
     pub view: [f64; 2],
 }
 

@@ -29,13 +29,13 @@ pub struct Producer<'a, 'g, T: Scalar> {
     pub host: RunContext<'a>,
     /// The environment that the run leaves behind.
     pub env: &'a mut Environment<T>,
-    /// The numbers of variables and formulas, by their place in the file.
+    /// The numbers of variables and formulas, by their index in the file.
     pub reals: HashMap<usize, T>,
     /// Values of parameters and literals for this run.
     pub inputs: Inputs<'a, T>,
     /// The run of the graph that declarations go to.
     pub run: &'a mut Run<'g, T>,
-    /// By the place of the object in the file.
+    /// By the index of the object in the file.
     pub outcomes: Vec<Option<Outcome>>,
     pub(super) roots: Vec<RootCause>,
     /// Number of searches for the nearest name, which are slow in large models.
@@ -52,7 +52,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let source = self.source;
         let name = |at: usize| source.model.slice(source.lines[at].name);
         let round = cycle.iter().chain(cycle.first()).map(|&at| name(at));
-        // A long way round is identified by its ends.
+        // A long cycle is identified by its ends.
         let mut shown: Vec<&str> = round.collect();
         let left_out = shown.len().saturating_sub(1000);
         let text = if left_out > 0 {
@@ -196,7 +196,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Err(Trouble::Blocked { root, span }) => blocked = blocked.or(Some((root, span))),
             }
         }
-        // Columns have their places: one left out would give the next its meaning.
+        // Columns are positional: after a missing one the next would get its meaning.
         let columns = row.columns.unwrap_or("").split_ascii_whitespace();
         let own = |at: &usize| row.fields[*at].name == "relabel" && row.class.dimension() > Some(0);
         let mut fields = columns.filter_map(|column| row.field(column)).filter(|at| !own(at));

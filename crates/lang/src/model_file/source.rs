@@ -28,11 +28,11 @@ const MOST_DIAGNOSTICS: usize = 100;
 /// More cycles than this are not reported: their paths may be long.
 const MOST_CYCLES: usize = 20;
 
-/// A parsed model file and the places of its objects.
+/// A parsed model file and the positions of its objects.
 pub struct ModelFileSource {
     pub(super) model: ModelFile,
     pub(super) lines: Vec<Line>,
-    /// The first object of each name, by its place in `lines`.
+    /// The first object of each name, by its index in `lines`.
     pub names: HashMap<Box<str>, usize>,
 }
 
@@ -200,7 +200,7 @@ impl ModelFileSource {
         &self.model
     }
 
-    /// The objects in the order of the file; an object's origin is its place here.
+    /// The objects in the order of the file; an object's origin is its index here.
     pub fn lines(&self) -> &[Line] {
         &self.lines
     }
@@ -363,7 +363,7 @@ impl ModelFileSource {
     fn parents(&self, sorted: &Sorted) -> Vec<usize> {
         let mut parents = Vec::new();
         let Some(row) = &sorted.row else {
-            // Of a variable or formula.
+            // Parents of a variable or formula.
             sorted.head.iter().for_each(|field| self.names_in(field, &mut parents));
             return parents;
         };

@@ -1,4 +1,4 @@
-//! From a program to a model file of the objects that it makes: computed numbers as numbers.
+//! Conversion of a program to a model file of its objects, with computed numbers as numbers.
 
 use crate::World;
 use crate::model_file::header;
@@ -121,7 +121,7 @@ fn letters(rest: &str) -> String {
     rest.chars().filter(|c| matches!(c, 'x' | 'y' | 'z')).collect()
 }
 
-/// From a program.
+/// Conversion of a program.
 struct ToModelFile<'a> {
     module: &'a Module,
     evaluation: &'a Evaluation<f64>,

@@ -125,7 +125,7 @@ pub(crate) fn is_legacy(version: &str) -> bool {
     version.parse::<f64>().is_ok_and(|v| v < 1.0)
 }
 
-/// From a model file.
+/// Conversion of a model file.
 struct ToProgram<'a> {
     source: &'a ModelFileSource,
     registry: &'a Registry,

@@ -88,7 +88,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// Of a function whose value is like its arguments, and of those that reduce them.
+    /// Rank of a function whose value is like its arguments, and of reductions.
     fn rank_of_call(&self, m: &Module, name: &str, args: &[ExprId]) -> Rank {
         let greatest = args.iter().map(|&e| self.rank(m, e)).max().unwrap_or(0);
         let reduces = matches!(name, "min" | "max" | "sum" | "mean" | "average");

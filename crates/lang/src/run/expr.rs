@@ -594,7 +594,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             return Ok(Value::Block(moved.into()));
         }
-        // Of numbers and points it is their mean, of a surface alone the mean curvature.
+        // For numbers and points it is their mean, for a surface alone the mean curvature.
         if &*row.name == "mean"
             && given.positional.first().is_some_and(|value| {
                 match &*moldloft_arrays::gathered(value) {

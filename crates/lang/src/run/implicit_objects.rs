@@ -20,7 +20,7 @@ fn row_of(ty: Type) -> Option<&'static str> {
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The names that statements of the module under way give another value: they are variables.
+    /// The names that statements of the current module assign to: they are variables.
     fn is_assigned(&mut self, m: &Module, symbol: Symbol) -> bool {
         let names = self.assigned.entry(self.current).or_insert_with(|| {
             let target = |k: u32| match m.program[StmtId(k)].kind {

@@ -38,7 +38,7 @@ const MOST_PRINTED: usize = 16 << 20;
 /// Statements, expressions and calls nest at most this deep while running.
 pub(crate) const DEEPEST: u32 = 2_500;
 
-/// Calls of routines under way at a time.
+/// Maximum depth of routine calls.
 pub(super) const MOST_CALLS: usize = 12_000;
 
 /// Stack of a run: maximum nesting times the largest frame, with a reserve.
@@ -104,13 +104,13 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// The limits that the run began with.
     pub(super) limits: Limits,
     pub turns: u64,
-    /// The components under way, by module.
+    /// The active components, by module.
     pub components: Vec<usize>,
     /// Reported faults: a repeated statement reports each fault once.
     reported: HashSet<(Cow<'static, str>, Span)>,
     /// Failed objects that were reported to the program when it read them.
     pub blocked: HashSet<Key>,
-    /// Objects that the expression under way has read, while that is to be noted.
+    /// Objects read by the current expression, while the log is open.
     pub reads: ReadLog,
     /// The names that statements of a module assign to, by module.
     pub assigned: HashMap<usize, HashSet<Symbol>>,
@@ -414,7 +414,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         flow
     }
 
-    /// Ends the run: more calls are under way than there may be.
+    /// Ends the run: the maximum depth of calls is exceeded.
     pub fn too_many_calls(&mut self, span: Span) {
         self.stop(
             Diagnostic::error("nested-too-deep", "calls nest too deep")
@@ -861,11 +861,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .collect();
         own.sort_unstable();
         let all = variables.chain(own).chain(BUILTINS.iter().map(|b| b.name)).chain(["PI"]);
-        // Of names as near as each other the first is taken.
+        // The first of equally near names.
         nearest(word, all.chain(functions)).map(str::to_string)
     }
 
-    /// Puts a value into elements of a place that masks or index arrays have chosen.
+    /// Stores a value into elements of a place selected by masks or index arrays.
     fn store_chosen(
         &mut self,
         place: Place,

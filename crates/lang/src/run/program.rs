@@ -58,7 +58,7 @@ pub enum NotLiteral {
 pub enum ArgumentInText {
     /// The expression.
     Written(Span),
-    /// It is not given: it can be written by its name at the end of this place.
+    /// It is not given: it can be inserted by its name at the end of this range.
     After(Span),
 }
 

@@ -72,7 +72,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// A section of a place, or the place and the elements that masks or index arrays choose of it.
+    /// A section of a place, or the place and its elements selected by masks or index arrays.
     fn indexed(
         &mut self,
         m: &Module,

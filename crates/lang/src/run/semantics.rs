@@ -813,7 +813,8 @@ fn collect(
     }
 }
 
-/// The lists of statements inside a statement; a single statement in the place of a block is a list of its own.
+/// The lists of statements inside a statement; a single statement instead of a block is a list of
+/// its own.
 fn inner_lists(m: &Module, stmt: StmtId) -> Vec<NodeList<StmtId>> {
     let mut lists = Vec::new();
     let mut stack = vec![stmt];
@@ -862,7 +863,7 @@ fn leaves(m: &Module, stmt: StmtId) -> bool {
     }
 }
 
-/// True when every way through the statements returns, or never ends.
+/// True if every path through the statements returns, or never ends.
 fn ends(m: &Module, list: NodeList<StmtId>) -> bool {
     m.program[list].iter().any(|&stmt| returns(m, stmt))
 }

@@ -69,7 +69,7 @@ pub enum SolveStatus {
     OutOfRange,
     /// The steps did not suffice.
     TooManySteps,
-    /// The model could not be built on the way.
+    /// The model could not be built for a trial value.
     NoModel,
 }
 

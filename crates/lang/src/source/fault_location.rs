@@ -1,11 +1,11 @@
-//! From the fault of a call to the place of its argument in the text.
+//! Position of a call's fault in the text, by its argument.
 
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Argument, CallError, Row};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, NodeList};
 
-/// The fault as a diagnostic without a place.
+/// The fault as a diagnostic without a position.
 pub fn unplaced(fault: &CallError) -> Diagnostic {
     let mut diagnostic = Diagnostic::error(fault.id, fault.message.clone());
     if let Some(expected) = &fault.expected {

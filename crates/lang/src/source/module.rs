@@ -57,7 +57,7 @@ impl Modules {
         &self.modules[module]
     }
 
-    /// The module, to edit its literals; no run is under way then.
+    /// The module, to edit its literals; no run is active then.
     pub fn get_mut(&mut self, module: usize) -> &mut Module {
         Arc::get_mut(&mut self.modules[module]).expect("no run holds on to a module")
     }

@@ -96,13 +96,13 @@ pub struct CallFrame<T: Scalar> {
     pub global: bool,
     /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
     pub prefix: Arc<str>,
-    /// The loops under way, outermost first.
+    /// The active loops, outermost first.
     pub loops: Vec<LoopIteration>,
     /// The call of the frame, and the module that contains it.
     pub called: Option<(Span, u32)>,
 }
 
-/// A turn of a loop under way.
+/// An iteration of an active loop.
 #[derive(Clone, Debug)]
 pub struct LoopIteration {
     /// The loop variable's value as used in names; `None` in a `while`.
@@ -141,7 +141,7 @@ pub struct Scope<T: Scalar> {
     pub routines: HashMap<Name, RoutineAt>,
     /// Types of records.
     pub records: HashMap<Name, RecordAt>,
-    /// The calls under way; the first is the file itself.
+    /// The active calls; the first is the file itself.
     pub frames: Vec<CallFrame<T>>,
     /// The modules that were run.
     pub executed: HashSet<usize>,

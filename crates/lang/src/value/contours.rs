@@ -19,10 +19,10 @@ use std::sync::Arc;
 /// The names of the members.
 pub const MEMBERS: [&str; 4] = ["positions", "lengths", "areas", "lines"];
 
-/// Ends of lines this share of the section's size apart meet.
+/// Distance of the ends of lines, relative to the section's size, within which they meet.
 const MEET: f64 = 1e-9;
 
-/// Lines are the same to this share of their length.
+/// Tolerance of equal lines, relative to their length.
 const SAME: f64 = 1e-9;
 
 /// One section, measured.
@@ -246,7 +246,7 @@ fn section<T: Scalar>(
     Ok(found)
 }
 
-/// True for lines at the same place, whichever way they run.
+/// True for coincident lines, in either direction.
 fn is_same<T: Real>(a: &ContourPiece<T>, b: &ContourPiece<T>) -> bool {
     let near = SAME * (a.length.re() + b.length.re());
     let meet = |p: Vec3<T>, q: Vec3<T>| p.re().distance(q.re()) <= near;

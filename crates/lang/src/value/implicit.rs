@@ -40,7 +40,7 @@ pub(crate) fn binary<T: Real>(
 ) -> Option<Result<Value<T>, Diagnostic>> {
     let combined = matches!(op, BinaryOp::Union | BinaryOp::Intersection);
     let plane = |v: &Value<T>| matches!(v, Value::Plane(_));
-    // Of planes alone, too, the solid sides can be combined.
+    // The solid sides of planes alone can be combined too.
     let concerned = is_implicit(a) || is_implicit(b) || combined && plane(a) && plane(b);
     if !concerned {
         return None;

@@ -190,7 +190,7 @@ pub fn not_finite() -> Diagnostic {
     Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
 }
 
-/// The integral of the normal of a closed surface is this share of its area at most.
+/// Maximum integral of the normal of a closed surface, relative to its area.
 const CLOSED: f64 = 1e-7;
 
 /// True if every edge is a point, is folded on itself, or coincides with its opposite edge. The
@@ -216,7 +216,7 @@ fn is_closed<T: Scalar>(surface: &dyn Surface<T>) -> bool {
     })
 }
 
-/// Places of an edge, between its ends, at which it is compared with others.
+/// Number of points of an edge, between its ends, at which it is compared with others.
 const EDGE_PLACES: usize = 24;
 
 /// An error of a volume that is refused, relative to it.

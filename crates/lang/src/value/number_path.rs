@@ -6,7 +6,7 @@ use moldloft_registry::{Row, Scalar, Value};
 /// A number in the arguments of an object: `P21.y`, `knots.values[3]`, `l.p1.x`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberPath {
-    /// The argument, by its place in the row.
+    /// The argument, by its index in the row.
     pub field: usize,
     /// The item of a list, from 0.
     pub item: Option<usize>,

@@ -1,5 +1,5 @@
-//! Sections: which elements of an array a subscript names, and places: which part of which variable
-//! an assignment or a returned argument writes to.
+//! Sections: elements of an array selected by subscripts; and places: parts of variables that
+//! assignments and returned arguments write to.
 
 use crate::source::module::Name;
 use moldloft_diag::Diagnostic;
@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 pub struct Selection {
     /// The first position.
     pub start: usize,
-    /// From a position to the next.
+    /// Step between positions.
     pub step: isize,
     /// The number of positions.
     pub count: usize,
@@ -80,11 +80,11 @@ impl Selection {
 /// The selections of all subscripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArraySection {
-    /// Of a row.
+    /// Section of a row.
     Row(Selection),
-    /// Of a grid.
+    /// Section of a grid.
     Grid(Selection, Selection),
-    /// Of a block.
+    /// Section of a block.
     Block(Selection, Selection, Selection),
 }
 
@@ -216,7 +216,7 @@ pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: ArraySectio
     });
 }
 
-/// From a value to one inside of it.
+/// Step from a value to one inside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathStep {
     /// The item of a list, from 0.

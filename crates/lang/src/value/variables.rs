@@ -216,7 +216,8 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
     })
 }
 
-/// Numbers in braces as a row; rows of equal length in braces as a grid, of which three numbers are one as well.
+/// Numbers in braces as a row; rows of equal length in braces as a grid, including rows of three
+/// numbers.
 fn rows_of_numbers<T: Real>(items: &[Value<T>]) -> Option<Array<T>> {
     if let Some(row) =
         items.iter().map(|v| if let Value::Number(x) = v { Some(*x) } else { None }).collect()

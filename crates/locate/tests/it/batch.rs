@@ -254,7 +254,7 @@ fn ties_edges_and_degenerate_shapes_have_their_status() {
     let prepared = NearestSurface::new(&s);
     let beside = prepared.nearest(&s, Vec3::of(-3.0, 1.0, 0.5));
     assert_eq!((beside.status, beside.at[0]), (LocateStatus::EdgeClamped, 0.0));
-    // A valley run over by its middle plane: two feet.
+    // A point above the middle plane of a valley: two feet.
     let k = KnotVector::clamped_uniform(2, 3).unwrap();
     let line = KnotVector::clamped_uniform(1, 2).unwrap();
     let net = [(-1.0, 1.0), (0.0, -1.0), (1.0, 1.0)]

@@ -1,4 +1,4 @@
-//! All branches of intersections, on shapes of which their number is known.
+//! All branches of intersections, on shapes with a known number of them.
 
 use crate::common::{Cylinder, Random, Sphere, bumpy};
 use moldloft_locate::branches::{Branches, CutSurface};
@@ -69,7 +69,7 @@ fn sound(crossing: &Crossing<'_>, found: &Branches) {
         for pair in branch.stations.windows(2) {
             let step = pair[0].x.distance(pair[1].x);
             assert!(step < 0.2 * crossing.size);
-            // At a seam or a crease there are two at one place.
+            // At a seam or a crease two stations coincide.
             let here = 1e-12 * crossing.size;
             assert!(step < here || pair[0].tangent.dot(pair[1].tangent) > 0.9);
         }
@@ -119,7 +119,7 @@ fn a_plane_cuts_a_cylinder_across_its_seam_along_it_or_not_at_all() {
         assert!(found.complete);
         assert!(length(&found.branches[0]) > 6.2);
     }
-    // Slanted out of one end: one open branch that runs over the seam, or not.
+    // Slanted out of one end: one open branch, across the seam or not.
     for normal in [v(1.0, 0.0, 0.3), v(-1.0, 0.0, 0.3)] {
         let found = with_plane(&s, plane(v(0.0, 0.0, 3.0), normal));
         assert_eq!(count(&found), [0, 1, 0], "{found:?}");
@@ -340,7 +340,7 @@ fn random_splines_are_cut_into_as_many_branches_as_a_fine_net_says() {
         let found = crossing.branches();
         sound(&crossing, &found);
         agree(&found, &net, &format!("seed {seed}, z = {z}"));
-        // The same against a surface in the place of the plane, prepared beforehand.
+        // The same against a surface instead of the plane, prepared beforehand.
         let sheet = flat(v(-1.0, -1.0, z), v(12.0, 0.0, 0.0), v(0.0, 12.0, 0.0));
         let crossing = Crossing::with_surface(&s, &sheet);
         let (a, b) = (CutSurface::new(&s), CutSurface::new(&sheet));

@@ -130,7 +130,7 @@ fn a_line_through_a_place_of_a_space_curve_meets_it() {
         let found = all_curve_curve(&c, &l, 0.0);
         let meets = |r: &moldloft_locate::FoundRoot<2>| r.xyz.distance(x) < 1e-12;
         assert!(found.complete && found.roots.iter().any(meets), "{c:?} {t} {found:?}");
-        // From anywhere.
+        // From a random start.
         let from = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
         let taken = curve_curve(&c, &l, Some(from), 0.0).unwrap();
         assert!(taken.report.residual < 1e-12, "{taken:?}");

@@ -80,7 +80,7 @@ fn feet_of_far_points_are_sharp() {
     }
 }
 
-/// From a centre a search ends, and says that there are others.
+/// From a centre a search ends, and reports that there are others.
 #[test]
 fn from_the_centre_every_point_will_do() {
     let c = Circle { centre: Vec3::of(1.0, 2.0, 3.0), radius: 2.0 };

@@ -4,7 +4,7 @@
 use crate::client::{Client, URI, words};
 use serde_json::{Value, json};
 
-/// The text without `|`, and the place of it.
+/// The text without `|`, and the position of `|`.
 fn marked(text: &str) -> (String, u64, u64) {
     let at = text.find('|').expect("the place");
     let before = &text[..at];

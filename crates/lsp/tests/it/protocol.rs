@@ -132,7 +132,7 @@ fn diagnostics_come_as_one_types() {
     );
     assert!(found.iter().all(|d| d["code"] == "unexpected-token"), "{found:?}");
     assert_eq!(client.change(4, json!([{"text": "float x = 1;"}])), Vec::<Value>::new());
-    // A text without a file, broken in every way.
+    // A text without a file, with many kinds of faults.
     for text in [
         "",
         "}",
@@ -159,7 +159,7 @@ fn diagnostics_come_as_one_types() {
     assert!(!status.success(), "an end without shutdown is a failure");
 }
 
-/// Programs that do not end in a reasonable time, in different ways.
+/// Programs that do not end in a reasonable time, for different reasons.
 const ENDLESS: [&str; 4] = [
     "float x = 1;\nwhile (1) { x = x + 1; }\n",
     "float x = 1;\nfarray a[1000000];\nwhile (1) { a = sin(a) + x; }\n",
@@ -173,7 +173,7 @@ fn endless_programs_do_not_occupy_the_server() {
     let mut client = Client::start();
     client.open("float x = 1;\n");
     for text in ENDLESS {
-        // Reported soon, with its place, and the rest of the text is still known.
+        // Reported soon, with its position, and the rest of the text is still known.
         let found = client.change(2, json!([{"text": text}]));
         assert_eq!(found.len(), 1, "{found:?}");
         let (code, message) = (&found[0]["code"], found[0]["message"].as_str().unwrap());

@@ -36,7 +36,7 @@ impl Folder {
         }))
     }
 
-    /// Places of a list of locations as `file:line:character`.
+    /// A list of locations as `file:line:character`.
     fn places(&self, found: &Value) -> Vec<String> {
         let one = |l: &Value| {
             let name = l["uri"].as_str().unwrap().rsplit('/').next().unwrap();

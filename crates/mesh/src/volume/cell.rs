@@ -4,7 +4,7 @@ use crate::Panel;
 use moldloft_num::GAUSS_2_UNIT;
 use moldloft_num::{Real, Vec3};
 
-/// An edge shorter than this share of its cell has collapsed.
+/// An edge shorter than this, relative to its cell, has collapsed.
 const COLLAPSED: f64 = 1e-12;
 
 /// The corners of a hexahedron: the trilinear map of the unit cube, u, v, w of corner c being its
@@ -63,8 +63,8 @@ impl Hexahedron<f64> {
         corners.chain((0..8).map(of(GAUSS_2_UNIT[0], GAUSS_2_UNIT[1])).map(|p| (p, false)))
     }
 
-    /// The smallest scaled Jacobian det(X_u, X_v, X_w) / (|X_u| |X_v| |X_w|) at the corners and
-    /// the Gauss points, with the place: 1 for a brick, 0 or less for a folded cell. Corners at
+    /// The smallest scaled Jacobian det(X_u, X_v, X_w) / (|X_u| |X_v| |X_w|) at the corners and the
+    /// Gauss points, with its position: 1 for a brick, 0 or less for a folded cell. Corners at
     /// which an edge has no length, as at a pole, do not count; a cell without any volume has 0.
     pub fn scaled_jacobian(&self) -> (f64, [f64; 3]) {
         let size = self.0.iter().map(|p| p.distance(self.0[0])).fold(0.0, f64::max);

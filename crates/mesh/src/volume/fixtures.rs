@@ -23,8 +23,8 @@ pub fn positions([nu, nv, nw]: [usize; 3], x: f64) -> Vec<Vec3> {
     (0..nu * nv * nw).map(at).collect()
 }
 
-/// Two bricks of 2 x 1 x 3 cells, one behind the other along u. The second as it is, or turned so
-/// that its u runs along the first's -w, its v along u and its w along -v.
+/// Two bricks of 2 x 1 x 3 cells, one behind the other along u. The second has the same
+/// orientation, or is turned: its u is along the first's -w, its v along u and its w along -v.
 pub fn two_bricks(turned: bool) -> Blocks {
     let size = [3, 2, 4];
     let first = brick("fore", size, 0);

@@ -56,7 +56,7 @@ impl FaceOrientation {
     }
 }
 
-/// A panel of a face: block, face, and its place.
+/// A panel of a face: block, face, and indices.
 type Place = (usize, usize, [usize; 2]);
 
 /// A rectangle of panels of one face, and those of another that they are.
@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(interfaces[0].axes, [(0, false), (1, false), (2, false)]);
     }
 
-    /// A brick of 4 x 1 x 1 cells with two short ones on it, of which one is turned end for end.
+    /// A brick of 4 x 1 x 1 cells with two short ones on it, one of them turned end for end.
     #[test]
     fn a_face_meets_two() {
         let long = brick("long", [5, 2, 2], 0);

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 /// Divisions nearer than this to a whole number are whole.
 const WHOLE: f64 = 1e-9;
 
-/// Cells along an axis of which nobody says anything.
+/// Default number of cells along an axis.
 const DEFAULT_DIVISIONS: usize = 8;
 
 /// Divisions of each block, and the notes about them.
@@ -164,7 +164,7 @@ impl DivisionClasses {
                 })
             })
             .collect();
-        // All who run along a stretch must have as many cells there as the first.
+        // All axes along a stretch must have as many cells there as the first.
         let mut first: HashMap<usize, (usize, f64)> = HashMap::new();
         for (axis, n) in divisions.iter().flatten().enumerate() {
             first.entry(self.equal.find(axis as u32) as usize).or_insert((axis, *n as f64));

@@ -60,7 +60,8 @@ pub(crate) fn mark_id(mark: &Mark<f64>) -> MarkId {
     mark.point.map_or(MarkId::At(mark.t.to_bits()), MarkId::Point)
 }
 
-/// A stretch of a root, from its lower to its higher end; and whether the piece runs against it.
+/// A stretch of a root, from its lower to its higher end; and whether the piece has the opposite
+/// direction.
 pub(crate) type RootInterval = (Root, MarkId, MarkId);
 
 pub(crate) fn interval(piece: &Piece<f64>) -> (RootInterval, bool) {

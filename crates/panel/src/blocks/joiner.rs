@@ -8,7 +8,8 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 use std::collections::{HashMap, HashSet};
 
-/// Blocks whose shared vertices disagree by more than this share of the model's size are reported.
+/// Difference of the positions of shared vertices, relative to the model's size, from which blocks
+/// are reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
 /// Identity of a vertex.
@@ -17,7 +18,7 @@ enum VertexIdentity {
     Point(Key),
     OnRoot(Root, u64),
     Division(RootInterval, u32, u32),
-    /// Place (i, j) of a face divided m x n times, in the surface's own parameters.
+    /// Point (i, j) of a face divided m x n times, in the surface's own parameters.
     OnFace(FaceId, [u32; 2], [u32; 2]),
     /// Division `at` of `of` of a line along w between vertices that are one.
     OnLine(Vec<u32>, LayerLaw, u32, u32),
@@ -315,7 +316,7 @@ impl<'a, 'g> BlockJoiner<'a, 'g> {
         }
     }
 
-    /// Shared vertices that are not in one place.
+    /// Shared vertices with different positions.
     pub fn apart(&mut self) -> Vec<BlockNote> {
         let mut owner: HashMap<u32, (usize, Vec3)> = HashMap::new();
         let mut worst: HashMap<(usize, usize), (f64, Vec3)> = HashMap::new();

@@ -1,4 +1,4 @@
-//! From solids to volume meshes: blocks of hexahedra from their own parameters, joined by identity.
+//! Volume meshes of solids: blocks of hexahedra from their own parameters, joined by identity.
 //!
 //! Vertices of different blocks are identical if they are at the same position of the same surface
 //! object, of the same root curve between the same ends, at the same point object, or on lines

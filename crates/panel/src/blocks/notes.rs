@@ -13,10 +13,10 @@ pub enum BlockNote {
         divisions: usize,
         /// Cells of the other along the part.
         along: f64,
-        /// The share of the edge that the part is.
+        /// The part as a fraction of the edge.
         share: f64,
     },
-    /// A shared vertex is not in the same place in both blocks.
+    /// A shared vertex has different positions in both blocks.
     Apart {
         /// The blocks.
         blocks: [String; 2],

@@ -276,7 +276,7 @@ fn rims(words: &[String; 4]) -> PyResult<[[EndContinuity; 2]; 2]> {
 #[pyclass(frozen, module = "moldloft._core")]
 pub struct Web {
     points: Vec<Vec3>,
-    /// Places, closed, own marks.
+    /// Parameters, closed, own marks.
     curves: Vec<(Vec<usize>, bool, Vec<usize>)>,
     degree: usize,
 }

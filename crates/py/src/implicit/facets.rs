@@ -182,8 +182,8 @@ impl PyFacets {
         solid.undecided.iter().map(|b| (b.low.to_array(), b.high.to_array())).collect()
     }
 
-    /// Places that the corners of cells say nothing of: the box, the volume it may hold, and whether there is some
-    /// for sure.
+    /// Regions that the corners of cells do not resolve: the box, the volume it may hold, and true
+    /// when there certainly is some.
     #[allow(clippy::type_complexity)]
     fn unresolved(&self) -> Vec<(([f64; 3], [f64; 3]), f64, bool)> {
         let solid = solid_of(&self.pieces);

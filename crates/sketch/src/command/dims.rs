@@ -307,8 +307,8 @@ impl SketchSession {
         Ok(())
     }
 
-    /// Says when the picture shows the points of a dimension the other way about. A depth that the
-    /// picture leaves open says nothing.
+    /// Warns if the picture shows the points of a dimension in the opposite order, unless the
+    /// picture leaves the depth open.
     fn warn_of_picture(
         &mut self,
         object: &SketchObject,
@@ -708,7 +708,7 @@ impl SketchSession {
     }
 }
 
-/// The length of a chain of dimensions that does not hang on the reference.
+/// The length of a chain of dimensions that is not connected to the reference.
 fn along(
     object: &SketchObject,
     values: &std::collections::BTreeMap<String, f64>,

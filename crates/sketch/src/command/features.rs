@@ -1,4 +1,4 @@
-//! UNION, CUT, COMMON, REVOLVE, PATTERN and changes of place: objects that are made of others.
+//! UNION, CUT, COMMON, REVOLVE, PATTERN and placements: objects made of others.
 
 use super::CommandError;
 use super::args::Args;
@@ -94,7 +94,7 @@ impl SketchSession {
         }
     }
 
-    /// Puts an object of a feature in the place of `target`.
+    /// Replaces `target` by an object of a feature.
     fn make(
         &mut self,
         feature: Feature,

@@ -183,7 +183,8 @@ impl SketchSession {
         Ok(())
     }
 
-    /// An empty section takes a drawing as it is: its places are coordinates, lines end where they cross.
+    /// An empty section takes a drawing exactly: positions are coordinates, lines are split where
+    /// they cross.
     fn begin_exact(&mut self, shapes: &mut PageShapes) -> Result<(), CommandError> {
         let object = self.active()?;
         let drawing = &object.drawing;

@@ -48,7 +48,7 @@ impl SketchSession {
         }
         self.rename_read(&object.name, &new);
         object.name = new;
-        // It keeps its place in the list.
+        // It keeps its index in the list.
         let place = self.state.objects.get_index_of(&from).unwrap_or(0);
         self.state.objects.shift_remove(&from);
         self.state.objects.shift_insert(place, to.clone(), Arc::new(object));

@@ -252,7 +252,7 @@ const LOOKS: [&str; 12] = [
 const LOSES: [&str; 7] = ["WELD", "DELETE", "TYPE", "ALIGN", "UNALIGN", "LINE", "POLYLINE"];
 /// Maximum number of undo steps.
 const MAX_UNDO: usize = 500;
-/// Points, lines and faces that all states of the way back hold together, at most.
+/// Maximum number of points, lines and faces in all undo states together.
 const MAX_PARTS: usize = 2_000_000;
 /// Longer lines are refused.
 const MAX_LINE: usize = 1 << 22;
@@ -401,7 +401,8 @@ impl SketchSession {
             return;
         };
         let (old, new) = (Arc::clone(old), Arc::clone(new));
-        // Only a body that was looked at, so that a text of many commands does not make one for each.
+        // Only a body that was computed already, so that a text of many commands does not make one
+        // for each.
         let had = |w: &Arc<Worked>| {
             Arc::ptr_eq(&w.object, &old) && w.body.get().is_some_and(Result::is_ok)
         };
@@ -676,7 +677,7 @@ impl SketchSession {
         Ok(Arc::clone(&self.state.objects[key]))
     }
 
-    /// Puts another state of the active object in its place.
+    /// Replaces the active object by another state.
     pub(crate) fn replace_active(&mut self, object: Arc<SketchObject>) {
         if let Some(key) = self.state.active.clone() {
             self.state.objects.insert(key, object);

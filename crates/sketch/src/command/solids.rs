@@ -245,7 +245,7 @@ impl SketchSession {
         self.report_validity()
     }
 
-    /// Offers the next candidate of which no edge has two faces yet.
+    /// Offers the next candidate without an edge that has two faces already.
     fn offer(&mut self) {
         let Some(Question::Face { object, left, taken }) = &mut self.question else { return };
         let uses = |p: PointId, q: PointId| {

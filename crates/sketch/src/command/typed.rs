@@ -209,12 +209,12 @@ impl SketchSession {
     pub fn commit(&mut self) -> Vec<ObjectChange> {
         let Some(Transaction { before, journal }) = self.transaction.take() else { return vec![] };
         let own = self.journal.split_off(journal);
-        // Of several moves of a point only the last counts.
+        // Only the last of several moves of a point counts.
         let mut kept: Vec<String> = Vec::new();
         for (k, line) in own.iter().enumerate() {
             let again = moved_point(line).is_some_and(|p| {
                 let rest = own[k + 1..].iter().map(|l| moved_point(l));
-                // Only over moves: another command may have read the place.
+                // Only among moves: another command may have read the position.
                 rest.take_while(Option::is_some).any(|q| q == Some(p))
             });
             if !again {

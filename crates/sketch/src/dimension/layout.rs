@@ -71,7 +71,7 @@ pub enum DimensionFault {
     },
 }
 
-/// Planes of an axis that hang together but not on the reference.
+/// Planes of an axis that are connected, but not to the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loose {
     /// The axis.
@@ -176,7 +176,7 @@ impl DimensionGraph {
         self.sets.join(a, b);
     }
 
-    /// The dimensions on the way from `a` to `b`, each with its sign.
+    /// The dimensions on the path from `a` to `b`, each with its sign.
     fn path(&self, a: usize, b: usize) -> Vec<(usize, bool)> {
         let mut from = vec![None; self.next.len()];
         let mut queue = VecDeque::from([a]);

@@ -471,7 +471,7 @@ impl<T: Real> System<'_, T> {
         let drawn = self.measured(&x);
         let along = drawn.as_ref().and_then(|from| {
             self.follow(x.clone(), from, &plain).or_else(|| {
-                // Another way: first the lengths, then the angles, or the other way about.
+                // Another path: first the lengths, then the angles, or the reverse.
                 let mixed = |angles: bool| -> Vec<f64> {
                     let kind = |d: &&&Dimension| matches!(d.measure, MeasuredQuantity::Angle(..));
                     let pick = |(k, d): (usize, &&Dimension)| {
@@ -493,8 +493,8 @@ impl<T: Real> System<'_, T> {
         };
         let x = match along {
             Some(step) => step.x,
-            // The drawing itself is a turning point, or no way leads along: the nearest solution, if it
-            // is no mirror image of the drawing.
+            // The drawing itself is a turning point, or there is no path: the nearest solution,
+            // unless it is a mirror image of the drawing.
             None => {
                 let sign = flat();
                 let found = self.nearest(x.clone(), &plain)?;

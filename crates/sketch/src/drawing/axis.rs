@@ -1,4 +1,4 @@
-//! The three axes, and which of them a line may run along.
+//! The three axes, and sets of axes along which a line may extend.
 
 use std::fmt;
 

@@ -32,7 +32,7 @@ pub(super) fn face_loops(lines: &BTreeMap<LineId, DrawnLine>) -> Vec<Vec<LineId>
 
 type Neighbours = BTreeMap<PointId, Vec<(PointId, LineId)>>;
 
-/// The points that hang together with one, without those taken away.
+/// The points connected with one, without those in `without`.
 fn reached(at: &Neighbours, first: PointId, without: &BTreeSet<PointId>) -> BTreeSet<PointId> {
     let mut seen = BTreeSet::from([first]);
     let mut open = vec![first];
@@ -71,7 +71,8 @@ struct LoopSearch<'a> {
 }
 
 impl LoopSearch<'_> {
-    /// Goes on with a way whose first point is its lowest, and whose second is lower than its last will be.
+    /// Extends a path whose first point is its lowest, and whose second is lower than its last will
+    /// be.
     fn extend(&mut self, way: &mut Vec<PointId>, lines: &mut Vec<LineId>) -> Option<()> {
         self.steps += 1;
         if self.steps > MOST_STEPS {
@@ -91,7 +92,7 @@ impl LoopSearch<'_> {
                 }
                 continue;
             }
-            // A chord: a point that is joined with another one of the way than the last.
+            // A chord: a point that is joined with another point of the path than the last.
             let chord =
                 way[1..way.len().max(2) - 1].iter().any(|p| at[&next].iter().any(|n| n.0 == *p));
             if next < first || way.contains(&next) || chord || way.len() >= LONGEST {

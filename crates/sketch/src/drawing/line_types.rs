@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Maximum inclination to an axis, as a slope, of a line named after it: 5 % (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
 
-/// Coordinates of an exact drawing are the same within this share of them.
+/// Relative tolerance of equal coordinates in an exact drawing.
 const AS_DRAWN: f64 = 1e-12;
 
 /// Confidence below which a type should be checked: of lines drawn within ±1, ±2 and ±4 on 400,
@@ -34,7 +34,7 @@ const LEAVES: f64 = 1.0;
 const COPY_LEAN: f64 = 0.12;
 const COPY_SIZE: f64 = 0.7;
 
-/// Groups of which pairs are tried as well.
+/// Maximum number of groups for which pairs are tried too.
 const MOST_PAIRED: usize = 12;
 
 /// Groups of parallel lines that are tried as inclined where types contradict each other, the least sure first.
@@ -215,7 +215,7 @@ impl Drawing {
             if verdict.axis.is_some() && line.source == LineTypeSource::Auto {
                 let odds = Real::ln(verdict.share / (1.0 - verdict.share).max(1e-12));
                 let group = groups.entry(verdict.group).or_insert((odds, Vec::new()));
-                // That each line of a group runs along an axis is likely before it is looked at.
+                // The prior probability that a line of a group is along an axis is high.
                 group.0 += if group.1.is_empty() { 0.0 } else { FELLOW };
                 group.1.push(id);
             }
@@ -290,7 +290,7 @@ impl Drawing {
         let closed = self.lines.len() > self.points.len();
         let flat = planes.counts().iter().filter(|n| **n == 1).count();
         let flat = if self.section.is_none() && closed { flat } else { 0 };
-        // A line without a type runs along an axis if the planes of its ends say so.
+        // A line without a type is along an axis if the planes of its ends imply that.
         let free = |id: &LineId| {
             let line = &self.lines[id];
             let by_planes = || Free::those(|a| !planes.same(a, line.p, line.q));

@@ -104,7 +104,7 @@ pub struct Align {
     pub q: PointId,
 }
 
-/// A part of a drawing near a place on the page.
+/// A part of a drawing near a position on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawingHit {
     /// A point.
@@ -242,8 +242,8 @@ impl Drawing {
         pairs
     }
 
-    /// The nearest point within `reach` of a place on the page, else the nearest line and the part of
-    /// its length.
+    /// The nearest point within `reach` of a position on the page, otherwise the nearest line and
+    /// the fraction of its length.
     pub fn hit(&self, [u, v]: [f64; 2], reach: f64) -> Option<DrawingHit> {
         let square = reach * reach;
         let mut best: Option<(f64, DrawingHit)> = None;

@@ -15,18 +15,19 @@ const PRINCIPAL: f64 = 0.85;
 /// Weight of the prior, in lines of a drawing.
 const USUAL_LINES: f64 = 6.0;
 
-/// From here on a line counts as surely typed.
+/// Probability from which a line counts as certainly typed.
 const SURE: f64 = 0.9;
 
 /// Noise of a steady hand, relative to the longest line, and its weight in lines.
 const STEADY: f64 = 2e-3;
 const STEADY_LINES: f64 = 2.0;
 
-/// Between these shares of the longest line the noise is taken to be.
+/// Limits of the noise, relative to the longest line.
 const LEAST: f64 = 1.2e-3;
 const MOST: f64 = 0.02;
 
-/// Strokes that differ by more of their noise than this are not parallel, whatever hangs at their ends.
+/// Strokes that differ by more than this multiple of their noise are not parallel, whatever is
+/// connected to their ends.
 const APART: f64 = 3.5;
 
 /// Reduction of the odds of a line along an axis, as a logarithm, if the opposite side of its face
@@ -41,11 +42,11 @@ const DIRECTIONS: usize = 720;
 pub(crate) struct Verdict {
     /// The likeliest axis, `None` when it is likelier inclined.
     pub axis: Option<CoordinateAxis>,
-    /// The share of that answer.
+    /// Probability of that answer.
     pub share: f64,
     /// The lines that were judged together have one number.
     pub group: usize,
-    /// The share of the axis by this line alone.
+    /// Probability of the axis by this line alone.
     pub alone: f64,
 }
 
@@ -210,7 +211,7 @@ fn judge(
     usual: f64,
 ) -> Verdict {
     let spread = 2.0 * 2.0 * sigma * sigma;
-    // The logarithm of the likelihood that all run in a direction.
+    // Logarithm of the likelihood that all have a direction.
     let fits = |[x, y]: [f64; 2]| -> f64 {
         -strokes.iter().map(|s| (s.d[0] * y - s.d[1] * x).powi(2) / spread).sum::<f64>()
     };

@@ -26,7 +26,7 @@ pub struct DimensionMark {
     pub value: Option<f64>,
     /// True for a reference dimension.
     pub reference: bool,
-    /// The axis that it runs along.
+    /// Its axis.
     pub axis: Option<CoordinateAxis>,
     /// Position of the text: the middle of the dimension line.
     pub at: [f64; 2],
@@ -144,7 +144,7 @@ fn common(drawing: &Drawing, page: &Page<'_>, l: LineId, m: LineId) -> Option<[f
     (page.place)(shared)
 }
 
-/// Coordinates of a place along two directions of the page; `None` when they are parallel.
+/// Coordinates of a point along two directions of the page; `None` if they are parallel.
 fn split(at: [f64; 2], a: [f64; 2], w: [f64; 2]) -> Option<[f64; 2]> {
     let det = a[0] * w[1] - a[1] * w[0];
     let (m, n) = (libm::hypot(a[0], a[1]), libm::hypot(w[0], w[1]));
@@ -176,7 +176,7 @@ fn beside(
             third.filter(|t| drawing.section != Some(*t)).and_then(|t| planes.plane(t, p))
         };
         for side in [-1.0, 1.0] {
-            // The outermost point of each plane, by its place on the third axis.
+            // The outermost point of each plane, by its coordinate on the third axis.
             let mut outer: [BTreeMap<Option<usize>, [f64; 2]>; 2] = Default::default();
             for &(p, at) in places {
                 let own = planes.plane(axis, p);

@@ -76,7 +76,7 @@ struct DxfFile {
     entities: Vec<Entity>,
     /// Base point and entities by name.
     blocks: BTreeMap<String, ([f64; 2], Vec<Entity>)>,
-    /// The block under way.
+    /// The current block.
     block: Option<String>,
     unit: Option<&'static str>,
 }
@@ -128,9 +128,9 @@ impl DxfFile {
 #[derive(Clone, Default)]
 struct Entity {
     kind: String,
-    /// Of a block, or the block that is inserted.
+    /// Name of a block, or of the inserted block.
     name: String,
-    /// Places, each with its bulge.
+    /// Vertices with their bulges.
     vertices: Vec<([f64; 2], f64)>,
     numbers: BTreeMap<i32, f64>,
     closed: bool,

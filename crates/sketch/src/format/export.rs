@@ -76,8 +76,8 @@ pub fn obj(mesh: &IndexedTriangles, name: &str) -> String {
     out
 }
 
-/// glTF 2.0 with its buffer inside, in metres, of which the unit is `metres` long; y is up there, so (x, y, z) becomes
-/// (x, z, -y).
+/// glTF 2.0 with its buffer inside, in metres; the unit is `metres` long. glTF has y up, so (x, y,
+/// z) becomes (x, z, -y).
 pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: f64) -> String {
     let bytes = buffer(mesh);
     let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));

@@ -234,7 +234,7 @@ impl Cover {
         let mut span = [0.0f64, 1.0f64];
         let mut depth = [-da, -db];
         for (o, e, d) in [(q, r, self.depths[0]), (r, p, self.depths[1]), (p, q, self.depths[2])] {
-            // The share of the corner opposite the side, linear along the piece.
+            // Barycentric coordinate of the corner opposite the side, linear along the piece.
             let share = [cross(o, e, a) / area, cross(o, e, b) / area];
             depth = [depth[0] + share[0] * d, depth[1] + share[1] * d];
             clip(&mut span, share);

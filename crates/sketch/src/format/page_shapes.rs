@@ -57,7 +57,8 @@ impl PageShapes {
         let chord = [q[0] - p[0], q[1] - p[1]];
         let length = libm::hypot(chord[0], chord[1]);
         let radius = 0.5 * length / libm::sin(0.5 * sweep).abs();
-        // From the middle of the chord to the centre, left of it for a sweep of less than half a turn.
+        // From the middle of the chord to the centre, to its left for a sweep of less than half a
+        // turn.
         let offset = 0.5 / libm::tan(0.5 * sweep);
         let centre =
             [0.5 * (p[0] + q[0]) - offset * chord[1], 0.5 * (p[1] + q[1]) + offset * chord[0]];
@@ -193,13 +194,13 @@ impl PageShapes {
     }
 }
 
-/// The point drawn at a place.
+/// The point drawn at a position.
 fn point_at(drawing: &Drawing, at: [f64; 2], tolerance: f64) -> Option<PointId> {
     let near = |p: &crate::DrawnPoint| (p.u - at[0]).abs().max((p.v - at[1]).abs()) <= tolerance;
     drawing.points.iter().find(|(_, p)| near(p)).map(|(id, _)| *id)
 }
 
-/// The other end of the line from a corner towards a place.
+/// The other end of the line from a corner towards a position.
 fn neighbour(drawing: &Drawing, m: PointId, corner: [f64; 2], to: [f64; 2]) -> Option<PointId> {
     let way = [to[0] - corner[0], to[1] - corner[1]];
     let other =

@@ -56,7 +56,7 @@ enum SvgElement {
         to: [f64; 2],
         colour: &'static str,
     },
-    /// A text whose middle is at a place.
+    /// A centred text.
     Centred {
         at: [f64; 2],
         text: String,

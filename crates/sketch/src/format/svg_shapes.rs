@@ -3,7 +3,7 @@
 use crate::format::page_shapes::PageShapes;
 use crate::format::svg_transform::{SvgTransform, numbers};
 
-/// Reads the shapes of an SVG text; v runs up, as on the page of a sketch.
+/// Reads the shapes of an SVG text; v is up, as on the page of a sketch.
 ///
 /// # Errors
 /// The reason why the text is not an SVG, or cannot be placed.
@@ -249,7 +249,7 @@ fn path_arc(from: [f64; 2], to: [f64; 2], n: &[f64], shapes: &mut PageShapes) {
         0.5 * (from[1] + to[1]) + side * height * chord[0],
     ];
     let angle = |p: [f64; 2]| libm::atan2(-(p[1] - centre[1]), p[0] - centre[0]);
-    // On the page v runs up, so that positive angles of SVG are negative ones.
+    // On the page v is up, so that positive angles of SVG are negative ones.
     let start = angle(from);
     let mut sweep = angle(to) - start;
     let turn = crate::format::page_shapes::TURN;

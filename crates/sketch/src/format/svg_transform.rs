@@ -62,8 +62,8 @@ impl SvgTransform {
         Ok(out)
     }
 
-    /// Adds shapes, whose v runs up, where the transform puts them. Arcs that it stretches are left out: they are
-    /// parts of ellipses.
+    /// Adds shapes, whose v is up, transformed. Arcs become parts of ellipses under a stretch and
+    /// are left out.
     pub fn put(self, shapes: PageShapes, into: &mut PageShapes) {
         let [a, b, c, d, e, f] = self.0;
         let way = |[u, v]: [f64; 2]| [a * u - c * v, -(b * u - d * v)];

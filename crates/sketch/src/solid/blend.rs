@@ -42,7 +42,8 @@ struct Blending<'a, T> {
 /// The body with its chosen edges chamfered or filleted.
 ///
 /// # Errors
-/// Edges that cannot be: too large a size, other surfaces, corners of more than three faces; with the place.
+/// Edges that cannot be blended: too large a size, other surfaces, corners of more than three
+/// faces; with the position.
 pub(crate) fn blended<T: Real>(
     body: &SketchSolid<T>,
     object: &SketchObject,
@@ -222,7 +223,7 @@ impl<T: Real> Blending<'_, T> {
     fn at_end(&self, edge: &BlendEdge<T>, end: usize) -> ([(usize, bool); 2], Vec<usize>) {
         let next = [0, 1].map(|k| {
             let side = &edge.frame.sides[k];
-            // The second face runs the edge the other way.
+            // The second face has the edge in the opposite direction.
             neighbour(self.body, side, (end == 1) == (k == 0))
         });
         let v = edge.frame.ends[end];
@@ -692,7 +693,7 @@ enum BlendStripKind {
     Quad([Vec3; 4]),
     /// About an axis, between two radii.
     Ring([Vec3; 2], [f64; 2]),
-    /// From a point along a direction.
+    /// A half-line.
     Band([Vec3; 2], f64),
 }
 

@@ -1,8 +1,9 @@
 //! Corners of convex and concave edges: order in which the chosen edges are blended.
 //!
-//! Of three such edges one is alone of its kind. When it is blended first, the other two are joined by an edge of the
-//! blend, an arc that they go on into. Then these are filleted with it, as edges of one kind. All edges of one kind that
-//! meet in corners are filleted together. Chamfers of such corners are refused.
+//! One of three such edges is the only one of its kind. If it is blended first, the other two are
+//! joined by an edge of the blend, an arc that continues them. Then these are filleted with it, as
+//! edges of one kind. All edges of one kind that meet in corners are filleted together. Chamfers of
+//! such corners are refused.
 
 use super::SketchSolid;
 use super::edges::{EdgeFrame, EdgeSide, TreatmentFault};

@@ -45,7 +45,7 @@ impl<T: Real> SectionPlacing<T> {
 #[derive(Clone, Debug)]
 pub(super) struct BlendSection<T> {
     pub corners: [Vec3<T>; 3],
-    /// From the second corner to the third; straight when `None`.
+    /// Curve from the second corner to the third; straight if `None`.
     pub round: Option<SmoothPiece<T>>,
     /// Names of the faces that its sides make.
     pub names: [Vec<Arc<str>>; 3],
@@ -252,7 +252,8 @@ impl<T: Real> BallCorner<T> {
             parts.edge(vec![a as u32, b as u32], None)
         };
         let spokes = [0, 1, 2].map(|k| straight(&mut parts, 0, 1 + k));
-        // From the point on edge k to the foot in plane i, by k and whether i is the first of the two others.
+        // From the point on edge k to the foot in plane i, by k and whether i is the first of the
+        // other two.
         let ribs = [0, 1, 2]
             .map(|k| [(k + 1) % 3, (k + 2) % 3].map(|i| straight(&mut parts, 1 + k, 4 + i)));
         let mut arcs = [0; 3];

@@ -26,13 +26,14 @@ use std::sync::Arc;
 /// Why bodies cannot be combined.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CombineError {
-    /// A body is open, or surfaces nearly coincide, at this place.
+    /// A body is open, or surfaces nearly coincide, at this position.
     Open(Vec3),
-    /// Round surfaces touch without crossing, or nearly so, at this place.
+    /// Round surfaces touch without crossing, or nearly so, at this position.
     Touching(Vec3),
-    /// Facets do not tell which of several surfaces that nearly meet come first, at these places: one or more.
+    /// Facets do not determine which of several nearly intersecting surfaces come first, at these
+    /// positions: one or more.
     Coarse(Vec<Vec3>),
-    /// The faces of the body do not close to rounding; worst at this place.
+    /// The faces of the body do not close within rounding; worst at this position.
     Unbalanced(Vec3),
     /// There are too many pieces.
     TooLarge,
@@ -52,7 +53,7 @@ impl From<ArrangeError> for CombineError {
 /// The body of two by an operation.
 ///
 /// # Errors
-/// [`CombineError`], with the place.
+/// [`CombineError`], with the position.
 pub fn combined<T: Real>(
     bodies: [&SketchSolid<T>; 2],
     operation: Operation,
@@ -65,7 +66,7 @@ pub fn combined<T: Real>(
 /// on faces of the body are edges of the result, so that faces may be tangent along them.
 ///
 /// # Errors
-/// [`CombineError`], with the place.
+/// [`CombineError`], with the position.
 pub fn combined_with<T: Real>(
     body: &SketchSolid<T>,
     tools: &[SketchSolid<T>],
@@ -82,7 +83,7 @@ pub fn combined_with<T: Real>(
 /// The flag says whether that is another than the surface bounds.
 ///
 /// # Errors
-/// [`CombineError`], with the place.
+/// [`CombineError`], with the position.
 pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool), CombineError> {
     build(&[body], &[0], [true, false], &|w| w[0] > 0)
 }
@@ -90,7 +91,7 @@ pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool)
 /// The union of any number of bodies, in one step.
 ///
 /// # Errors
-/// [`CombineError`], with the place.
+/// [`CombineError`], with the position.
 pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, CombineError> {
     build(bodies, &vec![0; bodies.len()], [true, false], &|w| w[0] > 0).map(|b| b.0)
 }
@@ -153,8 +154,8 @@ fn build<T: Real>(
     Ok((body, arranged.changed))
 }
 
-/// Places where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
-/// cross itself there by less than a chord, or not quite.
+/// Positions at which a body's own faces or edges, except neighbours, are closer than the accuracy
+/// of facets: it may or may not intersect itself there by less than a chord.
 pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Vec<Vec3> {
     if body.edges.iter().all(|e| e.piece.is_none() && e.trace.is_none()) {
         return Vec::new();
@@ -403,7 +404,7 @@ pub(super) fn triangles_of(
     }
     let used: Vec<u32> = loops.iter().flatten().copied().collect();
     let points: Vec<Vec3> = used.iter().map(|&v| at(v)).collect();
-    // A point that two cycles share has the first of its places in both, so that it stays one.
+    // A point common to two cycles has the same first index in both, so that it stays one.
     let mut first: HashMap<u32, usize> = HashMap::new();
     for (k, &v) in used.iter().enumerate() {
         first.entry(v).or_insert(k);
@@ -427,7 +428,7 @@ const ROUNDED: f64 = 1e-14;
 /// no greater angle beside it, √(2·1e-9).
 const TANGENT: f64 = 4.5e-5;
 
-/// More facets than this are refused before they are looked at: they would take minutes.
+/// Number of facets above which a combination is refused at once: it would take minutes.
 const MOST_FACETS: usize = 200_000;
 
 /// Two faces beside a side, and the edge of a body that it is part of.
@@ -502,7 +503,7 @@ impl<'a, T: Real> Placing<'a, T> {
             let tool = |e: &&(usize, u32)| self.fitted && e.0 == 1 && known(e);
             all.iter().find(tool).or_else(|| all.iter().find(known)).copied()
         };
-        // Of the edges of several bodies in one place, that of the two faces.
+        // Of the coincident edges of several bodies, that of the two faces.
         let between = |a: u32, b: u32, pair: [usize; 2]| -> Option<(usize, u32)> {
             let first = source(a, b)?;
             if self.fitted && first.0 == 1 {
@@ -519,7 +520,7 @@ impl<'a, T: Real> Placing<'a, T> {
             all.iter().find(both).copied().or(Some(first))
         };
         let kind = |a: u32, b: u32, own: usize| -> Kind {
-            // Of several faces at an edge, those of the same place in both lists are neighbours.
+            // Of several faces at an edge, those with the same index in both lists are neighbours.
             let place = left[&(a, b)].iter().position(|f| *f == own).unwrap_or(0);
             let other = left.get(&(b, a)).and_then(|l| l.get(place).or(l.last()));
             let other = other.copied().unwrap_or(own);
@@ -657,7 +658,7 @@ impl<'a, T: Real> Placing<'a, T> {
                         for (&v, at) in chain.iter().zip(&trace.points) {
                             self.placed.entry(v).or_insert(*at);
                         }
-                        // A closed edge has found the place of its vertex itself.
+                        // A closed edge has found the position of its vertex itself.
                         if ends[0] == ends[1] {
                             vertices[ends[0]].at = trace.points[0];
                         }
@@ -719,7 +720,8 @@ impl<'a, T: Real> Placing<'a, T> {
         Ok(())
     }
 
-    /// The points of an edge that is not straight, with their places on the round faces beside it.
+    /// The points of an edge that is not straight, with their parameters on the round faces beside
+    /// it.
     fn trace(
         &self,
         chain: &[u32],
@@ -737,7 +739,8 @@ impl<'a, T: Real> Placing<'a, T> {
         if fixed || self.tangent_along(chain, kind) {
             return self.trace_on(chain, kind, ends, curve);
         }
-        // A surface of the other body happens to run through an edge: the new edge moves with both surfaces.
+        // A surface of the other body happens to contain an edge: the new edge moves with both
+        // surfaces.
         self.crossing(chain, kind, ends).or_else(|_| self.trace_on(chain, kind, ends, curve))
     }
 
@@ -869,7 +872,7 @@ impl<'a, T: Real> Placing<'a, T> {
                 let by = met.moved * (rate * w);
                 own.push((met, by, w));
             }
-            // The ways of the nodes add up to the chord as far as the rule resolves the edge.
+            // The nodes' steps add up to the chord as far as the rule resolves the edge.
             let way = own.iter().fold(-step.re(), |sum, n| sum + n.1.re());
             let most = (RESOLVED * step.re().norm()).max(ROUNDED * self.scale);
             if depth < MOST_HALVINGS && way.norm() > most {
@@ -974,7 +977,7 @@ pub(super) fn located<T: Real>(
         return Some([lifted[0], lifted[1], T::zero()]);
     };
     let [u, v] = [lifted[0] + last[0], lifted[1] + last[1]];
-    // The way along the surface where the place has moved to, or the rate would not follow it.
+    // The change of the parameter along the surface, which the rate must follow.
     let by = step(surface.jet(u, v), by).map_or(T::zero(), |d| d[0]);
     Some([u, v, by])
 }

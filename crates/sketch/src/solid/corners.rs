@@ -59,7 +59,7 @@ impl<T: Real> Placing<'_, T> {
                 let mut sources = self.arranged.faces[*f].sources.iter();
                 !sources.any(|s| s.0 == operand && beside.contains(&s.1))
             };
-            // Several surfaces across it: one of them may run through the edge and not move with it.
+            // Several surfaces across it: one of them may contain the edge and not move with it.
             let alone = faces.iter().filter(|f| across(f)).count() < 2;
             let s = along(piece, guess);
             let direction = piece.velocity(T::from(s)).re().normalized().unwrap_or_default();
@@ -175,7 +175,8 @@ impl<T: Real> Placing<'_, T> {
         (at.map(none), (1..T::PARTS).any(leaves))
     }
 
-    /// The point of an edge of a body at a place and its direction there, where the faces beside it are tangent.
+    /// The point of an edge of a body at a position and its direction there, if the faces beside it
+    /// are tangent.
     fn tangent_edge(&self, (operand, tag): (usize, u32), p: Vec3) -> Option<(Vec3<T>, Vec3)> {
         let source = &self.all.sources[operand];
         let (piece, beside) = &source.edges[tag as usize];
@@ -231,8 +232,9 @@ impl<T: Real> Placing<'_, T> {
         out
     }
 
-    /// The ends of an edge as its own surfaces move them, where one is a corner that parts. Along the edge they may be
-    /// anywhere: the way from one edge's end to the next one's is a part of the border of the face between them.
+    /// The ends of an edge as moved by its own surfaces, if one is a corner that splits. Their
+    /// position along the edge is free: the connection from one edge's end to the next one's is a
+    /// part of the border of the face between them.
     pub(super) fn own_ends(&self, ends: [u32; 2], kind: Kind) -> Option<[(Vec3<T>, Vec<Kink>); 2]> {
         if !ends.iter().any(|v| self.parted.contains(v)) {
             return None;
@@ -252,7 +254,7 @@ impl<T: Real> Placing<'_, T> {
             let [m, n] = [a.normal, b.normal];
             let (mn, across) = (m.dot(n), m.cross(n).norm_sq());
             if across > 1e-8 {
-                // The least way to both.
+                // The smallest displacement onto both.
                 let by = |k: usize| {
                     let (x, y) = (-a.off.part(k), -b.off.part(k));
                     m * ((x - mn * y) / across) + n * ((y - mn * x) / across)

@@ -52,7 +52,7 @@ pub struct SketchCurve {
     pub name: String,
     /// Kind.
     pub kind: CurveKind,
-    /// The points it hangs on: for a corner the ends of the lines with the corner in the middle.
+    /// The points it depends on: for a corner the ends of the lines with the corner in the middle.
     pub points: Vec<PointId>,
     /// Radius of an arc or circle.
     pub radius: Option<DimensionExpr>,
@@ -73,7 +73,7 @@ pub enum SmoothPiece<T> {
     Conic {
         /// Centre.
         centre: Vec3<T>,
-        /// From the centre to the start.
+        /// Vector from the centre to the start.
         a: Vec3<T>,
         /// Conjugate to `a`.
         b: Vec3<T>,

@@ -1,5 +1,5 @@
-//! Edges of a body as chamfers and fillets see them: the faces beside them, the way into each, and which of
-//! them a choice means.
+//! Edges of a body for chamfers and fillets: the adjacent faces, the direction into each, and the
+//! edges of a choice.
 
 use super::SketchSolid;
 use super::curve::SmoothPiece;
@@ -37,7 +37,7 @@ pub(crate) enum FaceForm<T> {
     Other,
 }
 
-/// A side of a face: the loop, the place in it, and whether it runs along the edge.
+/// A side of a face: the loop, the index in it, and whether it has the edge's direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeSide {
     pub face: usize,

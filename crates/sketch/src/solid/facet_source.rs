@@ -6,10 +6,11 @@ use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
-/// A point is on a surface where it is off it by no more than this share of the surface's size.
+/// Distance from a surface, relative to its size, within which a point is on it.
 pub(super) const ON_SURFACE: f64 = 1e-8;
 
-/// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
+/// Speed relative to a face, compared with the speeds around, from which faces separate in a
+/// corner.
 const PARTING: f64 = 1e-6;
 
 /// Speed by rounding: parameters are lengths and degrees, so that speeds of motion are about one.

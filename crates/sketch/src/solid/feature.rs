@@ -63,7 +63,7 @@ const ROUNDS: u32 = 12;
 /// compared.
 ///
 /// # Errors
-/// [`NoBody`], with the place.
+/// [`NoBody`], with the position.
 pub fn body<T: Real>(
     object: &SketchObject,
     planes: &Planes,
@@ -114,7 +114,7 @@ fn body_of_facets<T: Real>(
 pub(super) struct FacetPlan {
     everywhere: u32,
     near: BTreeMap<Vec<usize>, FinerPlaces>,
-    /// Those of the features that this one is an operand of, in its own coordinates.
+    /// Refinements of the features that have this one as an operand, in its own coordinates.
     inherited: Vec<(Vec3, u32)>,
     way: Vec<usize>,
 }
@@ -182,7 +182,7 @@ impl NoBody {
         }
     }
 
-    /// The feature whose facets are too coarse, by the way to it, and where.
+    /// The feature whose facets are too coarse, by the path to it, and the positions.
     fn unclear(&self) -> Option<(Vec<usize>, Vec<Vec3>)> {
         let places = match self.facet_error()? {
             CombineError::Coarse(all) => all.clone(),

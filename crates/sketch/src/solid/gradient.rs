@@ -13,13 +13,13 @@ const WIDTH: usize = 4;
 /// where a vertex splits into several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidGradient {
-    /// Of the volume; zero for a flat figure.
+    /// Derivatives of the volume; zero for a flat figure.
     pub volume: Vec<f64>,
-    /// Of the area.
+    /// Derivatives of the area.
     pub area: Vec<f64>,
-    /// Of the centroid.
+    /// Derivatives of the centroid.
     pub centroid: Vec<Vec3>,
-    /// Of the vertices of [`crate::SketchSolid`], in their order.
+    /// Derivatives of the vertices of [`crate::SketchSolid`], in their order.
     pub points: Vec<Vec<Vec3>>,
     /// Two one-sided derivatives of a measure.
     pub kinks: Vec<Option<Kink>>,

@@ -22,7 +22,7 @@ pub struct Mass<T> {
 pub(crate) enum DirectedEdge<T> {
     Straight,
     Piece(SmoothPiece<T>),
-    /// Points along it with the weighted way along it.
+    /// Points along it with the weighted displacement along it.
     Nodes(Vec<(Vec3<T>, Vec3<T>)>),
 }
 
@@ -36,9 +36,10 @@ pub(crate) struct MassIntegrals<T> {
     moment: Vec3<T>,
     /// ∫ xx, yy, zz, yz, zx, xy dV.
     second: [T; 6],
-    /// Sums of a closed surface: ∫ dA, nothing, and ∫ x dA_x, ∫ y dA_y, ∫ z dA_z, each of which is the volume.
+    /// Sums of a closed surface: ∫ dA, zero, and ∫ x dA_x, ∫ y dA_y, ∫ z dA_z, each equal to the
+    /// volume.
     closure: [Vec3; 2],
-    /// Area and moment of the patch under way, whose sign is that of its border's direction.
+    /// Area and moment of the current patch, with the sign of its border's direction.
     patch: (T, Vec3<T>),
 }
 

@@ -12,7 +12,7 @@ use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::f64::consts::PI;
 
-/// Places agree within this share of the sizes around them.
+/// Tolerance of equal positions, relative to the sizes around them.
 const ALIKE: f64 = 1e-11;
 
 /// The lines about which a surface may be turned without a change.
@@ -46,7 +46,8 @@ fn round<T: Real>(a: Vec3<T>, b: Vec3<T>) -> bool {
     size.re() > 0.0 && vanishes(size - b.norm(), size.re()) && vanishes(a.dot(b) / size, size.re())
 }
 
-/// The way along which the first curve of a ruled surface is moved to its second one.
+/// The displacement from the first curve of a ruled surface to its second one, if it is a
+/// translation.
 fn translation<T: Real>(surface: &FaceSurface<T>) -> Option<(&SmoothPiece<T>, Vec3<T>)> {
     let FaceSurface::Ruled { near, far } = surface else { return None };
     let (
@@ -175,7 +176,7 @@ pub(super) struct EqualCylinders<T> {
     centre: Vec3<T>,
     /// The normals of the planes of their two ellipses.
     normals: [Vec3<T>; 2],
-    /// From the centre to where the ellipses cross, to either side.
+    /// From the centre to an intersection of the ellipses; the other one is opposite.
     pinch: Vec3<T>,
 }
 
@@ -200,13 +201,13 @@ impl<T: Real> EqualCylinders<T> {
         Some(EqualCylinders { centre, normals, pinch: across * (a.radius / square.sqrt()) })
     }
 
-    /// The point near a place where both ellipses are.
+    /// The common point of both ellipses near a position.
     pub(super) fn vertex(&self, near: Vec3, scale: f64) -> Option<Vec3<T>> {
         let both = [self.centre + self.pinch, self.centre - self.pinch];
         both.into_iter().find(|p| p.re().distance(near) <= 1e-7 * scale)
     }
 
-    /// The ellipse that runs by a place.
+    /// The ellipse that passes near a position.
     pub(super) fn ellipse(&self, surface: &FaceSurface<T>, by: Vec3) -> Option<SmoothPiece<T>> {
         let off = |n: &Vec3<T>| n.re().dot(by - self.centre.re()).abs();
         let [m, n] = &self.normals;

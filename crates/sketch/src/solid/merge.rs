@@ -178,7 +178,7 @@ pub fn identifier(name: &str) -> String {
 }
 
 /// Removes lines (scribed ones) and then points inside straight lines. Dimensions that end at such
-/// points become variables, and their sums take their place, so the object stays parametric.
+/// points become variables, and are replaced by their sums, so that the object stays parametric.
 pub fn clean(
     object: &SketchObject,
     lines: &[[PointId; 2]],
@@ -224,7 +224,7 @@ pub fn clean(
         gone.push(p);
     }
     let Some(reference) = object.reference() else { return out };
-    // The reference must stay: its place is that of another corner.
+    // The reference must stay: it moves to another corner.
     if gone.contains(&reference.point)
         && let Some((&point, p)) = at.iter().find(|(p, _)| !gone.contains(p))
     {

@@ -50,8 +50,8 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&|piece| piece.chords(share), true))
     }
 
-    /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
-    /// there are as many triangles whatever the sizes are.
+    /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so
+    /// that the number of triangles does not depend on sizes.
     pub fn faceted(&self) -> Mesh<T> {
         self.mesh_of(self.chords(&by_angle, true))
     }
@@ -162,7 +162,7 @@ impl<T: Real> SketchSolid<T> {
         }
         let used: Vec<usize> = loops.iter().flatten().copied().collect();
         let points: Vec<Vec3> = used.iter().map(|&v| flat(v)).collect();
-        // A vertex that two cycles share has the first of its places in both, so that it stays one.
+        // A vertex common to two cycles has the same first index in both, so that it stays one.
         let mut first: HashMap<usize, usize, Quick> = HashMap::default();
         for (k, &v) in used.iter().enumerate() {
             first.entry(v).or_insert(k);

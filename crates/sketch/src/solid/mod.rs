@@ -76,7 +76,7 @@ pub struct SolidEdge<T> {
 pub struct IntersectionEdge<T> {
     /// Points along it, its ends included.
     pub points: Vec<Vec3<T>>,
-    /// Gauss's nodes along it: points, and the way along it with the weight.
+    /// Gauss nodes along it: points, and weighted tangents.
     pub(crate) nodes: Vec<(Vec3<T>, Vec3<T>)>,
     /// By round face beside it, u, v and the weighted change of u at the nodes.
     pub(crate) places: Vec<(usize, Vec<[T; 3]>)>,
@@ -183,7 +183,7 @@ struct RoundedCorner<T> {
     curve: usize,
     ends: [PointId; 2],
     tangents: [Vec3<T>; 2],
-    /// From the first tangent point to the second.
+    /// Curve from the first tangent point to the second.
     piece: SmoothPiece<T>,
     /// Labels of the tangent points.
     ids: [PointId; 2],
@@ -548,7 +548,7 @@ impl<T: Real> SolidBuilder<'_, T> {
         }
     }
 
-    /// A corner whose third line ends in a corner of which it is a side cannot be patched.
+    /// A corner whose third line ends in a corner that has it as a side cannot be patched.
     fn drop_unsupported(&mut self) {
         let keys: Vec<PointId> = self.corners.keys().copied().collect();
         for p in keys {
@@ -747,7 +747,7 @@ type Quick = std::hash::BuildHasherDefault<IndexHasher>;
 /// Vertices and edges, each made once.
 struct TopologyTable<T> {
     vertices: Vec<Vertex<T>>,
-    // Looked up, never run through, so that their order does not show.
+    // Only for look-ups, never iterated, so that the hash order has no influence.
     number: HashMap<PointId, usize, Quick>,
     edges: Vec<SolidEdge<T>>,
     known: HashMap<(usize, usize, bool), usize, Quick>,
@@ -875,7 +875,7 @@ impl<T: Real> SketchSolid<T> {
         (own(edge) || own(next)) && way().iter().any(|x| !x.is_constant())
     }
 
-    /// Gauss's nodes of a cycle of a round face, and the ways between edges whose ends move apart.
+    /// Gauss nodes of a cycle of a round face, and the segments between edges whose ends separate.
     pub(crate) fn cycle_places(
         &self,
         face: usize,

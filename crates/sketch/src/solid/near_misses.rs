@@ -1,4 +1,5 @@
-//! Places where round faces or edges come so near to others that facets do not tell whether they meet.
+//! Positions at which round faces or edges are so close to others that facets do not determine
+//! whether they intersect.
 //!
 //! The intersection of two shapes changes its topology only where one of them passes a critical
 //! value of their distance: where points of two faces, edges or vertices have a common normal.
@@ -15,7 +16,8 @@ use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Less far apart than this share of the bodies, two things touch; and where an edge is known by its points.
+/// Distance, relative to the bodies, below which two elements touch; and the same for edges known
+/// by points.
 const TOUCHING: [f64; 2] = [1e-9, 1e-6];
 
 /// Maximum distance of the ends of a common normal beyond their facets, relative to the size of
@@ -25,7 +27,7 @@ const BEYOND: f64 = 0.02;
 /// Safety factor on the error of facets within which a pair is critical.
 const SAFE: f64 = 2.0;
 
-/// Places nearer to each other than this share of the bodies are one.
+/// Distance of positions, relative to the bodies, within which they are the same.
 const SAME: f64 = 1e-5;
 
 const STEPS: usize = 24;
@@ -141,7 +143,8 @@ struct Element<'a, T> {
 }
 
 impl<T: Real> NearMissSearch<'_, T> {
-    /// Places where facets do not tell whether surfaces meet; `within` operands too, or between them alone.
+    /// Positions at which facets do not determine whether surfaces intersect; with `within` also
+    /// inside operands, not only between them.
     pub fn unclear(&self, within: bool) -> Vec<Vec3> {
         if self.sources.iter().all(|s| s.edges.iter().all(|e| straight(e.0.as_ref()))) {
             return Vec::new();
@@ -175,7 +178,7 @@ impl<T: Real> NearMissSearch<'_, T> {
             }
             self.pair(a, b)
         }) {
-            // Neighbouring facets find the same place.
+            // Neighbouring facets find the same position.
             if places.iter().all(|p| p.distance(place) > SAME * self.scale) {
                 places.push(place);
             }
@@ -313,7 +316,7 @@ impl<T: Real> NearMissSearch<'_, T> {
         }
         let reach = SAFE * (a.off + b.off);
         let size = a.size.min(b.size).max(reach);
-        // Of a search between a large facet and a small one, the small one is where to begin.
+        // A search between a large facet and a small one starts at the small one.
         let small = if a.size <= b.size { a } else { b };
         let (n, m) = (a.stratum.unknowns(), b.stratum.unknowns());
         let start = |e: &Element<'_, T>| {

@@ -8,10 +8,11 @@ use super::facet_source::{FacetSource, along};
 use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 
-/// Farther off than this share of the bodies, facets are right.
+/// Distance, relative to the bodies, beyond which facets are right.
 const FAR: f64 = 2e-2;
 
-/// Places within this share of a border are on it: on borders of closed form, and on others, which are known by points.
+/// Relative distance from a border within which a point is on it: for borders in closed form, and
+/// for others, which are known by points.
 const ON: [f64; 2] = [1e-9, 1e-5];
 
 /// Faces of bodies, with their exact borders.
@@ -20,7 +21,7 @@ pub(super) struct Nearness<'a, T> {
     pub scale: f64,
 }
 
-/// The point of a border that is nearest to a place.
+/// The point of a border nearest to a position.
 struct NearestOfBorder {
     distance: f64,
     /// Distance of the point to the left of the border, seen from outside the face.
@@ -100,8 +101,8 @@ impl<T: Real> Nearness<'_, T> {
     }
 }
 
-/// The point of an edge nearest to a place, its direction there, and whether it is an end. The edge is known by nodes with
-/// directions and by its ends: between neighbours it is a cubic.
+/// The point of an edge nearest to a position, its direction there, and whether it is an end. The
+/// edge is known by nodes with directions and by its ends: between neighbours it is a cubic.
 fn nearest_of_nodes(
     at: Vec3,
     nodes: &[(Vec3, Vec3)],

@@ -294,7 +294,7 @@ fn outward_normal<T: Real>(body: &SketchSolid<T>, face: usize, p: Vec3<T>) -> Op
     }
 }
 
-/// The body with its vertices at other places: plane faces with straight sides and arcs, and cylinders between
+/// The body with moved vertices: plane faces with straight sides and arcs, and cylinders between
 /// two arcs.
 fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSolid<T>, NoBody> {
     let sides = body.edge_sides();
@@ -354,7 +354,8 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
     Ok(SketchSolid { vertices, edges, faces, kinks, ..SketchSolid::default() })
 }
 
-/// The arc about an axis that an edge becomes between new ends; `None` when it is not an arc, or turns the other way.
+/// The arc about an axis that an edge becomes between new ends; `None` if it is not an arc, or has
+/// the opposite orientation.
 fn arc<T: Real>(
     body: &SketchSolid<T>,
     edge: usize,

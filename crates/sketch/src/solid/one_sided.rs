@@ -1,4 +1,5 @@
-//! Derivatives of measures on both sides of a place where faces, edges or corners meet by chance.
+//! Derivatives of measures on both sides of a position at which faces, edges or corners meet by
+//! chance.
 //!
 //! The motion of faces there shows that a measure may have two derivatives, not that it does: an
 //! edge that leaves a face can change the area equally on both sides. So the body is rebuilt with
@@ -17,7 +18,7 @@ use std::collections::BTreeSet;
 pub(crate) struct MassRate {
     part: usize,
     area: Option<f64>,
-    /// Of volume, centroid and inertia.
+    /// Derivatives of volume, centroid and inertia.
     solid: Option<Mass<f64>>,
 }
 
@@ -28,7 +29,7 @@ const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
 /// Weights of the values at 0 to 4 steps, for twelve times the step.
 const FORWARD: [f64; 5] = [-25.0, 48.0, -36.0, 16.0, -3.0];
 
-/// Derivatives within this share of their size are one.
+/// Relative difference within which derivatives are equal.
 const ALIKE: f64 = 1e-6;
 
 /// The measures of the body of other numbers, if there is one.
@@ -113,7 +114,7 @@ fn rate<T: Real>(layout: &DimensionLayout<T>, part: usize) -> f64 {
     layout.values.values().chain(coordinates).map(|x| x.part(part).abs()).fold(0.0, f64::max)
 }
 
-/// The numbers of an object a way along one part.
+/// The numbers of an object displaced along one part.
 fn shifted<T: Real>(layout: &DimensionLayout<T>, part: usize, by: f64) -> DimensionLayout<f64> {
     let at = |x: &T| x.re() + by * x.part(part);
     DimensionLayout {

@@ -133,7 +133,7 @@ impl<T: Real> SketchSolid<T> {
                 if wanted.iter().all(|x| near_segment(*x, middle) > 1.5 * wide) {
                     continue;
                 }
-                // Facets that are curved both ways are cut both ways.
+                // Facets that are curved in both directions are divided in both.
                 if self.edges[near.0].piece.is_some() {
                     mark(near, i);
                     if let Some((e, forward)) = far {
@@ -171,7 +171,7 @@ impl<T: Real> SketchSolid<T> {
                     continue;
                 }
                 for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k])) {
-                    // They are run in opposite directions.
+                    // They have opposite directions.
                     let turned = a.1 == b.1;
                     for (a, b) in [(a.0, b.0), (b.0, a.0)] {
                         let new = carried(&cut[a], &all[a], turned);

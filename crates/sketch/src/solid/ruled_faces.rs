@@ -10,12 +10,12 @@ use moldloft_num::{Real, Vec3};
 pub struct RoundFace<T> {
     /// The index of the face.
     pub face: usize,
-    /// Of an ellipse: centre, half-diameter to the start, the one conjugate to it. Of a parabola: start,
-    /// where the tangents of the ends meet, end.
+    /// For an ellipse: centre, half-diameter to the start, and the conjugate one. For a parabola:
+    /// start, intersection of the end tangents, end.
     pub profile: [Vec3<T>; 3],
     /// The angle of the arc in radians; 0 for a parabola.
     pub sweep: T,
-    /// From the arc's centre or start to its copy's.
+    /// Displacement of the arc's centre or start to that of its copy.
     pub shift: Vec3<T>,
     /// The size of the copy: 1 for a cylinder, 0 for a cone that ends in its apex.
     pub scale: T,

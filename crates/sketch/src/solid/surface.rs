@@ -111,7 +111,7 @@ impl<T: Real> FaceSurface<T> {
                     let weight = -(length * du) * (w / f64::from(parts));
                     let (density, sign) = (a.cross(b), if weight.re() < 0.0 { -1.0 } else { 1.0 });
                     let element = density * weight;
-                    // Of no width, though that changes, the length of the element has no derivative.
+                    // At zero width with a derivative, the length of the element has no derivative.
                     let size = match weight.re() == 0.0 {
                         true => density.norm() * weight,
                         false => element.norm() * T::from(sign),

@@ -1,6 +1,6 @@
 //! The gate: only a closed body that is outward and does not cross itself has a volume.
 //!
-//! Closedness and direction are counted; intersections are sought between sides and facets whose
+//! Closedness and direction are counted; intersections are searched between sides and facets whose
 //! boxes overlap. The arrangement decides doubtful cases (a vertex on a face) and reconstructs
 //! intersecting bodies: it keeps the volume of winding number one or more, so that a hole that a
 //! dimension moves half out of the body becomes a notch, and a hole outside it disappears.
@@ -46,7 +46,7 @@ const MAX_COORDINATE: f64 = 1e60;
 /// The body itself if it is valid, the reconstructed one if it intersects itself.
 ///
 /// # Errors
-/// [`SolidDefect`], with the place.
+/// [`SolidDefect`], with the position.
 pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
     // Derivatives may be undefined for a valid body.
     let within = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
@@ -399,13 +399,13 @@ fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
 enum Shells {
     /// Outer ones outward, those of cavities inward.
     Outward,
-    /// All the other way.
+    /// All inward.
     Inward,
-    /// Some one, some the other way.
+    /// Some outward, some inward.
     Mixed,
 }
 
-/// The direction of the shells that hang together by edges.
+/// The orientation of the shells, connected by edges.
 fn shells<T: Real>(body: &SketchSolid<T>, outline: &Outline<T>) -> Shells {
     let mut parts = UnionFind::new(body.faces.len());
     let mut first: Vec<Option<usize>> = vec![None; body.edges.len()];

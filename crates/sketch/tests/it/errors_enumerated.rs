@@ -9,7 +9,7 @@ use std::path::Path;
 /// Start of a text and the pieces between its arguments.
 struct Template {
     place: String,
-    /// Of several texts that the place chooses from, each as its fixed pieces.
+    /// Alternatives of several texts, each as its fixed pieces.
     texts: Vec<Vec<String>>,
 }
 
@@ -174,7 +174,7 @@ fn templates() -> Vec<Template> {
                     found = literals(&above[from..]);
                 }
                 if found.is_empty() {
-                    // A closure whose calls are looked at themselves.
+                    // A closure whose calls are examined themselves.
                     assert_eq!(word, "text", "{name}:{line}");
                     continue;
                 }

@@ -12,7 +12,7 @@ fn turned(cycle: &[usize]) -> Vec<usize> {
     cycle
 }
 
-/// V - E + F - R and closedness: every edge is run once each way.
+/// V - E + F - R and closedness: every edge is traversed once in each direction.
 fn euler(faces: &[Polygon]) -> i64 {
     let mut halves = std::collections::BTreeMap::new();
     let mut vertices = std::collections::BTreeSet::new();
@@ -163,7 +163,7 @@ fn what_does_not_close_is_named() {
     assert_eq!(fitted.crossings, [Vec3::of(0.5, 0.5, 1.0)]);
 }
 
-/// The edges of a union of unit cubes (of which `solid` tells which there are), straight runs joined.
+/// The edges of a union of the unit cubes in `solid`, with collinear ones joined.
 fn voxel_edges(size: [i64; 3], solid: &dyn Fn([i64; 3]) -> bool) -> (Vec<Vec3>, Vec<[usize; 2]>) {
     let mut unit: std::collections::BTreeSet<([i64; 3], usize)> = Default::default();
     for axis in 0..3 {

@@ -267,7 +267,7 @@ fn derivatives_where_a_plane_meets_a_seam() {
     assert!((g.area[0] + 2.0 * 2.0).abs() < 1e-9, "{:?}", g.area);
 }
 
-/// A hole that has left its section is no hole: the section is refused, with the place.
+/// A hole that has left its section is an error, with the position.
 #[test]
 fn a_hole_outside_of_its_section() {
     let mut s = SketchSession::new();
@@ -346,7 +346,7 @@ fn four_bars_keep_their_side() {
         }
         for _ in 0..6 {
             let angle = 15.0 + 150.0 * random.unit();
-            // All angles between must be possible, or the way there is another branch's.
+            // All intermediate angles must be possible, or the path leads to another branch.
             let steps = 60;
             let between = |k: i32| start + (angle - start) * f64::from(k) / f64::from(steps);
             if (0..=steps).any(|k| at(between(k)).is_none()) {

@@ -111,7 +111,7 @@ fn tools_are_no_results() {
     let mut again = SketchSession::new();
     run(&mut again, &text(&s));
     assert_eq!(flags(&again), ["G", "B", "P"]);
-    // An object that is changed in its place is made of itself.
+    // An object that is changed in place is an operand of itself.
     run(&mut s, "CUT P H");
     assert_eq!(flags(&s), ["G", "B", "P"]);
 }

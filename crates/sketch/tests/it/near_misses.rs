@@ -1,4 +1,5 @@
-//! Round faces that pass others, or do not, by less than a chord: right to rounding, or refused with the place.
+//! Round faces that pass others, or intersect them, by less than a chord: right to rounding, or
+//! refused with the position.
 
 use crate::generators::{bar, block, measured};
 use moldloft_num::GAUSS_8_UNIT;
@@ -24,7 +25,7 @@ fn segment(r: f64, h: f64) -> [f64; 3] {
     [r * r / 2.0 * lens, r * t, chord]
 }
 
-/// From a tenth down to a ten-millionth, to either side.
+/// From a tenth to a ten-millionth, to either side.
 fn gap(random: &mut Random) -> f64 {
     let size = libm::pow(10.0, -1.0 - 6.0 * random.unit());
     if random.chance(50) { size } else { -size }
@@ -155,7 +156,8 @@ fn holes_of_sections_at_a_hair() {
     for round in 0..rounds(12, 500) {
         let (r, g) = (0.5 + 1.5 * random.unit(), gap(&mut random));
         let x = r - g;
-        // Lines within the tolerance of the wireframe are in one place: the change is made from afar then.
+        // Lines within the tolerance of the wireframe coincide: the change is then made from a
+        // distance.
         let by_change = round % 2 == 0 || g.abs() < 1e-5;
         let text = format!(
             "SKETCH C 2D XY\nPOINT 1 0 0; POINT 2 100 0; POINT 3 100 80; POINT 4 0 80; POLYLINE 1 2 3 4 CLOSE

@@ -12,7 +12,7 @@ fn the_sight_vector_is_drawn_as_a_point() {
     }
     let iso = Projection::preset("iso").unwrap();
     let (a, b) = (iso.project(Vec3::of(1.0, 0.0, 1.0)), iso.project(Vec3::of(0.0, 1.0, 0.0)));
-    // With unit scales the isometric presets draw these two corners at the same place.
+    // With unit scales the isometric presets draw these two corners at the same position.
     assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12);
     assert!(Projection::preset("FISHEYE").is_none());
 }

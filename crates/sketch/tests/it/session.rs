@@ -282,7 +282,7 @@ fn merging() {
     let a = s.object("A").unwrap();
     assert!(a.dimensions.contains_key("d1") && a.dimensions.contains_key("b.d1"));
     close(volume(&mut s, "A"), 42.0);
-    // Apart: each keeps its place.
+    // Separate: each keeps its position.
     run(&mut s, "MOVE B 20 1 1; MERGE B C INTO D");
     close(volume(&mut s, "D"), 18.0 + 78.0);
     run(&mut s, "SKETCH F 2D XY; POINT 1 0 0; POINT 2 1 0; LINE 1 1 2");
@@ -604,8 +604,8 @@ fn examples() {
     close(volume(&mut s, "DAM"), 50.0 * (20.0 * 78.0 + 45.0 * 60.0 / 2.0));
 }
 
-/// No line panics or hangs: random commands of plausible words on a living session.
-/// `MOLDLOFT_SOAK=1` runs ten million lines.
+/// No line panics or hangs: random commands of plausible words in one session. `MOLDLOFT_SOAK=1`
+/// runs ten million lines.
 #[test]
 fn any_line_is_answered() {
     let rounds = moldloft_testing::rounds(30_000, 10_000_000);
@@ -724,7 +724,7 @@ fn any_line_is_answered() {
     assert!(!s.history().is_empty());
 }
 
-/// A command that takes a body away says so at once, with the place.
+/// A command that invalidates a body reports that at once, with the position.
 #[test]
 fn what_takes_a_body_away_is_said() {
     for (command, code, kind) in [

@@ -43,7 +43,7 @@ fn rod(name: &str, axis: usize, r: f64, at: [f64; 2], [low, high]: [f64; 2]) -> 
     prism(name, plane, [d, d, high - low], true, place)
 }
 
-/// The figures of a body by all ways that there are to them.
+/// The figures of a body by all methods.
 fn check(what: &str, part: &Part) -> Result<f64, String> {
     let mut s = SketchSession::new();
     if let Some(e) = s.run_text(&part.text).iter().find(|r| r.is_error()) {

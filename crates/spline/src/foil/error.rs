@@ -26,9 +26,9 @@ pub enum FoilError {
         /// The largest allowed.
         max: f64,
     },
-    /// The ordinates do not run over x from 0 to 1.
+    /// The ordinates do not cover x from 0 to 1 in order.
     Ordinates {
-        /// The first that is out of place, from 0.
+        /// Index of the first wrong ordinate, from 0.
         index: usize,
         /// Description of the fault.
         what: &'static str,
@@ -38,7 +38,7 @@ pub enum FoilError {
         /// The number given.
         actual: usize,
     },
-    /// Nose and tail are in one place.
+    /// Nose and tail coincide.
     NoChord,
     /// The metric measures some lengths as nothing or less.
     Metric,

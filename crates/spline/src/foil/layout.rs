@@ -18,10 +18,10 @@ pub enum Offset {
 /// The metric of the plane or space of a foil: the scalar product.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Metric<T> {
-    /// That of space.
+    /// The Euclidean metric of space.
     #[default]
     Space,
-    /// That of a plane of parameters (u, v): its entries uu, uv and vv.
+    /// The metric of a plane of parameters (u, v): its entries uu, uv and vv.
     Plane([T; 3]),
 }
 
@@ -58,7 +58,7 @@ pub struct Layout<T> {
     nose: Vec3<T>,
     /// Upper and lower tail.
     tails: [Vec3<T>; 2],
-    /// From the nose to the middle of the tails.
+    /// The vector from the nose to the middle of the tails.
     chord: Vec3<T>,
     /// The greatest camber, as a vector perpendicular to the chord.
     camber: Vec3<T>,
@@ -110,8 +110,8 @@ impl<T: Real> Layout<T> {
         })
     }
 
-    /// The foil without size that all points in one place make, such as the tip of a loft: with the
-    /// points' own derivatives.
+    /// The foil of size zero whose points all coincide, such as the tip of a loft: with the
+    /// derivatives of the points.
     ///
     /// # Errors
     /// [`FoilError::Points`] for another number of points than 3, 4 or 5.

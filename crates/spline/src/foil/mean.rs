@@ -9,7 +9,7 @@ pub enum MeanLine<T> {
     Flat,
     /// The camber comes with the ordinates of the thickness.
     InOrdinates,
-    /// Two parabolas that meet at the place of the greatest height (four-digit).
+    /// Two parabolas that meet at the greatest height (four-digit).
     Parabolic {
         /// That place.
         at: T,
@@ -85,7 +85,7 @@ impl<T: Real> Load<T> {
         line.rest = line.at(one);
         let slope = |x: f64| line.slope(T::from(x)).re();
         let top = find_root(slope, 1e-4, 1.0 - 1e-4).unwrap_or(0.5);
-        // The height does not depend on its place to first order.
+        // The height at its maximum does not depend on the maximum's x to first order.
         line.scale = one / line.at(T::from(top));
         line
     }
@@ -137,7 +137,7 @@ const STRAIGHT: f64 = 0.874_37;
 /// In front of this, slopes are taken behind; see [`held`].
 const HOLD: f64 = 0.04 / 3.0;
 
-/// The place at which the slope at x is taken: x, and near the nose a place that tends to
+/// The x at which the slope for `x` is taken: `x` itself, and near the nose a value that tends to
 /// (3/8) HOLD = 0.005, twice differentiably.
 fn held<J: Real>(x: J) -> J {
     if x.re() >= HOLD {
@@ -216,7 +216,8 @@ impl<T: Real> MeanLine<T> {
         match self {
             MeanLine::Flat | MeanLine::InOrdinates => (J::zero(), J::zero()),
             MeanLine::Parabolic { at } => {
-                // With w the distance from the top in units of the way to that end.
+                // w is the distance from the top, relative to the distance from the top to that
+                // end.
                 let end = if x.re() < at.re() { *at } else { -*at + 1.0 };
                 let w = (x - J::fixed(*at)) / J::fixed(end);
                 (-(w * w) + 1.0, -(w * 2.0) / J::fixed(end))

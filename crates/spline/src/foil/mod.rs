@@ -33,13 +33,13 @@ pub struct SectionSpec<'a, T> {
     pub family: &'a str,
     /// Mean line: one of [`Section::MEANS`], or empty for that of the family.
     pub mean: &'a str,
-    /// Place of the greatest camber of the parabolic mean line, in (0, 1).
+    /// Position x of the greatest camber of the parabolic mean line, in (0, 1).
     pub camber_at: T,
     /// Extent a of the uniform load of the mean line "a", in [0, 1]; `None`: that of the family.
     pub load: Option<T>,
     /// Nose index of the modified four-digit family: 6 is the plain nose, 0 a sharp one.
     pub nose_index: T,
-    /// Place of the greatest thickness of the modified four-digit family, in [0.2, 0.6].
+    /// Position x of the greatest thickness of the modified four-digit family, in [0.2, 0.6].
     pub thickness_at: T,
     /// Greatest thickness in chords, which the 6-series depend on.
     pub ratio: T,
@@ -173,16 +173,17 @@ impl<T: Real> Section<T> {
         Self { thickness: Thickness::Curve(curve), mean: MeanLine::InOrdinates }
     }
 
-    /// The same made ready to be evaluated at many places: one section of its own, not one of a loft.
+    /// The same section prepared for evaluation at many parameters: for a single section, not one
+    /// of a loft.
     pub fn settled(self) -> Self {
         Self { thickness: self.thickness.settled(), ..self }
     }
 
     /// The station at `s` in [-1, 1]; outside, the natural continuation.
     ///
-    /// The slope of the mean lines with uniform load is infinite at the nose: in front of
-    /// x = 1/75 the slope is that at a place which tends smoothly to 0.005, as is the custom
-    /// (Abbott and von Doenhoff 1959, section 6.5).
+    /// The slope of the mean lines with uniform load is infinite at the nose: in front of x = 1/75
+    /// the slope is taken at an x that tends smoothly to 0.005, as usual (Abbott and von Doenhoff
+    /// 1959, section 6.5).
     pub fn at<J: Jet<T>>(&self, s: J) -> Station<J> {
         let lower = s.re() < 0.0;
         let a = if lower { -s } else { s };
@@ -211,7 +212,7 @@ impl<T: Real> Section<T> {
         self.with_mean(self.thickness.breaks())
     }
 
-    /// The same without the places at which only third derivatives jump.
+    /// The same without the parameters at which only third derivatives jump.
     pub fn second_order_breaks(&self) -> Vec<f64> {
         self.with_mean(self.thickness.second_order_breaks())
     }
@@ -250,7 +251,7 @@ impl<T: Real> Profile<T> {
         upper.chain([0.5]).chain(lower).collect()
     }
 
-    /// The breaks without the places at which only third derivatives jump.
+    /// The breaks without the parameters at which only third derivatives jump.
     pub fn second_order_breaks(&self) -> Vec<f64> {
         self.at_both_sides(self.section.second_order_breaks())
     }

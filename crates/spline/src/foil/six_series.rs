@@ -73,7 +73,7 @@ impl Mapping {
 /// Half thickness in units of half the greatest, over s, at one ratio.
 #[derive(Debug)]
 pub struct ThicknessForm {
-    /// Powers 0 to 3 of the way into each interval of s.
+    /// Coefficients of the powers 0 to 3 of the position within each interval of s.
     pieces: Vec<[f64; 4]>,
     /// The place x of the greatest thickness.
     top: f64,
@@ -131,7 +131,7 @@ fn forms(at: usize) -> &'static [ThicknessForm] {
 #[derive(Clone, Debug)]
 pub struct Blended<T> {
     forms: &'static [ThicknessForm],
-    /// The share of each: Lagrange's polynomials at the ratio.
+    /// The weight of each: Lagrange's polynomials at the ratio.
     shares: [T; NODES],
     /// Precomputed sums, if they save time.
     pieces: Vec<[T; 4]>,
@@ -155,7 +155,7 @@ impl<T: Real> Blended<T> {
         coefficients
     }
 
-    /// The same with its sums at hand, for sections that are evaluated at many places.
+    /// The same with its sums precomputed, for sections that are evaluated at many parameters.
     pub fn settled(mut self) -> Self {
         self.pieces = (0..STEPS).map(|k| self.piece(k)).collect();
         self

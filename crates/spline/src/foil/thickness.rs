@@ -91,7 +91,7 @@ impl<T: Real> Thickness<T> {
     pub fn modified(index: T, m: T) -> Self {
         // Nose: 0.296904 index / 6 at the thickness 0.2; index 9 means sqrt 3.
         let a0 = if index.re() > 8.0 {
-            // From 8 to 9 to the sharp step of the tables in a straight line.
+            // Linear from index 8 to 9, to the step in the tables.
             let low = T::from(8.0 / 6.0);
             low + (index - 8.0) * (3f64.sqrt() - 8.0 / 6.0)
         } else {
@@ -233,7 +233,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The same made ready to be evaluated at many places.
+    /// The same prepared for evaluation at many parameters.
     pub fn settled(self) -> Self {
         match self {
             Thickness::Family(form) => Thickness::Family(form.settled()),
@@ -259,7 +259,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The same without the places at which only third derivatives jump.
+    /// The same without the parameters at which only third derivatives jump.
     pub fn second_order_breaks(&self) -> Vec<f64> {
         match self {
             Thickness::Joined { at, .. } => vec![at.re().sqrt()],

@@ -7,10 +7,10 @@ use super::data::{HomogeneousGrid, Value, gap, point};
 use moldloft_num::{Rational, Vec3};
 use std::fmt;
 
-/// Coefficients below this share of the largest coordinate are rounding.
+/// Coefficients below this are rounding, relative to the largest coordinate.
 const ROUNDING: f64 = 2e-13;
 
-/// Highest degrees that are sought: by few samples, and by many where the coefficients end abruptly.
+/// The highest degrees tried: with few samples, and with many where the coefficients end abruptly.
 const FEW: usize = 8;
 const MANY: usize = 22;
 
@@ -470,7 +470,7 @@ struct FitErrorBound<const D: usize> {
 }
 
 impl<const D: usize> FitErrorBound<D> {
-    /// From the coefficients of the difference on all cells.
+    /// The bound from the coefficients of the difference on all cells.
     fn of(
         off: &HomogeneousGrid<D>,
         axes: &[SplineSpace; D],

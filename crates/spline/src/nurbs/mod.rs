@@ -65,7 +65,7 @@ impl<const D: usize> Nurbs<D> {
         data.values.into_iter().map(data::point).collect()
     }
 
-    /// The points at places of its parameters.
+    /// The points at the given parameters.
     pub fn scattered(&self, places: &[[f64; D]]) -> Vec<Vec3> {
         let counts = self.counts();
         let rows: [Vec<axis::BasisRow>; D] = std::array::from_fn(|d| {
@@ -74,7 +74,7 @@ impl<const D: usize> Nurbs<D> {
         });
         let values = self.homogeneous();
         let one = |k: usize| {
-            // Index and weight of each control point that has a part in the place.
+            // Index and weight of each control point that affects the point.
             let mut terms = vec![(0, 1.0)];
             for d in 0..D {
                 let (first, row) = &rows[d][k];

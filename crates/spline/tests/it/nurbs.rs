@@ -29,7 +29,7 @@ fn weights(rng: &mut Rng, n: usize) -> Option<Vec<f64>> {
     (rng.below(2) == 0).then(|| (0..n).map(|_| rng.between(0.4, 2.0)).collect())
 }
 
-/// The largest distance from a curve at many places.
+/// The largest distance from a curve at many parameters.
 fn off_curve(curve: &dyn Curve<f64>, nurbs: &Nurbs<1>) -> f64 {
     let s: Vec<f64> = (0..=997).map(|k| f64::from(k) / 997.0).collect();
     let made = nurbs.grid(std::array::from_ref(&s));

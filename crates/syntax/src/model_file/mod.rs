@@ -126,7 +126,7 @@ pub struct ObjectEntry {
     pub name: Span,
     /// Fields after the name.
     pub fields: Fields,
-    /// From the entity word to the `;`.
+    /// The span from the entity word to the `;`.
     pub span: Span,
     /// True if it ends properly, with all its lists closed; the errors of an incomplete one were
     /// reported.

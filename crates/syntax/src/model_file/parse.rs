@@ -575,7 +575,7 @@ impl<'a> ModelFileParser<'a> {
         closed
     }
 
-    /// From `(` to after its `)` on the same line, parentheses inside counted.
+    /// Skips from `(` to after its `)` on the same line; inner parentheses are counted.
     fn skip_to_closing_parenthesis(&mut self) -> bool {
         let mut depth = 0;
         while self.at < self.bytes.len() && self.peek() != b'\n' {

@@ -206,7 +206,7 @@ pub enum Subscript {
     },
 }
 
-/// An expression with its place.
+/// An expression with its span.
 #[derive(Clone, Copy, Debug)]
 pub struct Expr {
     /// Kind.
@@ -429,7 +429,7 @@ pub enum AssignOp {
     With(BinaryOp),
 }
 
-/// A statement with its place.
+/// A statement with its span.
 #[derive(Clone, Copy, Debug)]
 pub struct Stmt {
     /// Kind.
@@ -588,6 +588,6 @@ pub struct Routine {
     pub formals: NodeList<Formal>,
     /// Its statements.
     pub body: NodeList<StmtId>,
-    /// From its first word to its closing brace.
+    /// The span from its first word to its closing brace.
     pub span: Span,
 }

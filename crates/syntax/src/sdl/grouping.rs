@@ -4,7 +4,7 @@ use super::ast::*;
 use super::program::Program;
 use moldloft_diag::Span;
 
-/// The two ways to read a chain of operators.
+/// Grouping of a chain of operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grouping {
     /// Numbers and vectors, as in FORTRAN: `^` first and from the right, then signs, `* /`, `+ -`.

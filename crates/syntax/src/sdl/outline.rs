@@ -39,7 +39,7 @@ struct OpenBracket {
     name: Option<(u32, u32)>,
 }
 
-/// The call around a place: the innermost whose arguments are not closed before it.
+/// The call around an offset: the innermost whose arguments are not closed before it.
 ///
 /// ```
 /// let call = moldloft_syntax::sdl::call_around("BCurve keel({A, B}, degree = ", 29).unwrap();
@@ -70,7 +70,7 @@ pub fn call_around(text: &str, offset: u32) -> Option<OpenCall> {
 pub fn text_around(text: &str, offset: u32) -> Option<u32> {
     let lexed = lex(text, FileId(0));
     let text = lexed.tokens.iter().take_while(|t| t.start < offset).last()?;
-    // A text that is not closed ends with its line; the place behind it is still inside.
+    // A text that is not closed ends with its line; the offset at the end is still inside.
     let unclosed = || lexed.diagnostics.iter().any(|d| d.span().start == text.start);
     let inside = offset < text.end || (offset == text.end && unclosed());
     (text.kind == Kind::Text && inside).then_some(text.start + 1)

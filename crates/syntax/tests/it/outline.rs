@@ -1,8 +1,8 @@
-//! The call around a place and the parts that fold, in texts that are being written.
+//! The call around an offset and the parts that fold, in incomplete texts.
 
 use moldloft_syntax::sdl::{call_around, folds, text_around};
 
-/// `|` is the place; callee, argument, name.
+/// `|` marks the offset; returns callee, argument, name.
 #[track_caller]
 fn call(text: &str) -> Option<(String, usize, Option<String>)> {
     let at = text.find('|').expect("the place") as u32;

@@ -35,8 +35,8 @@ impl Relation {
 /// Set in the number of an array: it is one of the file's, not of the call's.
 pub(super) const OF_FILE: u16 = 1 << 15;
 
-/// An operation. Registers are counted from the first of the call under way, places in the code from
-/// the first of its unit.
+/// An operation. Registers are counted from the first of the current call, positions in the code
+/// from the first of its unit.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ScalarOp {
     /// A statement begins; it is counted and noted as executed.
@@ -275,7 +275,7 @@ pub(super) enum ScalarOp {
     LiveFile {
         variable: u16,
     },
-    /// From, to, step in the registers from `at`: then the number of turns takes the place of to.
+    /// From, to, step in the registers from `at`: then the number of iterations replaces `to`.
     ForBegin {
         at: u16,
     },
@@ -406,7 +406,7 @@ pub(super) struct CodeSite {
     pub expr: ExprId,
     pub span: Span,
     pub loops: Box<[ActiveLoop]>,
-    /// Of a call: the unit, the arguments, whether a value is wanted.
+    /// For a call: the unit, the arguments, whether a value is needed.
     pub unit: usize,
     pub args: Box<[CodeArgument]>,
     pub valued: bool,
@@ -520,7 +520,7 @@ impl<T: Real> CodeUnit<T> {
         }
     }
 
-    /// The innermost statement that a place of the code belongs to.
+    /// The innermost statement at a position of the code.
     pub fn range(&self, at: usize) -> CodeRange {
         let holds = |range: &&CodeRange| (range.start as usize..range.end as usize).contains(&at);
         let inner = self.ranges.iter().filter(holds).min_by_key(|range| range.end - range.start);
@@ -572,5 +572,5 @@ pub(super) enum NamePlace {
     File,
 }
 
-/// Modules run, routines known, components under way.
+/// Numbers of modules run, routines known, and active components.
 pub(super) type Generation = (usize, usize, usize);

@@ -77,7 +77,7 @@ pub(super) struct RegionCompiler<'a, T: Scalar> {
     /// The formal arguments of each unit that are variables of the file, and which.
     pub references: Vec<HashMap<Name, Name>>,
     pub entry: usize,
-    /// The unit under way.
+    /// The current unit.
     pub unit: usize,
     pub guards: Vec<(Name, NamePlace, Captured)>,
     pub functions: Vec<(&'static str, Elementary<T>)>,
@@ -418,7 +418,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(at)
     }
 
-    /// Has the jump at a place go here.
+    /// Sets the target of the jump at a position to here.
     pub fn land(&mut self, jump: usize) -> Result<(), Unfit> {
         let here = self.here()?;
         match &mut self.units[self.unit].code[jump] {

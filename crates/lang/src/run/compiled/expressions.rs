@@ -196,7 +196,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.noted(code, CodeNote::Finite(op.spelling(), span)).map(drop)
     }
 
-    /// True when a variable has a value wherever this place of the code is reached.
+    /// True if a variable has a value whenever this position of the code is reached.
     pub fn is_live(&self, what: Meaning) -> bool {
         match what {
             Meaning::Own(what) => self.known(what).live,
@@ -298,7 +298,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         base: ExprId,
         subs: NodeList<Subscript>,
     ) -> Result<u16, Unfit> {
-        // A fault is looked for by evaluating it once more.
+        // A fault is located by a second evaluation.
         if self.calls_in_subscripts(subs) {
             return Err(Unfit::Statement);
         }

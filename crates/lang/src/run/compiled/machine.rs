@@ -724,7 +724,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The call under way ends with a value or without.
+    /// The current call ends with a value or without.
     fn returned_from(
         &mut self,
         region: &CodeRegion<T>,
@@ -889,13 +889,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         CodeOutcome::Next
     }
 
-    /// True when an error has ended the library's routines that are under way.
+    /// True if an error has ended the active library routines.
     fn is_abandoned(&self, region: &CodeRegion<T>) -> bool {
         self.abandoned && region.units[region.entry].m.library
     }
 }
 
-/// The type that a variable has after it was declared in different ways.
+/// The type of a variable that was declared with different types.
 fn type_by<T: Real>(code: &CodeUnit<T>, variable: u16, mark: u32) -> Type {
     match (declaration(mark), code.variables[variable as usize].captured) {
         (Some((origin, _)), _) => code.origins[origin].1,

@@ -120,7 +120,7 @@ impl RoomKind {
 /// Meaning of a name in code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meaning {
-    /// A variable or array of the call under way.
+    /// A variable or array of the current call.
     Own(Poisonable),
     /// One of the file, in a routine.
     OfFile(Poisonable),

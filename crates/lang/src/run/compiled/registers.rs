@@ -1,4 +1,4 @@
-//! The registers of code under way, and how variables go from the interpreter into them and back.
+//! The registers of compiled code, and their exchange with the interpreter's variables.
 
 use super::code::{ActiveLoop, Captured, CodeRegion, NO_LABEL, Poisonable};
 use crate::run::interpreter::Interpreter;
@@ -202,7 +202,7 @@ pub(super) struct WaitingCall {
     pub errors: usize,
 }
 
-/// Code under way.
+/// State of running code.
 #[derive(Debug)]
 pub(super) struct RegisterMachine<T> {
     pub registers: Vec<T>,
@@ -488,7 +488,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         all
     }
 
-    /// The loops under way at a place of a part.
+    /// The active loops at a position of a part.
     fn loops_at(
         &self,
         machine: &RegisterMachine<T>,
@@ -540,7 +540,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// Has the interpreter do something at a place of the code, with all variables where it finds them.
+    /// Runs work of the interpreter at a position of the code, with all variables handed over.
     pub(super) fn interpreted<R>(
         &mut self,
         region: &CodeRegion<T>,

@@ -137,7 +137,7 @@ const MAX_REGIONS: usize = 400_000;
 /// not to cross each other unless `crossing`. Lines in which more than two surfaces meet are listed if `sharing`.
 ///
 /// # Errors
-/// [`ArrangeError`], with the place.
+/// [`ArrangeError`], with the position.
 pub fn arrange(
     points: &[Vec3],
     mut facets: Vec<Facet>,
@@ -168,7 +168,7 @@ pub fn arrange(
         });
         members[s].push(k);
     }
-    // All segments of each sheet, with the places where they cross.
+    // All segments of each sheet, with their intersections.
     let mut segments: Vec<BTreeSet<(u32, u32)>> = Vec::with_capacity(sheets.len());
     for own in &members {
         let mut set: BTreeSet<(u32, u32)> = BTreeSet::new();
@@ -325,7 +325,7 @@ fn shares(a: &Facet, b: &Facet) -> bool {
     edges_of(a).any(|[p, q]| edges_of(b).any(|e| e == [q, p]))
 }
 
-/// Adds the places where segments of a plane cross inside both.
+/// Adds the points at which segments of a plane cross inside both.
 fn cross(pool: &mut Pool, set: &BTreeSet<(u32, u32)>) {
     let list: Vec<(u32, u32)> = set.iter().copied().collect();
     let boxes: Vec<[Vec3; 2]> =
@@ -446,7 +446,8 @@ fn all_regions(
                     let along = frames[f].normal.dot(sheet.normal) > 0.0;
                     turns[facet.operand] += if along { count } else { -count };
                     covers.push(f);
-                    // Beyond its border a face is the other way round, as below a boss that overhangs.
+                    // Beyond its border a face has the opposite orientation, as below an
+                    // overhanging boss.
                     other |= count < 0;
                 }
             }

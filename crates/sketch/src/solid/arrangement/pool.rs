@@ -1,4 +1,4 @@
-//! Points of an arrangement: each place once.
+//! Points of an arrangement, without duplicates.
 
 use moldloft_num::Vec3;
 use std::collections::HashMap;
@@ -74,7 +74,8 @@ pub(in crate::solid) fn overlapping(
     let wide = high - low;
     let count = if wide > 0.0 && wide.is_finite() { boxes.len().isqrt().clamp(1, 256) } else { 1 };
     let cell = |x: f64| (((x - low) / wide * count as f64) as usize).min(count - 1);
-    // By cell and kind, the boxes that the sweep is within, by their place in the order; the last row has the wide ones.
+    // By cell and kind, the boxes at the present position of the sweep, by their index in the
+    // order; the last row has the wide ones.
     let mut active: Vec<[Vec<usize>; 2]> = vec![[Vec::new(), Vec::new()]; count + 1];
     let mut hits: Vec<usize> = Vec::new();
     for (place, &k) in order.iter().enumerate() {

@@ -26,7 +26,7 @@ pub(super) fn regions(
     for out in leaving.values_mut() {
         out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
-    // The next edge along a region: just clockwise of the way back.
+    // The next edge along a region: the one just clockwise of the reverse direction.
     let next = |(a, b): (u32, u32)| -> (u32, u32) {
         let out = &leaving[&b];
         let back = out.iter().position(|o| o.1 == a).unwrap_or(0);
@@ -120,13 +120,13 @@ pub(super) fn inner_point(
         if k == longest {
             continue;
         }
-        // Across and along the way to the left.
+        // Coordinates across and along the direction to the left.
         let local = |x: &[f64; 2]| {
             let d = [x[0] - middle[0], x[1] - middle[1]];
             [d[0] * left[1] - d[1] * left[0], d[0] * left[0] + d[1] * left[1]]
         };
         let (p, q) = (local(p), local(q));
-        // Sides that the way only touches count too: half the way to them is inside for certain.
+        // Sides that only touch the path count too: half the distance to them is certainly inside.
         let margin = pool.tolerance;
         if p[0].min(q[0]) > margin || p[0].max(q[0]) < -margin {
             continue;

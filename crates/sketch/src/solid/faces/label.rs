@@ -149,7 +149,7 @@ fn rank(answers: &mut [Answer]) {
     });
 }
 
-/// The cells of a group so that each shares an edge with one before it.
+/// The cells of a group, ordered so that each shares an edge with an earlier one.
 fn near_first(members: &[usize], edges: &[Around], of_cell: &[Vec<usize>]) -> Vec<usize> {
     let mut order: Vec<usize> = Vec::new();
     let mut seen = std::collections::BTreeSet::new();

@@ -63,9 +63,9 @@ pub struct Fitted {
     pub dangling: Vec<[usize; 2]>,
     /// Edges that fewer than two candidates share: there the faces do not close.
     pub open: Vec<[usize; 2]>,
-    /// Those of them that had fewer than two before any candidate was dropped.
+    /// The first of them: with fewer than two candidates before any was dropped.
     pub first_open: Vec<[usize; 2]>,
-    /// Places where edges cross without a vertex.
+    /// Points at which edges cross without a vertex.
     pub crossings: Vec<Vec3>,
     /// True if the search was abandoned as too large.
     pub too_large: bool,

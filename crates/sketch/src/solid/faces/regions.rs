@@ -70,14 +70,14 @@ pub(super) fn sheets(wire: &Wireframe) -> Vec<SpannedPlane> {
     sheets
 }
 
-/// An edge and whether it is run from its first end to its second.
+/// An edge, and whether it is traversed from its first end to its second.
 pub(super) type Half = (usize, bool);
 
 /// A candidate face: a region of a sheet, to the left of its loops seen against the normal.
 #[derive(Clone, Debug)]
 pub(super) struct SheetRegion {
     pub sheet: usize,
-    /// The outer loop, then holes. Slits are run along both sides.
+    /// The outer loop, then holes. Slits are traversed along both sides.
     pub loops: Vec<Vec<Half>>,
 }
 
@@ -139,7 +139,7 @@ pub(super) fn walk(wire: &Wireframe, sheet: &SpannedPlane, halves: &[Half]) -> V
             let b = sheet.flat(wire.vertices[wire.tail(h)]);
             Real::atan2(b[1] - a[1], b[0] - a[0])
         };
-        // The first one clockwise from where we came; the way back itself comes last.
+        // The first one clockwise from the incoming direction; its reverse comes last.
         let turn = |angle: f64, other: usize| {
             if halves[other].0 == h.0 {
                 return f64::INFINITY;

@@ -47,7 +47,7 @@ impl Wireframe {
             grid: BTreeMap::new(),
         };
         for &p in positions {
-            // Every input vertex has its place, so that numbers stay; equal ones share the first.
+            // Every input vertex has an entry, so that numbers stay; equal ones share the first.
             let same = wire.find(p);
             let own = wire.push(p);
             wire.kept.push(same.unwrap_or(own));
@@ -129,7 +129,7 @@ impl Wireframe {
         }
     }
 
-    /// Adds the straight line from `a` to `b` in pieces between all vertices and edges on its way.
+    /// Adds the straight line from `a` to `b` in pieces between all vertices and edges on it.
     pub fn insert(&mut self, a: usize, b: usize, cut: bool) {
         if a == b {
             return;

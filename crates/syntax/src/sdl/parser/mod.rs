@@ -256,7 +256,7 @@ impl Parser {
         Span::new(self.program.file, token.start, token.end)
     }
 
-    /// From a byte to the end of the last token taken.
+    /// The span from a byte to the end of the last token taken.
     fn span_from(&self, start: u32) -> Span {
         Span::new(self.program.file, start, self.last_end().max(start))
     }
