@@ -90,6 +90,64 @@ pub enum EdgeBlend {
     Fillet(DimensionExpr),
 }
 
+/// The wider mouth of a hole.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HoleHead {
+    /// A cylinder for a screw's head.
+    Counterbore {
+        /// Its diameter.
+        diameter: DimensionExpr,
+        /// Its depth below the face that is drilled.
+        depth: DimensionExpr,
+    },
+    /// A cone for a screw's head.
+    Countersink {
+        /// Its diameter in the face that is drilled.
+        diameter: DimensionExpr,
+        /// The angle of the cone in degrees.
+        angle: DimensionExpr,
+    },
+}
+
+/// A drilled hole, and its copies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hole {
+    /// Its axis.
+    pub axis: CoordinateAxis,
+    /// True if it is drilled from the side of the larger coordinate.
+    pub top: bool,
+    /// The coordinates of its centre along the two other axes, in the order x, y, z.
+    pub at: [DimensionExpr; 2],
+    /// Its diameter.
+    pub diameter: DimensionExpr,
+    /// Its depth below the outermost plane face of that side; none for a hole through everything.
+    pub depth: Option<DimensionExpr>,
+    /// Its mouth.
+    pub head: Option<HoleHead>,
+    /// Steps and numbers of copies; two of them make a grid.
+    pub copies: Vec<(Placement, DimensionExpr)>,
+}
+
+impl Hole {
+    fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
+        let mut all: Vec<&mut DimensionExpr> = self.at.iter_mut().collect();
+        all.push(&mut self.diameter);
+        all.extend(&mut self.depth);
+        match &mut self.head {
+            Some(HoleHead::Counterbore { diameter, depth: second })
+            | Some(HoleHead::Countersink { diameter, angle: second }) => {
+                all.extend([diameter, second]);
+            }
+            None => {}
+        }
+        for (step, count) in &mut self.copies {
+            all.extend(step.numbers_mut());
+            all.push(count);
+        }
+        all
+    }
+}
+
 /// Operation of a feature.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureKind {
@@ -125,6 +183,8 @@ pub enum FeatureKind {
         /// The faces without a wall.
         open: Vec<FaceChoice>,
     },
+    /// Drilled holes.
+    Hole(Box<Hole>),
     /// Plane faces inclined about where they meet a plane square to an axis.
     Draft {
         /// The angle in degrees; positive where the body becomes narrower along the axis.
@@ -166,6 +226,7 @@ impl FeatureKind {
             }
             FeatureKind::Blend { blend: EdgeBlend::Fillet(radius), .. } => vec![radius],
             FeatureKind::Shell { thickness, .. } => vec![thickness],
+            FeatureKind::Hole(hole) => hole.numbers_mut(),
             FeatureKind::Draft { angle, at, .. } => vec![angle, at],
         }
     }

@@ -90,7 +90,8 @@ pub use drawing::{
     Snap,
 };
 pub use feature::{
-    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement,
+    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Hole, HoleHead,
+    Placement,
 };
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::script;

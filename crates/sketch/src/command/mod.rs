@@ -15,6 +15,7 @@ mod others;
 mod question;
 mod sensitivity;
 mod session;
+mod shapes;
 mod solids;
 mod subject;
 mod treatments;

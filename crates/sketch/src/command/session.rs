@@ -442,7 +442,11 @@ impl SketchSession {
         self.forgotten += beyond;
     }
 
-    fn dispatch(&mut self, verb: &'static str, command: &Command) -> Result<(), CommandError> {
+    pub(super) fn dispatch(
+        &mut self,
+        verb: &'static str,
+        command: &Command,
+    ) -> Result<(), CommandError> {
         let usage = verbs::row(verb).map_or(String::new(), verbs::Verb::usage);
         let args = &mut Args::new(&command.tokens[1..], &usage);
         let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
@@ -463,6 +467,7 @@ impl SketchSession {
             "LINE" => self.line(args),
             "POLYLINE" => self.polyline(args),
             "STROKES" => self.strokes(args),
+            "RECTANGLE" | "SLOT" | "POLYGON" => self.section_shape(args, verb),
             "SPLIT" => self.split(args),
             "WELD" => self.weld(args),
             "DELETE" => self.delete(args),
@@ -490,11 +495,13 @@ impl SketchSession {
             "UNION" | "CUT" | "COMMON" => self.combine(args, verb),
             "PATTERN" => self.pattern(args),
             "CHAMFER" | "FILLET" => self.blend(args, verb),
+            "HOLE" => self.hole(args),
             "SHELL" => self.shell(args),
             "DRAFT" => self.draft(args),
             "WITHIN" => self.within(args),
             "LEAVE" => self.leave(args),
             "MEASURE" => self.measure(args),
+            "CIRCLE" if args.at("DIAMETER") => self.section_shape(args, verb),
             "ARC" | "CIRCLE" | "ELLIPSE" => self.corner_curve(args, verb),
             "QUADRATIC" | "PARABOLA" => self.chain_curve(args, 3),
             "CUBIC" | "OVERHAUSER" => self.chain_curve(args, 4),

@@ -7,9 +7,10 @@ use super::subject::ReplySubject;
 use super::words::CommandTokenKind;
 use crate::dimension::expr::DimensionExpr;
 use crate::feature::{
-    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement,
+    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Hole, HoleHead,
+    Placement,
 };
-use crate::{SketchObject, Variable};
+use crate::{CoordinateAxis, SketchObject, Variable};
 
 /// Numbers of a feature itself: each becomes a variable, so that SET changes it.
 struct OwnNumbers {
@@ -103,6 +104,78 @@ impl SketchSession {
         let target = self.target(args, &object.name)?;
         args.end()?;
         let kind = FeatureKind::Shell { thickness, open };
+        self.make_with(Feature { kind, operands: operand(&object) }, own.made, &target, |_| None)
+    }
+
+    /// `HOLE a diameter AT p q …`.
+    pub(super) fn hole(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let object = self.treated(args)?;
+        let units = object.units.as_deref();
+        let mut own = OwnNumbers::of(&object);
+        let diameter = args.value(units)?;
+        let diameter = own.add("HOLE", diameter)?;
+        if !args.take_short("AT") {
+            return Err(args.wants("AT and two coordinates"));
+        }
+        let at = [args.value(units)?, args.value(units)?];
+        let [p, q] = at;
+        let at = [own.add("HOLEP", p)?, own.add("HOLEQ", q)?];
+        let (mut axis, mut top) = (CoordinateAxis::Z, true);
+        if args.take("FROM") {
+            match face_choice(args)? {
+                FaceChoice::Extreme { axis: a, top: t } => (axis, top) = (a, t),
+                FaceChoice::Named(_) => return Err(args.wants("TOP axis or BOTTOM axis")),
+            }
+        }
+        let mut depth = None;
+        if args.take("DEPTH") {
+            let value = args.value(units)?;
+            depth = Some(own.add("DEPTH", value)?);
+        }
+        let mut head = None;
+        if args.take("COUNTERBORE") {
+            let (d, t) = (args.value(units)?, args.value(units)?);
+            let (diameter, depth) = (own.add("BORE", d)?, own.add("SEAT", t)?);
+            head = Some(HoleHead::Counterbore { diameter, depth });
+        } else if args.take("COUNTERSINK") {
+            let (d, a) = (args.value(units)?, args.value(None)?);
+            let (diameter, angle) = (own.add("SINK", d)?, own.add("CONE", a)?);
+            head = Some(HoleHead::Countersink { diameter, angle });
+        }
+        let nothing = || DimensionExpr::number(0.0);
+        let across = |p: DimensionExpr, q: DimensionExpr| {
+            let mut all = [nothing(), nothing(), nothing()];
+            let [a, b] = axis.others();
+            (all[a.index()], all[b.index()]) = (p, q);
+            all
+        };
+        let mut copies = Vec::new();
+        loop {
+            if args.take("LINEAR") {
+                let count = args.value(None)?;
+                let (p, q) = (args.value(units)?, args.value(units)?);
+                let count = own.add("COUNT", count)?;
+                let (p, q) = (own.add("STEPP", p)?, own.add("STEPQ", q)?);
+                copies.push((Placement::Move(across(p, q)), count));
+            } else if args.take("POLAR") {
+                let (count, angle) = (args.value(None)?, args.value(None)?);
+                let (count, angle) = (own.add("COUNT", count)?, own.add("ANGLE", angle)?);
+                let through = match args.take("THROUGH") {
+                    true => {
+                        let (p, q) = (args.value(units)?, args.value(units)?);
+                        across(own.add("THROUGHP", p)?, own.add("THROUGHQ", q)?)
+                    }
+                    false => across(nothing(), nothing()),
+                };
+                copies.push((Placement::Rotate { axis, through, angle }, count));
+            } else {
+                break;
+            }
+        }
+        let target = self.target(args, &object.name)?;
+        args.end()?;
+        let kind =
+            FeatureKind::Hole(Box::new(Hole { axis, top, at, diameter, depth, head, copies }));
         self.make_with(Feature { kind, operands: operand(&object) }, own.made, &target, |_| None)
     }
 

@@ -22,6 +22,16 @@ impl CoordinateAxis {
         self as usize
     }
 
+    /// The two other axes, in the order x, y, z.
+    pub fn others(self) -> [CoordinateAxis; 2] {
+        let [x, y, z] = CoordinateAxis::ALL;
+        match self {
+            CoordinateAxis::X => [y, z],
+            CoordinateAxis::Y => [x, z],
+            CoordinateAxis::Z => [x, y],
+        }
+    }
+
     /// The capital letter.
     pub fn letter(self) -> &'static str {
         ["X", "Y", "Z"][self.index()]

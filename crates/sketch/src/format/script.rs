@@ -1,6 +1,8 @@
 //! An object as the commands that make it: the file format.
 
-use crate::feature::{EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, Placement};
+use crate::feature::{
+    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, HoleHead, Placement,
+};
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
     CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, SketchObject,
@@ -136,6 +138,47 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         FeatureKind::Shell { thickness, open } => {
             let open = list("OPEN", open);
             format!("SHELL {parts} {}{open} INTO {name}", own_value(thickness))
+        }
+        FeatureKind::Hole(hole) => {
+            let mut text = format!(
+                "HOLE {parts} {} AT {} FROM {} {}",
+                own_value(&hole.diameter),
+                hole.at.each_ref().map(own_value).join(" "),
+                if hole.top { "TOP" } else { "BOTTOM" },
+                hole.axis,
+            );
+            if let Some(depth) = &hole.depth {
+                text += &format!(" DEPTH {}", own_value(depth));
+            }
+            match &hole.head {
+                Some(HoleHead::Counterbore { diameter, depth }) => {
+                    text += &format!(" COUNTERBORE {} {}", own_value(diameter), own_value(depth));
+                }
+                Some(HoleHead::Countersink { diameter, angle }) => {
+                    text += &format!(" COUNTERSINK {} {}", own_value(diameter), own_value(angle));
+                }
+                None => {}
+            }
+            for (step, count) in &hole.copies {
+                let [a, b] = hole.axis.others().map(CoordinateAxis::index);
+                text += &match step {
+                    Placement::Rotate { through, angle, .. } => format!(
+                        " POLAR {} {} THROUGH {} {}",
+                        own_value(count),
+                        own_value(angle),
+                        own_value(&through[a]),
+                        own_value(&through[b])
+                    ),
+                    Placement::Move(by) => format!(
+                        " LINEAR {} {} {}",
+                        own_value(count),
+                        own_value(&by[a]),
+                        own_value(&by[b])
+                    ),
+                    Placement::Mirror { .. } | Placement::Scale(_) => String::new(),
+                };
+            }
+            format!("{text} INTO {name}")
         }
         FeatureKind::Draft { angle, axis, at, faces } => {
             let (angle, at, faces) = (own_value(angle), own_value(at), list("FACES", faces));

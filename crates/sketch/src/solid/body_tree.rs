@@ -3,6 +3,7 @@
 use super::SketchSolid;
 use super::feature::{FacetPlan, body_at};
 use super::operation::Operation;
+use super::outline::FacetDensity;
 use super::place::Similarity;
 use crate::feature::{Feature, FeatureKind};
 use crate::{DimensionLayout, Planes, SketchObject};
@@ -52,6 +53,17 @@ impl Feature {
                     1 => copies.pop(),
                     _ => Some(BodyTree::Combined(Operation::Union, copies)),
                 }
+            }
+            FeatureKind::Hole(hole) => {
+                let (planes, own) = self.laid(layout).pop()?;
+                let inner = &self.operands[0].object;
+                let body = body_at(inner, &planes, &own, &FacetPlan::default()).ok()?;
+                let drill = hole.drill(&body, layout, FacetDensity::default()).ok()?;
+                let drill = BodyTree::Plain(Box::new(drill));
+                let images = hole.images(layout).ok()?;
+                let mut parts = operands()?;
+                parts.extend(images.iter().map(|image| drill.placed(image)));
+                Some(BodyTree::Combined(Operation::Cut, parts))
             }
             _ => plain(self.body(layout, &FacetPlan::default()).ok()?),
         }

@@ -380,6 +380,7 @@ impl Feature {
                 };
                 shelled(body, value(thickness)?, open, &parts)
             }
+            (FeatureKind::Hole(hole), [body]) => hole.drilled(body, layout, plan.density()),
             (FeatureKind::Draft { angle, axis, at, faces }, [body]) => {
                 let angle = value(angle)? * (std::f64::consts::PI / 180.0);
                 drafted(body, angle, *axis, value(at)?, faces)
@@ -506,7 +507,7 @@ fn moved_object<T: Real>(
 }
 
 /// Copies of a body, united.
-fn repeated<T: Real>(
+pub(super) fn repeated<T: Real>(
     body: &SketchSolid<T>,
     images: &[Similarity<T>],
 ) -> Result<SketchSolid<T>, NoBody> {
@@ -521,13 +522,16 @@ fn repeated<T: Real>(
 }
 
 /// The value of a number of a feature.
-fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, NoBody> {
+pub(super) fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, NoBody> {
     let x = e.eval(&|n| layout.values.get(n).copied());
     x.map_err(|no| NoBody::NoValue(no.name))
 }
 
 /// Number of copies.
-fn copies<T: Real>(layout: &DimensionLayout<T>, count: &DimensionExpr) -> Result<usize, NoBody> {
+pub(super) fn copies<T: Real>(
+    layout: &DimensionLayout<T>,
+    count: &DimensionExpr,
+) -> Result<usize, NoBody> {
     let n = number(layout, count)?.re();
     let whole = n.fract() == 0.0 && (1.0..=f64::from(MAX_COPIES)).contains(&n);
     if whole { Ok(n as usize) } else { Err(NoBody::Copies(n)) }
@@ -577,7 +581,7 @@ impl<T: Real> SketchSolid<T> {
 }
 
 impl Placement {
-    fn similarity<T: Real>(
+    pub(super) fn similarity<T: Real>(
         &self,
         value: &dyn Fn(&DimensionExpr) -> Result<T, NoBody>,
     ) -> Result<Similarity<T>, NoBody> {

@@ -21,6 +21,7 @@ mod facet_source;
 pub mod feature;
 mod finer_mesh;
 pub(crate) mod gradient;
+mod hole;
 pub(crate) mod mass;
 mod meeting;
 pub mod merge;

@@ -87,7 +87,7 @@ fn a_question_takes_the_value() {
 fn other_words_are_no_misspellings() {
     let mut s = SketchSession::new();
     run(&mut s, "SKETCH A 2D XY\nPOINT 1 0 0; POINT 2 90 0; LINE 1 2");
-    for other in ["SPLINE 1 0.5", "HELIX", "POLYGON 1 2"] {
+    for other in ["SPLINE 1 0.5", "HELIX", "OCTAGON 1 2"] {
         let replies = s.run_line(other);
         assert!(replies[0].is_error() && replies[0].text.contains("no command"), "{replies:?}");
     }

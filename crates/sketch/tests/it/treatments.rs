@@ -4,26 +4,26 @@ use crate::common::*;
 use moldloft_sketch::*;
 use std::f64::consts::PI;
 
-fn run(s: &mut SketchSession, text: &str) -> Vec<CommandReply> {
+pub fn run(s: &mut SketchSession, text: &str) -> Vec<CommandReply> {
     let replies = s.run_text(text);
     let errors: Vec<&CommandReply> = replies.iter().filter(|r| r.is_error()).collect();
     assert!(errors.is_empty(), "{text}: {errors:?}");
     replies
 }
 
-fn refused(s: &mut SketchSession, text: &str) -> String {
+pub fn refused(s: &mut SketchSession, text: &str) -> String {
     let replies = s.run_text(text);
     let error = replies.iter().find(|r| r.is_error());
     error.unwrap_or_else(|| panic!("{text}: not refused: {replies:?}")).text.clone()
 }
 
-fn cuboid_session(size: [f64; 3]) -> SketchSession {
+pub fn cuboid_session(size: [f64; 3]) -> SketchSession {
     let mut s = SketchSession::new();
     s.insert(with_faces(cuboid(size)));
     s
 }
 
-fn volume(s: &mut SketchSession, name: &str) -> f64 {
+pub fn volume(s: &mut SketchSession, name: &str) -> f64 {
     let o = s.objects().into_iter().find(|o| o.name == name).unwrap();
     let report = o.solid.unwrap().mesh(1e-2).report();
     assert!(report.closed && report.outward == Some(true), "{report:?}");
@@ -34,12 +34,12 @@ fn area(s: &mut SketchSession, name: &str) -> f64 {
     s.objects().into_iter().find(|o| o.name == name).unwrap().area.unwrap()
 }
 
-fn near(found: f64, expected: f64) {
+pub fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-9 * expected.abs(), "{found} for {expected}");
 }
 
 /// Exact derivatives against central differences.
-fn derivatives(s: &mut SketchSession, name: &str, by: &[&str]) {
+pub fn derivatives(s: &mut SketchSession, name: &str, by: &[&str]) {
     run(s, &format!("USING {name}"));
     let names: Vec<String> = by.iter().map(|n| (*n).to_owned()).collect();
     let exact = s.gradient(name, &names).unwrap();

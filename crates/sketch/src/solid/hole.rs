@@ -1,0 +1,226 @@
+//! Drilled holes: through or blind, with a counterbore or a countersink, one or in patterns.
+
+use super::combine::combined;
+use super::curve::SmoothPiece;
+use super::edges::{FaceForm, TreatmentFault};
+use super::feature::{NoBody, copies, number, repeated};
+use super::operation::Operation;
+use super::outline::FacetDensity;
+use super::place::Similarity;
+use super::validity::valid;
+use super::{SketchSolid, SolidEdge, SolidFace, Vertex};
+use crate::feature::{FaceChoice, Hole, HoleHead};
+use crate::{DimensionExpr, DimensionLayout, PointId};
+use moldloft_num::{Box3, Real, Vec3};
+use std::sync::Arc;
+
+/// Maximum volume removed, relative to the body's, at which a hole is beside the body.
+const NOTHING_REMOVED: f64 = 1e-12;
+
+/// A ring of the drill's profile: radius, coordinate along the axis, and the name of the face above it.
+struct Ring<T> {
+    radius: T,
+    level: T,
+    above: &'static str,
+}
+
+impl Hole {
+    /// The positions of the holes relative to the first one.
+    pub(super) fn images<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+    ) -> Result<Vec<Similarity<T>>, NoBody> {
+        let mut images = vec![Similarity::identity()];
+        for (step, count) in &self.copies {
+            let step = step.similarity(&|e| number(layout, e))?;
+            let row = images.clone();
+            let mut last = row.clone();
+            for _ in 1..copies(layout, count)? {
+                last = last.iter().map(|image| image.then(&step)).collect();
+                images.extend(last.iter().cloned());
+            }
+        }
+        Ok(images)
+    }
+
+    /// The drill in its first position, as long as the body needs.
+    pub(super) fn drill<T: Real>(
+        &self,
+        body: &SketchSolid<T>,
+        layout: &DimensionLayout<T>,
+        density: FacetDensity,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let size = |e: &DimensionExpr, what: &str| -> Result<T, NoBody> {
+            let x = number(layout, e)?;
+            match x.re() > 0.0 && x.re().is_finite() {
+                true => Ok(x),
+                false => {
+                    Err(fault(format!("the {what} of a hole is {}", x.re()), "give more than 0"))
+                }
+            }
+        };
+        let k = self.axis.index();
+        let bounds = Box3::around(body.vertices.iter().map(|v| v.at.re()));
+        let (low, high) = (bounds.low[k], bounds.high[k]);
+        // Bulges beyond the vertices are smaller than the diagonal.
+        let over = bounds.diagonal();
+        let radius = size(&self.diameter, "diameter")? * 0.5;
+        // From the side that is drilled from, down into the body.
+        let inwards = if self.top { -1.0 } else { 1.0 };
+        let outside = T::from(if self.top { high + over } else { low - over });
+        let entry = || -> Result<T, NoBody> {
+            let side = FaceChoice::Extreme { axis: self.axis, top: self.top };
+            let faces = body.chosen_faces(&side).map_err(NoBody::Treatment)?;
+            match body.form(faces[0]) {
+                FaceForm::Plane { at, .. } => Ok(at[k]),
+                _ => Err(fault(format!("there is no face {side}"), "drill from another side")),
+            }
+        };
+        let mut rings = Vec::new();
+        let mut ring = |radius: T, level: T, above| rings.push(Ring { radius, level, above });
+        let end = match &self.depth {
+            Some(depth) => entry()? + size(depth, "depth")? * inwards,
+            None => T::from(if self.top { low - over } else { high + over }),
+        };
+        ring(radius, end, "WALL");
+        match &self.head {
+            None => ring(radius, outside, "WALL"),
+            Some(HoleHead::Counterbore { diameter, depth }) => {
+                let wide = size(diameter, "counterbore's diameter")? * 0.5;
+                let seat = entry()? + size(depth, "counterbore's depth")? * inwards;
+                self.widens(radius, wide)?;
+                ring(radius, seat, "SEAT");
+                ring(wide, seat, "HEAD");
+                ring(wide, outside, "HEAD");
+            }
+            Some(HoleHead::Countersink { diameter, angle }) => {
+                let wide = size(diameter, "countersink's diameter")? * 0.5;
+                let half = size(angle, "countersink's angle")? * (std::f64::consts::PI / 360.0);
+                if half.re() >= std::f64::consts::FRAC_PI_2 {
+                    return Err(fault(
+                        "a countersink's angle is below 180 degrees",
+                        "give 90, say",
+                    ));
+                }
+                self.widens(radius, wide)?;
+                let surface = entry()?;
+                ring(radius, surface + (wide - radius) / half.tan() * inwards, "HEAD");
+                ring(wide, surface, "HEAD");
+                ring(wide, outside, "HEAD");
+            }
+        }
+        let deeper = |pair: &[Ring<T>]| (pair[1].level - pair[0].level).re() * -inwards >= 0.0;
+        if !rings.windows(2).all(deeper) {
+            return Err(fault("the head of a hole is deeper than the hole", "give it less depth"));
+        }
+        if !self.top {
+            // From the lower ring to the upper one, each with the face above it.
+            rings.reverse();
+            for j in 1..rings.len() {
+                rings[j - 1].above = rings[j].above;
+            }
+        }
+        let [x, y] = self.at.each_ref().map(|e| number(layout, e));
+        let mut centre = [T::zero(); 3];
+        let [a, b] = self.axis.others();
+        (centre[a.index()], centre[b.index()]) = (x?, y?);
+        let mut drill = rotational(k, Vec3::from(centre), &rings);
+        drill.density = density;
+        valid(drill).map_err(NoBody::Flaw)
+    }
+
+    fn widens<T: Real>(&self, radius: T, wide: T) -> Result<(), NoBody> {
+        match wide.re() > radius.re() {
+            true => Ok(()),
+            false => Err(fault("the head of a hole is no wider than the hole", "give it more")),
+        }
+    }
+
+    /// The body with the holes.
+    pub(super) fn drilled<T: Real>(
+        &self,
+        body: &SketchSolid<T>,
+        layout: &DimensionLayout<T>,
+        density: FacetDensity,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let drill = self.drill(body, layout, density)?;
+        let drills = repeated(&drill, &self.images(layout)?)?;
+        let made = combined([body, &drills], Operation::Cut).map_err(NoBody::Combine)?;
+        let [before, after] = [body, &made].map(|solid| solid.mass().volume.re());
+        if before - after <= NOTHING_REMOVED * before {
+            return Err(fault("the hole is beside the body", "give its centre AT two coordinates"));
+        }
+        Ok(made)
+    }
+}
+
+fn fault(text: impl Into<String>, next: &'static str) -> NoBody {
+    NoBody::Treatment(TreatmentFault::new(text, None, next))
+}
+
+/// The body of revolution of rings from the lowest to the highest, about the axis `k` through a point: plane caps,
+/// quarters of cylinders and cones, and plane rings.
+fn rotational<T: Real>(k: usize, centre: Vec3<T>, rings: &[Ring<T>]) -> SketchSolid<T> {
+    const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    let mut out = SketchSolid::<T>::default();
+    let middle = |ring: &Ring<T>| {
+        let mut at = centre.to_array();
+        at[k] = ring.level;
+        Vec3::from(at)
+    };
+    let arm = |ring: &Ring<T>, quarter: usize| {
+        let mut at = [T::zero(); 3];
+        let [c, s] = QUARTERS[quarter % 4];
+        (at[(k + 1) % 3], at[(k + 2) % 3]) = (ring.radius * c, ring.radius * s);
+        Vec3::from(at)
+    };
+    let sweep = T::from(std::f64::consts::FRAC_PI_2);
+    for (i, ring) in rings.iter().enumerate() {
+        for q in 0..4 {
+            let id = PointId((4 * i + q) as u32 + 1);
+            out.vertices.push(Vertex { id, at: middle(ring) + arm(ring, q) });
+            let piece = SmoothPiece::Conic {
+                centre: middle(ring),
+                a: arm(ring, q),
+                b: arm(ring, q + 1),
+                sweep,
+            };
+            let ends = [4 * i + q, 4 * i + (q + 1) % 4];
+            out.edges.push(SolidEdge { ends, piece: Some(piece), ..SolidEdge::default() });
+        }
+    }
+    let forward = |i: usize| (0..4).map(|q| (4 * i + q, true)).collect::<Vec<_>>();
+    let backward = |i: usize| (0..4).rev().map(|q| (4 * i + q, false)).collect::<Vec<_>>();
+    let mut face = |loops, ruled, name: &str| {
+        let names = vec![Arc::from(name)];
+        out.faces.push(SolidFace { id: None, ruled, loops, trim: None, names });
+    };
+    face(vec![backward(0)], false, "BOTTOM");
+    face(vec![forward(rings.len() - 1)], false, "BOTTOM");
+    for (i, pair) in rings.windows(2).enumerate() {
+        if pair[0].level.re() == pair[1].level.re() {
+            let widens = pair[1].radius.re() > pair[0].radius.re();
+            let loops = match widens {
+                true => vec![backward(i + 1), forward(i)],
+                false => vec![forward(i), backward(i + 1)],
+            };
+            face(loops, false, pair[0].above);
+            continue;
+        }
+        let first = out.edges.len();
+        for q in 0..4 {
+            out.edges.push(SolidEdge { ends: [4 * i + q, 4 * i + 4 + q], ..SolidEdge::default() });
+        }
+        for q in 0..4 {
+            let next = (q + 1) % 4;
+            let cycle = vec![
+                (4 * i + q, true),
+                (first + next, true),
+                (4 * i + 4 + q, false),
+                (first + q, false),
+            ];
+            face(vec![cycle], true, pair[0].above);
+        }
+    }
+    out
+}

@@ -1,0 +1,109 @@
+//! HOLE against closed forms, its copies, its numbers and its text.
+
+use crate::treatments::{cuboid_session, derivatives, near, refused, run, volume};
+use moldloft_sketch::{SketchSession, script};
+use moldloft_testing::{Random, rounds};
+use std::f64::consts::PI;
+
+fn disc(diameter: f64) -> f64 {
+    PI * diameter * diameter / 4.0
+}
+
+#[test]
+fn every_form_of_a_hole() {
+    let plate = [80.0, 50.0, 8.0];
+    let whole: f64 = plate.iter().product();
+    let cone = PI / 3.0 * 3.0 * (7.5 * 7.5 + 7.5 * 4.5 + 4.5 * 4.5);
+    let cases = [
+        ("HOLE A 9 AT 10 12 INTO B", disc(9.0) * 8.0),
+        ("HOLE A 9 AT 10 12 FROM BOTTOM Z INTO B", disc(9.0) * 8.0),
+        ("HOLE A 9 AT 10 12 DEPTH 5 INTO B", disc(9.0) * 5.0),
+        ("HOLE A 4 AT 10 4 FROM TOP X DEPTH 30 INTO B", disc(4.0) * 30.0),
+        ("HOLE A 4 AT 10 4 FROM BOTTOM Y INTO B", disc(4.0) * 50.0),
+        ("HOLE A 9 AT 20 12 COUNTERBORE 15 3 INTO B", disc(9.0) * 5.0 + disc(15.0) * 3.0),
+        (
+            "HOLE A 9 AT 20 12 FROM BOTTOM Z COUNTERBORE 15 3 INTO B",
+            disc(9.0) * 5.0 + disc(15.0) * 3.0,
+        ),
+        ("HOLE A 9 AT 20 12 COUNTERSINK 15 90 INTO B", disc(9.0) * 5.0 + cone),
+        ("HOLE A 9 AT 20 12 FROM BOTTOM Z COUNTERSINK 15 90 INTO B", disc(9.0) * 5.0 + cone),
+        ("HOLE A 9 AT 20 12 DEPTH 6 COUNTERBORE 15 3 INTO B", disc(9.0) * 3.0 + disc(15.0) * 3.0),
+        ("HOLE A 5 AT 10 10 LINEAR 4 20 0 LINEAR 3 0 15 INTO B", 12.0 * disc(5.0) * 8.0),
+        ("HOLE A 5 AT 60 25 POLAR 6 60 THROUGH 40 25 INTO B", 6.0 * disc(5.0) * 8.0),
+        // An axis in a corner of the plate, and one in a side.
+        ("HOLE A 9 AT 0 0 INTO B", disc(9.0) * 8.0 / 4.0),
+        ("HOLE A 9 AT 40 0 INTO B", disc(9.0) * 8.0 / 2.0),
+    ];
+    for (command, removed) in cases {
+        let mut s = cuboid_session(plate);
+        run(&mut s, command);
+        near(volume(&mut s, "B"), whole - removed);
+        // The same from its text.
+        let text = script(s.object("B").unwrap());
+        let mut again = SketchSession::new();
+        run(&mut again, &text);
+        assert_eq!(volume(&mut again, "B").to_bits(), volume(&mut s, "B").to_bits(), "{text}");
+    }
+}
+
+#[test]
+fn holes_in_a_row_on_one_line_and_level() {
+    let mut random = Random::new(9);
+    for _ in 0..rounds(12, 1_000) {
+        let number = |random: &mut Random, low: usize, high: usize| {
+            (low + random.below(high - low + 1)) as f64
+        };
+        let size =
+            [number(&mut random, 60, 120), number(&mut random, 40, 80), number(&mut random, 4, 20)];
+        let mut s = cuboid_session(size);
+        let (d, y) = (number(&mut random, 4, 12), number(&mut random, 10, 30));
+        let count = 2 + random.below(3);
+        let step = d + number(&mut random, 1, 4);
+        run(&mut s, &format!("HOLE A {d} AT 10 {y} INTO B"));
+        // One after another at the same level, whole numbers.
+        for k in 1..count {
+            run(&mut s, &format!("HOLE B {d} AT {} {y} INTO B", 10.0 + step * k as f64));
+        }
+        let whole: f64 = size.iter().product();
+        near(volume(&mut s, "B"), whole - count as f64 * disc(d) * size[2]);
+        // As a pattern it is the same body.
+        run(&mut s, &format!("HOLE A {d} AT 10 {y} LINEAR {count} {step} 0 INTO C"));
+        near(volume(&mut s, "C"), whole - count as f64 * disc(d) * size[2]);
+    }
+}
+
+#[test]
+fn its_numbers_are_numbers_of_the_part() {
+    let mut s = cuboid_session([80.0, 50.0, 8.0]);
+    run(&mut s, "HOLE A 9 AT 20 12 COUNTERBORE 15 3 INTO B");
+    let names: Vec<String> = s.numbers("B").unwrap().into_iter().map(|n| n.0).collect();
+    let named = |stem: &str| names.iter().find(|n| n.starts_with(stem)).unwrap().clone();
+    let (hole, bore, seat) = (named("HOLE"), named("BORE"), named("SEAT"));
+    derivatives(&mut s, "B", &[&hole, &bore, &seat, "D3"]);
+    // The drill follows the plate: it is through at any thickness.
+    run(&mut s, "USING B; SET D3 200");
+    near(volume(&mut s, "B"), 80.0 * 50.0 * 200.0 - disc(9.0) * 197.0 - disc(15.0) * 3.0);
+    run(&mut s, &format!("SET {hole} 12"));
+    near(volume(&mut s, "B"), 80.0 * 50.0 * 200.0 - disc(12.0) * 197.0 - disc(15.0) * 3.0);
+}
+
+#[test]
+fn what_is_no_hole_is_refused() {
+    let mut s = cuboid_session([80.0, 50.0, 8.0]);
+    for (command, why) in [
+        ("HOLE A 0 AT 10 10", "diameter of a hole is 0"),
+        ("HOLE A 9 AT 10 10 DEPTH -1", "depth of a hole is -1"),
+        ("HOLE A 9 AT 10 10 COUNTERBORE 9 3", "no wider than the hole"),
+        ("HOLE A 9 AT 10 10 COUNTERSINK 15 180", "below 180 degrees"),
+        ("HOLE A 9 AT 10 10 DEPTH 2 COUNTERBORE 15 3", "deeper than the hole"),
+        ("HOLE A 9 AT 200 10", "beside the body"),
+        ("HOLE A 9 AT 10 10 LINEAR 2.5 20 0", "2.5 copies"),
+        ("HOLE A 9 10 10", "expected AT"),
+        ("HOLE A 9 AT 10 10 FROM L1", "TOP axis or BOTTOM axis"),
+        ("HOLE Q 9 AT 10 10", "no object Q"),
+    ] {
+        let text = refused(&mut s, command);
+        assert!(text.contains(why), "{command}: {text}");
+    }
+    assert_eq!(s.names(), ["A"]);
+}
