@@ -237,7 +237,7 @@ mod tests {
         brep
     }
 
-    /// All corners of edges and places of surfaces are on the images.
+    /// All corners of edges and points of surfaces are on the images.
     fn check(brep: &Brep, volume: f64, faces: usize) {
         assert_eq!(brep.faces.len(), faces);
         let found = brep.volume().unwrap();

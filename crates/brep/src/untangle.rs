@@ -310,7 +310,7 @@ impl PatchedBody<'_> {
         (high >= low.min(LEAST)).then_some(Repair::Collapse(v, nearest))
     }
 
-    /// A place between the neighbours of a vertex, on its surfaces.
+    /// A point between the neighbours of a vertex, on its surfaces.
     fn smoothed(&self, tangle: &Tangle, v: u32) -> Option<Vec3> {
         let labels = tangle.labels_of(v);
         let neighbours = match labels.len() {

@@ -161,7 +161,7 @@ impl<'a> Sight<'a> {
         self.place().cell as usize
     }
 
-    /// True when the surfaces go on beyond both in the same direction.
+    /// True when the surfaces continue beyond both in the same direction.
     #[inline(always)]
     pub fn smooth(&self, o: &Sight) -> bool {
         self.place().smooth && o.place().smooth

@@ -1,6 +1,7 @@
 //! Bodies of sets as exact faces where these are planes, quadrics with an axis and tori, else as patches.
 //!
-//! `set -> facets, each with its primitive -> faces, edges, vertices -> places on the border of the set?`
+//! `set -> facets, each with its primitive -> faces, edges, vertices -> points on the border of the
+//! set?`
 //!
 //! A body with any other surface, as a blend, has exact plane faces, and patches of splines that are
 //! within the accuracy elsewhere.
@@ -465,7 +466,8 @@ fn between_one_line(made: &Brep) -> Option<Vec3> {
     Some(made.edges[found.first()?.edge].curve.points[0])
 }
 
-/// A place of the faces' edges, or of triangles moved onto their surfaces, that is not on the border of the set.
+/// A point of the faces' edges, or of triangles moved onto their surfaces, that is not on the
+/// border of the set.
 fn elsewhere(
     made: &Brep,
     set: &Set,

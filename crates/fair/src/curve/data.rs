@@ -123,7 +123,7 @@ const TOGETHER: f64 = 1e-6;
 /// Merges coincident neighbours: to their mean, with a tolerance within all of theirs.
 ///
 /// # Errors
-/// [`FairError::Coincident`] when no place is within the tolerances of both.
+/// [`FairError::Coincident`] when no point is within the tolerances of both.
 pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merged, FairError> {
     let first = points.first().copied().unwrap_or_default();
     let extent = points.iter().map(|p| (*p - first).norm()).fold(0.0, f64::max);

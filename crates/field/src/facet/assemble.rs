@@ -124,7 +124,7 @@ impl<'a> Assembly<'a> {
         Self { grid, leaves, blocks, at, base, count, changes: Changes::default() }
     }
 
-    /// The block of a vertex and the vertex's place in it.
+    /// The block of a vertex and the vertex's index in it.
     pub(super) fn owner(&self, vertex: u32) -> (usize, usize) {
         let owner = self.base.partition_point(|b| *b <= vertex) - 1;
         (owner, (vertex - self.base[owner]) as usize)
@@ -229,7 +229,7 @@ impl<'a> Assembly<'a> {
         [0, 1, 2].map(|i| at[i] as usize * SIDE + cell[i] as usize)
     }
 
-    /// The block of a cell, most often `near`, and the cell's place in it.
+    /// The block of a cell, most often `near`, and the cell's indices in it.
     fn block_of(&self, near: usize, cell: [usize; 3]) -> Option<(usize, [usize; 3])> {
         let at = cell.map(|x| (x / SIDE) as u32);
         let block = if self.blocks[near].1.at == at { near } else { *self.at.get(&at)? };

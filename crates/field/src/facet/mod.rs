@@ -401,7 +401,8 @@ const FEW_CELLS: usize = 60_000;
 /// The same of those for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
 
-/// The facets with the fewest edges that are cut off, and cells whose triangles cut others, of a few places of the grid.
+/// The facets with the fewest cut-off edges and cells whose triangles intersect others, among a few
+/// positions of the grid.
 fn sharpest(
     set: &Set,
     over: &Box3,
@@ -572,7 +573,7 @@ pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
 }
 
 impl Facets {
-    /// The unresolved places, neighbours joined: at most 100, the largest first.
+    /// The unresolved regions, neighbours joined: at most 100, the largest first.
     pub fn open_places(&self) -> Vec<Unresolved> {
         unresolved::gathered(&self.unresolved, self.step)
     }

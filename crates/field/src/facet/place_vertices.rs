@@ -127,7 +127,7 @@ impl VertexPlacer<'_> {
         None
     }
 
-    /// True when a point is further from one of the surfaces than may go unsaid.
+    /// True when a point is so far from one of the surfaces that this must be reported.
     fn away(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
         let slack = MIN_FEATURE * (self.cell.high.x - self.cell.low.x);
         surfaces.iter().any(|&s| {

@@ -76,7 +76,7 @@ pub(super) struct CellVertex {
     pub(super) surfaces: Surfaces,
 }
 
-/// A place that the corners of cells say nothing of.
+/// A region that the corners of cells do not resolve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unresolved {
     /// A cell, or a part of one.

@@ -32,7 +32,7 @@ pub(super) type Corners = [u32; 3];
 pub(super) struct Change {
     /// New corners, with the surface, of triangles, …
     pub(super) made: SmallVec<[(usize, u32, Corners); 8]>,
-    /// … and those that go.
+    /// … and the removed ones.
     pub(super) gone: SmallVec<[usize; 2]>,
 }
 

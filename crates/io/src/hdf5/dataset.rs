@@ -1,4 +1,4 @@
-//! StoredNumbers and texts: their types, extents and places.
+//! Numbers and texts: their types, extents and positions.
 
 use super::Hdf5File;
 use super::bytes::{Cursor, fault};

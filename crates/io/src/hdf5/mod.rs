@@ -47,7 +47,7 @@ pub(crate) struct Link {
     pub name: String,
     /// `None` of links by name and into other files.
     pub to: Option<StoredObject>,
-    /// The place among the links of the group as they were made, where it was kept.
+    /// The index among the links of the group in order of creation, where the file has it.
     pub order: Option<u64>,
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct NamedBlock {
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
 
-/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last place (i, j, k) from 0.
+/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last node (i, j, k) from 0.
 pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 
 /// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.

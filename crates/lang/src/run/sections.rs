@@ -1,4 +1,4 @@
-//! Subscripts of a program that runs, and the places that assignments write to.
+//! Subscripts during a run, and the places that assignments write to.
 
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;

@@ -564,7 +564,7 @@ fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
 /// The selected part of an array.
 ///
 /// # Errors
-/// When subscripts and dimensions do not go together.
+/// When subscripts and dimensions do not match.
 pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>, Diagnostic> {
     Ok(match value {
         Value::Numbers(array) => {

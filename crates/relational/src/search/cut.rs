@@ -171,7 +171,7 @@ pub(super) struct CutJet<T> {
     pub curvature: Vec3<T>,
 }
 
-/// Nodes on [-1, 1] inside: a surface may go on differently beyond the ends (Chebyshev 1854).
+/// Nodes on [-1, 1] inside: a surface may continue differently beyond the ends (Chebyshev 1854).
 pub(super) fn node(k: usize) -> f64 {
     -Real::cos((k as f64 + 0.5) * std::f64::consts::PI / NODES as f64)
 }

@@ -661,7 +661,7 @@ fn with_joints<T: Real>(
     stops
 }
 
-/// The place of a closed branch nearest to `m`, between which stations it is and itself; the last
+/// The point of a closed branch nearest to `m`, between which stations it is and itself; the last
 /// station is not the first again.
 fn nearest_station(
     crossing: &Crossing<'_>,

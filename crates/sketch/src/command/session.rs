@@ -611,7 +611,7 @@ impl SketchSession {
         self.object(self.state.active.as_deref()?)
     }
 
-    /// Adds an object, or takes its namesake's place; it becomes active.
+    /// Adds an object, or replaces its namesake; it becomes active.
     pub fn insert(&mut self, object: SketchObject) {
         let key = object.name.to_lowercase();
         self.state.objects.insert(key.clone(), Arc::new(object));

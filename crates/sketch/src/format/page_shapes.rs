@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// A straight stroke on the page.
 pub type Stroke = [[f64; 2]; 2];
 
-/// Angles up to this part of a radian make lines go on straight.
+/// Lines with smaller angles between them, in radians, continue straight.
 const STRAIGHT: f64 = 1e-6;
 
 /// Shapes on the page.

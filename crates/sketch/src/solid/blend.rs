@@ -131,7 +131,7 @@ fn blended_at_once<T: Real>(
     Ok(out)
 }
 
-/// Adds the edges that go on from chosen ones without a corner.
+/// Adds the edges that continue chosen ones without a corner.
 fn follow_tangents<T: Real>(
     body: &SketchSolid<T>,
     sides: &[Vec<EdgeSide>],

@@ -14,7 +14,7 @@ use crate::solid::arrangement::SurfaceCoincidence;
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 
-/// A place where measures have two one-sided derivatives by one number.
+/// A state in which measures have two one-sided derivatives by one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink {
     /// The part of the scalar.

@@ -251,7 +251,7 @@ pub(crate) fn unchecked<T: Real>(
     Some(build.finish())
 }
 
-/// Labels of points as places in a list: by a table where they are dense, else by search.
+/// Indices of labels in a list: by a table where the labels are dense, else by search.
 struct Labels<'a> {
     ids: &'a [PointId],
     table: Vec<u32>,
@@ -287,7 +287,7 @@ impl<T: Real> Places<'_, T> {
         self.labels.index(p).map(|k| self.at[k])
     }
 
-    /// The place of a point of a face or curve: those exist.
+    /// The position of a point of a face or curve: those exist.
     fn of(&self, p: PointId) -> Vec3<T> {
         self.get(p).unwrap_or_default()
     }

@@ -152,7 +152,7 @@ struct CrossingFacet {
     loops: Vec<Vec<u32>>,
     low: Vec3,
     high: Vec3,
-    /// Its corners in order of their numbers, with cycle and place in it, once there are many.
+    /// Its corners in order of their numbers, with cycle and index in it, once there are many.
     corners: Vec<(u32, usize, usize)>,
 }
 

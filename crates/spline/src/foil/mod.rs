@@ -207,7 +207,7 @@ impl<T: Real> Section<T> {
         tail.thickness.re().abs() <= 1e-12 && tail.camber.re().abs() <= 1e-12
     }
 
-    /// The places s in (0, 1) at which a second derivative may jump, ascending.
+    /// The parameters s in (0, 1) at which a second derivative may jump, ascending.
     pub fn breaks(&self) -> Vec<f64> {
         self.with_mean(self.thickness.breaks())
     }
