@@ -5525,7 +5525,7 @@ def write_vts(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
 
     Returns
     -------
@@ -5579,7 +5579,7 @@ def write_stl(
     words : text, optional
         "flip" reverses the normals.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
 
     Returns
     -------
@@ -5604,7 +5604,7 @@ def write_cgns(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
         faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
@@ -5633,7 +5633,7 @@ def write_su2(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5662,7 +5662,7 @@ def write_gmsh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5691,7 +5691,7 @@ def write_blockmesh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,

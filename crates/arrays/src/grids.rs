@@ -431,7 +431,7 @@ fn through<T: Real>(
         .map_err(|error| crate::spline::fault(error, "point", [field, field]))?
         .ok_or_else(|| match budget.poll() {
             Err(spent) => fault(spent.into(), field),
-            Ok(()) => unreachable!("what is spent stays so until the run has ended"),
+            Ok(()) => unreachable!("a spent budget stays spent until the run has ended"),
         })
 }
 

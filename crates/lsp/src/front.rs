@@ -63,7 +63,7 @@ impl EngineProcess {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
-        let taken = "a pipe was asked for";
+        let taken = "a pipe was requested";
         let input = BufWriter::new(child.stdin.take().expect(taken));
         let mut output = BufReader::new(child.stdout.take().expect(taken));
         // The engine may not write files, which standard error may be.

@@ -59,7 +59,7 @@ fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
     Err(CallError::new("not-finite", message)
         .expected("finite coordinates")
         .found("NaN or infinity")
-        .help("look for edges of no length and tangents of no direction in what it is made of")
+        .help("look for edges of length zero and zero tangents in its parents")
         .help(format!("or hide it: {name}(..., visible = 0)")))
 }
 

@@ -282,8 +282,8 @@ fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
         FoilError::Range { name, value, min, max } => {
             let field = match name {
                 "a nose index" => fields.nose_index,
-                "the place of the greatest thickness" => fields.thickness_at,
-                "the place of the greatest camber" => fields.camber_at,
+                "the position of the greatest thickness" => fields.thickness_at,
+                "the position of the greatest camber" => fields.camber_at,
                 _ => fields.load,
             };
             CallError::new("out-of-range", text)

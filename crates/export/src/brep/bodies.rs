@@ -523,7 +523,7 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
     let of = if surfaces.is_empty() { format!("`{name}`") } else { format!("`{surfaces}`") };
     let what = match fault.kind {
         FacetFaultKind::NotClosed => "has facets that do not close",
-        FacetFaultKind::Seam => "goes round its axis without room for a seam",
+        FacetFaultKind::Seam => "closes around its axis, and no seam fits on it",
         FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
         FacetFaultKind::Vertex => "meet in a corner that is not found",
         FacetFaultKind::Surface => "is none of the surfaces that formats have",

@@ -845,7 +845,7 @@ pub fn fair_data_with<T: Real>(
     if !options.shape.is_empty() || !options.conditions.is_empty() || !options.bends {
         if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
             return Err(FairError::NoDerivative(
-                "derivatives of curves with conditions on their shape, places or inflections are \
+                "derivatives of curves with conditions on their shape, points or inflections are \
                  not known: take the curve without them",
             ));
         }

@@ -68,7 +68,7 @@ impl std::fmt::Display for DataFinding {
             ),
             Self::Swapped { index } => write!(
                 f,
-                "points {number} and {}: in the wrong order? the way through them runs back",
+                "points {number} and {}: in the wrong order? the path through them turns back",
                 index + 2
             ),
         }

@@ -150,9 +150,12 @@ impl<T: Real> CurveOptions<T> {
             return Err(self.not_near(what, field));
         }
         let refused = |what: &str, field, expected: &'static str| {
-            CallError::new("other-mode", format!("`{what}` does not go with the other options"))
-                .expected(expected)
-                .in_field(field)
+            CallError::new(
+                "other-mode",
+                format!("`{what}` cannot be combined with the other options"),
+            )
+            .expected(expected)
+            .in_field(field)
         };
         if !optimum && bound.is_some() {
             return Err(refused("bound", fields.bound, "mode = \"optimum\""));

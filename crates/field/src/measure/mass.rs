@@ -121,8 +121,8 @@ impl<T: Real> BracketedMass<T> {
         (self.estimate > enough).then(|| Remark {
             id: "volume-uncertain",
             message: format!("the volume is known to {:.1e} only", self.uncertain),
-            advice: "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
-                     and a greater `accuracy` takes what there is",
+            advice: "edges thinner than its cells limit the accuracy; `volume_bracket` with a greater depth is narrower, \
+                     and a greater `accuracy` accepts this result",
         })
     }
 }

@@ -129,7 +129,7 @@ pub(super) fn numbers<'a>(
     let extents = extents(&mut of(header::DATASPACE, "extents")?.body.clone())?;
     let count = extents.iter().try_fold(1usize, |all, n| all.checked_mul(*n));
     let bytes = count.and_then(|count| count.checked_mul(kind.size));
-    let layout = of(header::LAYOUT, "a place of numbers")?;
+    let layout = of(header::LAYOUT, "the layout of the numbers")?;
     let here = layout.body.at;
     let Some(bytes) = bytes.filter(|bytes| *bytes <= file.bytes.len().saturating_mul(1024)) else {
         return Err(fault(here, "no more numbers than bytes", format!("{extents:?} of them")));
@@ -212,11 +212,7 @@ fn contiguous(
     if at.is_nothing(address) {
         // No more than a file of them would hold.
         if bytes > file.bytes.len() {
-            return Err(fault(
-                at.at,
-                &format!("{bytes} bytes of numbers"),
-                "none that were written",
-            ));
+            return Err(fault(at.at, &format!("{bytes} bytes of numbers"), "none written"));
         }
         return Ok(vec![0; bytes]);
     }

@@ -251,6 +251,6 @@ impl FractalHeap {
                 start = end;
             }
         }
-        Err(fault(at.at, "a place inside of the heap", place))
+        Err(fault(at.at, "a position inside the heap", place))
     }
 }

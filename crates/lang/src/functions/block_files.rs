@@ -58,7 +58,7 @@ pub(crate) fn face_names(words: &str, flat: bool) -> Result<FaceNames, Diagnosti
                 .found(format!("\"{}\"", entry.trim()))
         };
         let Some((of, meaning)) = entry.split_once('=') else {
-            return Err(wrong("the name of a face stands behind `=`".into()));
+            return Err(wrong("the name of a face follows `=`".into()));
         };
         let mut meaning = meaning.split_whitespace();
         let Some(name) = meaning.next() else {

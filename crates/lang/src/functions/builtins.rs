@@ -86,7 +86,7 @@ pub(crate) enum Action {
 /// Arguments of writers of meshes of blocks.
 const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
     ("name", "text", "Name of the file, beside the program."),
-    ("b", "block or surface …", "Blocks, or surfaces in one plane; a list stands for its members."),
+    ("b", "block or surface …", "Blocks, or surfaces in one plane; a list counts as its members."),
     (
         "faces?",
         "text",
@@ -281,7 +281,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
@@ -311,7 +311,7 @@ pub const BUILTINS: [Builtin; 32] = [
         help: &[
             ("name", "text", "Name of the file, beside the program."),
             ("words?", "text", "\"flip\" reverses the normals."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
         ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
@@ -323,7 +323,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
             (
                 "faces?",
                 "text",

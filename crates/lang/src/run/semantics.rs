@@ -214,7 +214,7 @@ impl<'a> Semantics<'a> {
                     self.say(
                         Diagnostic::remark("unreachable", "this statement is never reached")
                             .at(m.program[next].span)
-                            .note_at(m.program[stmt].span, "what stands before it always leaves"),
+                            .note_at(m.program[stmt].span, "the statement before it always leaves"),
                     );
                     break;
                 }

@@ -110,7 +110,7 @@ impl<T: Real> Build<T> for Weight<T> {
                 (Some(if body.is_closed() { m.volume } else { m.area }), m.centroid)
             }
             other => {
-                return Err(CallError::new("wrong-class", "a weight has a place")
+                return Err(CallError::new("wrong-class", "a weight needs a position")
                     .expected("a point, {x, y, z}, a curve, a surface, a solid or a body")
                     .found(other.class().with_article())
                     .in_field(Self::AT));

@@ -119,7 +119,7 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
                 Some("the layers of a block are surfaces of one shape")
             }
             (Type::List(_), Value::Block(_)) => Some("`foreach (s in b)` walks its layers"),
-            (Type::List(_), _) => Some("a list stands in braces: {a, b}"),
+            (Type::List(_), _) => Some("a list is written in braces: {a, b}"),
             _ => None,
         };
         Diagnostic::error("wrong-type", format!("expected {}, found {found}", described(ty)))

@@ -303,7 +303,7 @@ fn solved<T: Real>(
     let at = |w: [f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
     if from == to || (!turned && at(from).distance(at(to)) == 0.0) {
         return Err(CallError::new("coincident-points", "the geodesic has no length")
-            .expected("two magnets in different places")
+            .expected("two magnets at different points")
             .found("one place")
             .in_field(GeoSnake::<T>::M2));
     }

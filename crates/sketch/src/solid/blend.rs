@@ -624,7 +624,7 @@ impl<T: Real> Blending<'_, T> {
                 return Ok(());
             }
         }
-        let next = "choose arcs that go on in other edges without a corner, or end in a plane through their axis";
+        let next = "choose arcs that continue in other edges without a corner, or end in a plane through their axis";
         Err(TreatmentFault::new("an arc ends in a corner", Some(at.re()), next).into())
     }
 

@@ -31,7 +31,7 @@ impl std::fmt::Display for Kink {
         let [x, y, z] = self.at.to_array().map(plain);
         write!(
             f,
-            "{what} at ({x}, {y}, {z}) and they do not move alike: there is a derivative on each side"
+            "{what} at ({x}, {y}, {z}) and they move differently: the derivatives of both sides differ"
         )
     }
 }
