@@ -217,7 +217,7 @@ impl fmt::Display for FieldError {
             Self::NotReached { asked, reached, cells } => write!(
                 f,
                 "with {cells} cells the volume is known to {reached:.3e}, not to the required {asked:.3e}: require \
-                 that, or allow more `cells`"
+                 less, or allow more `cells`"
             ),
             Self::Unbounded { axis, sign } => {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
