@@ -566,7 +566,6 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     }
 }
 
-/// The plane of a curve.
 struct InPlane<T> {
     normal: Vec3<T>,
 }

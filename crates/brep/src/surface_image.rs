@@ -9,7 +9,6 @@ use moldloft_spline::nurbs::Nurbs;
 /// The image of a surface: a point of coordinates (x, y, z) of it is at `centre` + x X + y Y + z Z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceImage {
-    /// The surface.
     of: SurfaceShape,
     /// The image of the origin.
     centre: Vec3,

@@ -34,7 +34,6 @@ enum Repair {
     Flip(u32, u32),
     /// The first vertex becomes the second.
     Collapse(u32, u32),
-    /// The vertex moves.
     Move(u32, Vec3),
 }
 

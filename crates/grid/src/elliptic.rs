@@ -222,7 +222,6 @@ impl<T: Real, const L: usize> SmoothedPoints<'_, T, L> {
         }
     }
 
-    /// The planes of the grid.
     fn planes(&self, turned: bool) -> Vec<Vec<T>> {
         match (self, turned) {
             (SmoothedPoints::Free(banks), false) => banks.planes(),

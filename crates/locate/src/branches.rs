@@ -194,7 +194,6 @@ impl CellPart {
     }
 }
 
-/// A node of a tree in a search.
 #[derive(Clone, Copy)]
 struct TreeNode<'a> {
     /// Number of a fork, or of a cell with [`LEAF`] added.
@@ -332,7 +331,6 @@ impl Crossing<'_> {
     }
 }
 
-/// The root of a tree and its box.
 fn root(cells: &Cells) -> (u32, &Box3) {
     (if cells.forks.is_empty() { LEAF } else { 0 }, &cells.tree.bounds)
 }

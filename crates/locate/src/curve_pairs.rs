@@ -31,7 +31,6 @@ const MOST_NEAREST: usize = 20_000;
 /// Relative difference of distances below which a pair of points is not nearer.
 const NEARER: f64 = 1e-12;
 
-/// The most steps of a descent.
 const MOST_STEPS: u32 = 40;
 
 /// A point at which the distance is least in a rectangle of parameters.

@@ -23,7 +23,6 @@ const FARTHEST: f64 = 1e60;
 /// surface are equally near.
 const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
 
-/// The most feet that are distinguished.
 const MOST_FEET: usize = 256;
 
 /// The point whose nearest one is searched.

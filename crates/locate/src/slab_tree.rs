@@ -197,7 +197,6 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The plates of a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Plates {
     /// The pieces' first, in their order.

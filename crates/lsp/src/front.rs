@@ -30,7 +30,6 @@ const EXIT_TIMEOUT: Duration = Duration::from_secs(10);
 enum FrontEvent {
     Editor(Message),
     EditorGone,
-    /// A message of the engine of that number.
     Engine(u32, Message),
     EngineGone(u32),
 }
@@ -44,7 +43,6 @@ pub struct EngineCommand {
     pub arguments: Vec<OsString>,
 }
 
-/// The engine that is running.
 struct EngineProcess {
     number: u32,
     child: Child,

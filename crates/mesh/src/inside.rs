@@ -36,7 +36,6 @@ struct SkinPiece {
     places: Vec<Vec3>,
     bounds: Box3,
     open: bool,
-    /// The piece whose image it is.
     image_of: Option<usize>,
 }
 

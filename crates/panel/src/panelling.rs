@@ -87,7 +87,6 @@ pub struct Panelling {
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<PanelNote>,
     measured: bool,
-    /// The knuckles of the surfaces.
     knuckles: HashMap<Key, Knuckles>,
     /// The graph's last change at that time.
     clock: u64,

@@ -93,7 +93,6 @@ pub(crate) struct EdgeInterval {
 /// A parameter of an edge, as something that can be had with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EdgeParameter {
-    /// End of a piece.
     Piece(u16),
     /// Inside a piece, at a mark of its root; true for a piece of opposite direction to its root.
     Inside(u16, MarkSource, bool),

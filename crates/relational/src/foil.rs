@@ -233,7 +233,6 @@ impl<T: Real> FoilArguments<T> {
     }
 }
 
-/// A curve that is shared with its object.
 struct Shared<T: Real>(CurveRef<T>);
 
 impl<T: Real> Curve<T> for Shared<T> {
@@ -267,7 +266,6 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
     moldloft_num::curve_one_by_one!(J);
 }
 
-/// The fault of a foil.
 fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
     let text = error.to_string();
     match error {

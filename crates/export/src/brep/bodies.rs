@@ -76,7 +76,6 @@ pub fn add(
     Ok(true)
 }
 
-/// The set of a body.
 struct SetOfBody<'a> {
     set: &'a Set,
     over: &'a Box3,

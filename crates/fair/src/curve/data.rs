@@ -579,7 +579,6 @@ impl Data {
         self.rounding().max(1e-8 * mean)
     }
 
-    /// Rounding of the data.
     fn rounding(&self) -> f64 {
         let first = self.points.first().copied().unwrap_or_default();
         let size =

@@ -35,7 +35,6 @@ pub(crate) struct CurveContext<T> {
     pub spacings: &'static [&'static str],
 }
 
-/// A faired spline and its members.
 pub(crate) struct FairedSpline<T: Real> {
     pub curve: FairedCurve<T>,
     pub members: Vec<(&'static str, f64)>,
@@ -72,7 +71,6 @@ impl<T: Real> Curve<T> for FairedCurve<T> {
     moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
-/// Values of `mode`.
 const MODES: [&str; 6] = ["optimum", "faithful", "literal", "vertex", "sweeps", "levels"];
 
 /// Default numbers of sweeps and of multilevel cycles.

@@ -244,7 +244,6 @@ fn polyhedron<T: Real>(
     Ok(Some(set))
 }
 
-/// The hull of balls and points.
 pub(super) fn of_balls<T: Real>(balls: &[HullBall<T>]) -> Result<Set<T>, FieldError> {
     let balls = outermost(balls);
     let flat = FieldError::Degenerate { what: "hull: it has no volume; it" };

@@ -81,7 +81,6 @@ pub(super) struct Changes {
     pub(super) merged: BTreeSet<u32>,
 }
 
-/// A vertex of a cell.
 pub(super) type Corner<'s> = (VertexKey, &'s PlacedVertex, &'s Surfaces);
 
 /// A vertex outside cells, with a cell beside it.
@@ -160,7 +159,6 @@ impl<'a> Assembly<'a> {
         block.path(cell, from, to)
     }
 
-    /// All triangles.
     pub(super) fn triangles(&self) -> (Assembled, VertexNames) {
         let Self { blocks, count, .. } = *self;
         let parts: Vec<AssemblyPart> = (0..blocks.len())

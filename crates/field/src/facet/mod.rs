@@ -564,7 +564,6 @@ fn cells(grid: &Grid, mut cells: Vec<[usize; 3]>) -> Vec<Box3> {
     cells.into_iter().map(|c| grid.cell(c)).collect()
 }
 
-/// Attributes of the patch of a leaf.
 pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
     let kind = leaf.primitive.form().name();
     let name = leaf.attributes.name.clone().unwrap_or_else(|| kind.to_owned());

@@ -29,7 +29,6 @@ pub(super) struct VertexPlacer<'a> {
     pub(super) registers: &'a mut Vec<f64>,
 }
 
-/// Vertices of a piece of surface.
 pub(super) enum PieceVertices {
     /// One vertex, on these surfaces; `blunt` if it should be on more, `creased` if one of them has an edge of its own.
     One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool, creased: bool },

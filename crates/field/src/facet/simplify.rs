@@ -108,7 +108,6 @@ impl Simplifier<'_> {
         a.iter().filter(|x| b.contains(x)).count() == 2
     }
 
-    /// The normal of a leaf at a vertex.
     fn normal(&self, v: u32, leaf: u32) -> Vec3 {
         let k = self.surfaces[v as usize].iter().position(|&s| s == leaf);
         k.map_or_else(Vec3::zero, |k| self.normals[v as usize][k])

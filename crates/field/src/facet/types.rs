@@ -51,7 +51,6 @@ pub(super) const SIDE: usize = 8;
 pub(super) struct EdgeCrossing {
     /// Lattice position of the edge's start, within the block.
     pub(super) at: [u8; 3],
-    /// Axis of the edge.
     pub(super) axis: u8,
     /// True if the edge points from solid to air.
     pub(super) outward: bool,
@@ -92,7 +91,6 @@ pub struct Unresolved {
     pub(super) solid: bool,
 }
 
-/// Facets of one block.
 #[derive(Clone, Debug)]
 pub(super) struct FacetBlock {
     /// Position in blocks.
@@ -188,7 +186,6 @@ impl FacetBlock {
         (self.signs[k] & 1 == 1) != (self.joins[k] >> (2 * axis) & 1 == 1)
     }
 
-    /// The case of a cell.
     pub(super) fn case(&self, cell: [usize; 3]) -> &'static Case {
         case(self.signs[cell_index(cell)], self.joins[cell_index(cell)])
     }

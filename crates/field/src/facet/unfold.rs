@@ -76,7 +76,6 @@ pub(super) struct FoldedRegion<'a> {
     gone: FxHashSet<usize>,
     /// Vertices of changed triangles, with the number of the last change.
     touched: FxHashMap<u32, usize>,
-    /// Number of changes.
     changes: usize,
 }
 

@@ -22,7 +22,6 @@ use std::sync::Arc;
 
 /// Boxes may be halved this often at most.
 const DEEPEST: u32 = 12;
-/// The most cells of brackets.
 const MOST_CELLS: usize = 30_000_000;
 /// Cells of the bracket that every best value is checked by.
 const CHECK: usize = 3000;

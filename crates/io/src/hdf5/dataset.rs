@@ -5,7 +5,6 @@ use super::bytes::{Cursor, fault};
 use super::header::{self, Message};
 use crate::ReadError;
 
-/// The numbers of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StoredNumbers {
     /// Extents, the last running fastest.
@@ -14,7 +13,6 @@ pub(crate) struct StoredNumbers {
     pub values: Vec<f64>,
 }
 
-/// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct NumberType {
     /// 0 whole, 1 real, 3 text.

@@ -26,7 +26,6 @@ const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 /// Objects that a file may have; links in a circle end there.
 const MOST_OBJECTS: usize = 1 << 20;
 
-/// A file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hdf5File<'a> {
     /// All bytes from the superblock on: addresses count from there.

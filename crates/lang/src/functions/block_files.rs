@@ -15,7 +15,6 @@ pub(crate) struct NamedBlock {
     pub faces: FaceNames,
 }
 
-/// Kinds of boundaries.
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
 
@@ -40,7 +39,6 @@ pub struct CgnsBlocks {
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
-/// Connections of blocks.
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,

@@ -325,7 +325,6 @@ macro_rules! elementary {
         unary { $($u:literal, $u_doc:literal, $u_example:literal, $u_f:expr;)* }
         binary { $($b:literal, $b_doc:literal, $b_example:literal, $x:literal, $y:literal, $b_f:expr;)* }
     ) => {
-        /// The elementary function of that name.
         pub(crate) fn elementary<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
             Some(match name {
                 $($u => ($u, Elementary::Unary($u_f)),)*

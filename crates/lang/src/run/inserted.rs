@@ -16,7 +16,6 @@ pub struct InsertedFile {
     pub(crate) content: Content,
 }
 
-/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Content {
     Component,

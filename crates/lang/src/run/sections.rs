@@ -12,7 +12,6 @@ use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, ExprKind, NodeList, Subscript};
 use smallvec::SmallVec;
 
-/// Meaning of subscripts.
 enum Subscripted {
     Section(ArraySection),
     Chosen(Chosen),

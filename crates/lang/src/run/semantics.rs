@@ -84,7 +84,6 @@ pub(crate) struct Semantics<'a> {
     found: Vec<Diagnostic>,
 }
 
-/// Scope of a statement.
 struct JudgedScope<'a> {
     m: &'a Module,
     module: usize,

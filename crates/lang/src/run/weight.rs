@@ -219,7 +219,6 @@ pub fn member<T: Scalar>(object: &Object<T>, word: &str) -> Option<Value<T>> {
     })
 }
 
-/// The rows of this module.
 pub(crate) fn rows() -> [Row; 2] {
     [<Weight<f64> as StaticRow>::row(), <WeightSum<f64> as StaticRow>::row()]
 }

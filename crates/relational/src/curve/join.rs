@@ -98,7 +98,6 @@ fn whole<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<(), CallError> {
     }
 }
 
-/// The first edge.
 struct JoinedEdge<T: Real> {
     first: CurveRef<T>,
 }

@@ -100,7 +100,6 @@ pub(super) fn on_guide([a, b, c, d]: &Guide, y: f64) -> [Vec3; 3] {
     ]
 }
 
-/// A polynomial in powers of y and its derivative.
 pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
     let (mut value, mut slope) = (S::zero(), S::zero());
     for p in powers.iter().rev() {
@@ -110,7 +109,6 @@ pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
     [value, slope]
 }
 
-/// Approximate unknowns at `y`.
 pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
     let mut q = places[NODES - 1];
     for p in places[..NODES - 1].iter().rev() {

@@ -39,7 +39,6 @@ pub struct IntPoint<T: Real> {
     near: Option<Point<T>>,
 }
 
-/// One of the shapes.
 enum IntersectedShape<T: Real> {
     Surface(SurfaceRef<T>),
     Plane(Plane<T>),

@@ -92,7 +92,6 @@ fn between(a: &TracePoint, b: &TracePoint, y: f64) -> Unknowns {
     })
 }
 
-/// The matrix of [`to_powers`].
 type Matrix = [[f64; NODES]; NODES];
 
 impl PieceFit {

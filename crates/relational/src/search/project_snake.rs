@@ -434,7 +434,6 @@ impl<T: Real> ProjectedPath<T> {
         }
     }
 
-    /// The unknowns at plain `t`.
     fn unknowns(&self, t: f64) -> [f64; 3] {
         let table = self.table.get_or_init(|| {
             let mut ends = vec![0.0];

@@ -748,7 +748,6 @@ fn in_range(
     }
 }
 
-/// A fault of a dimension in words.
 pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
     let (kind, names, value): (_, Vec<&String>, _) = match fault {
         DimensionFault::Redundant { name, path } => {

@@ -254,7 +254,6 @@ fn add_curve(
     name
 }
 
-/// A full turn.
 pub(crate) const TURN: f64 = TAU;
 
 /// Adds strokes to a drawing, ends within `tolerance` being one point; the numbers of new points and

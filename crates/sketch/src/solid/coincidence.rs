@@ -65,7 +65,6 @@ pub(super) fn rates<T: Real>(part: impl Fn(usize) -> Vec3) -> Vec3<T> {
     Vec3::new(T::from_parts(|k| all[k].x), T::from_parts(|k| all[k].y), T::from_parts(|k| all[k].z))
 }
 
-/// A part of a vector.
 pub(super) fn part<T: Real>(v: Vec3<T>, k: usize) -> Vec3 {
     Vec3::new(v.x.part(k), v.y.part(k), v.z.part(k))
 }

@@ -526,7 +526,6 @@ fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, 
     x.map_err(|no| NoBody::NoValue(no.name))
 }
 
-/// Number of copies.
 fn copies<T: Real>(layout: &DimensionLayout<T>, count: &DimensionExpr) -> Result<usize, NoBody> {
     let n = number(layout, count)?.re();
     let whole = n.fract() == 0.0 && (1.0..=f64::from(MAX_COPIES)).contains(&n);

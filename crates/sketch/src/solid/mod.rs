@@ -90,7 +90,6 @@ pub struct IntersectionEdge<T> {
 pub struct Trim<T> {
     /// Its surface.
     pub surface: FaceSurface<T>,
-    /// The face.
     pub(crate) face: usize,
 }
 
@@ -178,7 +177,6 @@ pub struct SketchSolid<T> {
     steps: BTreeMap<usize, u32>,
 }
 
-/// A corner to be replaced.
 struct RoundedCorner<T> {
     curve: usize,
     ends: [PointId; 2],
@@ -917,7 +915,6 @@ impl<T: Real> SketchSolid<T> {
         nodes
     }
 
-    /// The surface of a round face.
     pub(crate) fn surface(&self, face: usize) -> Option<FaceSurface<T>> {
         let f = &self.faces[face];
         if let Some(trim) = f.trim {

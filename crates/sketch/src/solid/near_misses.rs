@@ -127,7 +127,6 @@ struct Element<'a, T> {
     operand: usize,
     stratum: Stratum<'a, T>,
     corners: Vec<Vec3>,
-    /// The middle of its corners.
     middle: Vec3,
     /// Its unit normal, or direction of a side.
     way: Vec3,
@@ -484,7 +483,6 @@ fn between(through: &[(f64, Vec3); 4], s: f64) -> Vec3 {
     })
 }
 
-/// True for a straight piece.
 fn straight<T: Real>(piece: Option<&SmoothPiece<T>>) -> bool {
     match piece {
         Some(SmoothPiece::Cubic(p)) => {

@@ -4,7 +4,6 @@ use super::pool::Pool;
 use super::{Facet, edges_of};
 use moldloft_num::Vec3;
 
-/// Coordinates in a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneCoordinates {
     pub normal: Vec3,

@@ -116,7 +116,6 @@ struct Parser {
     tokens: Vec<Token>,
     at: usize,
     program: Program,
-    /// Height of each expression.
     heights: Vec<u16>,
     diagnostics: Vec<Diagnostic>,
     /// Faults beyond the limit.
