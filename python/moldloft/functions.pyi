@@ -5446,7 +5446,7 @@ def refined(
 def refined_step(
     *args: object,
 ) -> Expr:
-    """A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
+    """A step per index consistent with refined(n): halved at each refinement; of d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
 
     Called as `refined_step(ds)`.
 
@@ -5525,7 +5525,7 @@ def write_vts(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+        Arrays to write; a list stands for its members.
 
     Returns
     -------
@@ -5568,7 +5568,7 @@ def plot(
 def write_stl(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; "flip" reverses the normals.
+    """Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; "flip" reverses the normals.
 
     Called as `write_stl(name, words, s1, s2, ...)`.
 
@@ -5579,7 +5579,7 @@ def write_stl(
     words : text, optional
         "flip" reverses the normals.
     s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+        Arrays to write; a list stands for its members.
 
     Returns
     -------
@@ -5595,7 +5595,7 @@ def write_stl(
 def write_cgns(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.
+    """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.
 
     Called as `write_cgns(name, s1, s2, ...), write_cgns(name, b1, "k1 = hull wall", b2, ...)`.
 
@@ -5604,7 +5604,7 @@ def write_cgns(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+        Arrays to write; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
         faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
@@ -5633,7 +5633,7 @@ def write_su2(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list counts as its members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5653,7 +5653,7 @@ def write_su2(
 def write_gmsh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.
+    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, of surfaces one physical curve.
 
     Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
@@ -5662,7 +5662,7 @@ def write_gmsh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list counts as its members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5691,7 +5691,7 @@ def write_blockmesh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list counts as its members.
+        Blocks, or surfaces in one plane; a list stands for its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
