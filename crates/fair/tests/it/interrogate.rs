@@ -108,7 +108,7 @@ fn circles_have_one_piece_at_any_places() {
             assert!((4..=5).contains(&found), "{wide} {n}: {found}");
             let jitter = &mut |k| if k == 0 || k == n { 0.0 } else { 0.7 * random.centred() };
             let found = oval(wide, n, jitter);
-            // With so few points an oval this round cannot be told from a circle.
+            // With so few points an oval this round cannot be distinguished from a circle.
             let least = if wide < 1.1 && n < 40 { 1 } else { 4 };
             assert!((least..=7).contains(&found), "{wide} {n}, jitter: {found}");
         }
