@@ -23,7 +23,6 @@ fn inside<T: Real>(parameters: &[T], field: FieldId) -> Result<(), CallError> {
         .in_field(field))
 }
 
-/// Positions on a curve at many parameters.
 fn positions<T: Real>(curve: &CurveRef<T>, parameters: &[T]) -> Vec<Vec3<T>> {
     if parameters.iter().all(|t| t.is_constant()) {
         let ts: Vec<f64> = parameters.iter().map(|t| t.re()).collect();

@@ -431,7 +431,7 @@ fn through<T: Real>(
         .map_err(|error| crate::spline::fault(error, "point", [field, field]))?
         .ok_or_else(|| match budget.poll() {
             Err(spent) => fault(spent.into(), field),
-            Ok(()) => unreachable!("what is spent stays so until the run has ended"),
+            Ok(()) => unreachable!("a spent budget stays spent until the run has ended"),
         })
 }
 
@@ -566,7 +566,6 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     }
 }
 
-/// The plane of a curve.
 struct InPlane<T> {
     normal: Vec3<T>,
 }

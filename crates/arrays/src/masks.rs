@@ -96,9 +96,12 @@ impl<T: Scalar> Build<T> for Where<T> {
                 crate::value::vectors(shape, picked(mask, &a, &b))
             }
             _ => {
-                return Err(CallError::new("wrong-class", "numbers and vectors are no choice")
-                    .expected("numbers in both places, or vectors in both")
-                    .in_field(Self::B));
+                return Err(CallError::new(
+                    "wrong-class",
+                    "a choice between numbers and vectors is not possible",
+                )
+                .expected("numbers in both arguments, or vectors in both")
+                .in_field(Self::B));
             }
         })
     }
@@ -217,9 +220,12 @@ impl<T: Scalar> Build<T> for Find<T> {
                     .in_field(Self::PART));
             }
             (_, Some(_)) => {
-                return Err(CallError::new("unused-argument", "a part goes with a text")
-                    .expected("a text, or a mask alone")
-                    .in_field(Self::PART));
+                return Err(CallError::new(
+                    "unused-argument",
+                    "a part can be found in a text only",
+                )
+                .expected("a text, or a mask alone")
+                .in_field(Self::PART));
             }
             (_, None) => {}
         }

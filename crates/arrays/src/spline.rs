@@ -107,7 +107,6 @@ fn condition<T>(name: EndCondition, slope: Vec3<T>) -> End<T> {
     }
 }
 
-/// Parameter of a spline.
 #[derive(Clone, Copy, PartialEq)]
 struct SplineParametrization {
     law: Parametrization,

@@ -5,10 +5,10 @@ use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A place, the axis through it and the direction of angle 0.
+/// A point, the axis through it and the direction of angle 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceAxes {
-    /// The place.
+    /// The point.
     pub origin: Vec3,
     /// The unit vector along the axis.
     pub z: Vec3,

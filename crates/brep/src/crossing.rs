@@ -121,7 +121,7 @@ fn bezier(piece: Piece) -> ([Vec3; 4], f64) {
     ([p, p + s * (length / 3.0), q - t * (length / 3.0), q], length)
 }
 
-/// The crossing from the first place of a guide to its last, which are on both surfaces, near the others: as a spline
+/// The crossing from the first point of a guide to its last, which are on both surfaces, near the others: as a spline
 /// within the accuracy of both surfaces.
 pub fn crossing(
     surfaces: [&SurfaceShape; 2],

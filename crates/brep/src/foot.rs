@@ -47,7 +47,7 @@ pub fn foot(
         if best.0 <= on {
             break;
         }
-        // Surfaces that touch are one within the accuracy in a whole strip: the nearest place of it will do, and
+        // Surfaces that touch are one within the accuracy in a whole strip: the nearest point of it suffices, and
         // others may be on another branch of their intersection.
         let touching = touch(&rows);
         if touching && best.0 <= NEAR_ENOUGH * accuracy {

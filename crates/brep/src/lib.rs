@@ -97,7 +97,7 @@ pub struct Coedge {
     pub forward: bool,
     /// The same curve in the parameters (u, v, 0) of the surface, where it is known; of planes it is not.
     pub trace: Option<Nurbs<1>>,
-    /// True when the trace is at the edge's place at equal parameters.
+    /// True when trace and edge agree at equal parameters.
     pub alike: bool,
 }
 

@@ -328,7 +328,6 @@ fn turned_image(
     made
 }
 
-/// The point of three planes.
 fn on_planes(normals: [Vec3; 3], points: [Vec3; 3]) -> Option<Vec3> {
     let [a, b, c] = normals;
     let det = a.dot(b.cross(c));

@@ -23,10 +23,10 @@ type BernsteinRow = [f64; MOST + 1];
 /// A surface's function and its gradient at a point, by the number of the surface.
 pub type SurfaceField<'a> = dyn Fn(u32, Vec3) -> (f64, Vec3) + Sync + 'a;
 
-/// Polynomials of one degree through points at fixed places.
+/// Polynomials of one degree through points at fixed parameters.
 pub struct PatchBasis {
     pub degree: usize,
-    /// The places: denser towards the ends.
+    /// The parameters: denser towards the ends.
     pub at: Vec<f64>,
     /// Control points of the values there.
     inverse: Vec<Vec<f64>>,

@@ -46,7 +46,7 @@ const DEGREES: [usize; 2] = [3, 5];
 const FINE: f64 = 3e-8;
 
 impl Brep {
-    /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; gives places on
+    /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; returns points on
     /// them. With `whole` its cylinders and cones are whole faces, else patches as well; with `patient` more rounds of
     /// halving are tried, and less is corrected.
     ///

@@ -29,7 +29,7 @@ pub struct FacetNet {
     neighbours: Vec<[u32; 3]>,
     /// The plane of each cut side, by its vertices in order.
     pub seams: BTreeMap<(u32, u32), u32>,
-    /// Vertices whose places are known.
+    /// Vertices with known positions.
     pub fixed: BTreeMap<u32, Vec3>,
 }
 
@@ -332,7 +332,7 @@ impl FacetNet {
             let near = away.iter().map(|a| wrapped(a - u).abs()).fold(PI, f64::min);
             (crossings.count(), near)
         };
-        // No simple angles: they go through vertices.
+        // No simple angles: the cuts would pass through vertices.
         let all = (0..CHOICES).map(|k| 0.013_77 + TAU * k as f64 / CHOICES as f64);
         let best = all
             .map(|u| (figure(u), u))

@@ -9,7 +9,6 @@ use moldloft_spline::nurbs::Nurbs;
 /// The image of a surface: a point of coordinates (x, y, z) of it is at `centre` + x X + y Y + z Z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceImage {
-    /// The surface.
     of: SurfaceShape,
     /// The image of the origin.
     centre: Vec3,
@@ -237,7 +236,7 @@ mod tests {
         brep
     }
 
-    /// All corners of edges and places of surfaces are on the images.
+    /// All corners of edges and points of surfaces are on the images.
     fn check(brep: &Brep, volume: f64, faces: usize) {
         assert_eq!(brep.faces.len(), faces);
         let found = brep.volume().unwrap();

@@ -34,7 +34,6 @@ enum Repair {
     Flip(u32, u32),
     /// The first vertex becomes the second.
     Collapse(u32, u32),
-    /// The vertex moves.
     Move(u32, Vec3),
 }
 
@@ -310,7 +309,7 @@ impl PatchedBody<'_> {
         (high >= low.min(LEAST)).then_some(Repair::Collapse(v, nearest))
     }
 
-    /// A place between the neighbours of a vertex, on its surfaces.
+    /// A point between the neighbours of a vertex, on its surfaces.
     fn smoothed(&self, tangle: &Tangle, v: u32) -> Option<Vec3> {
         let labels = tangle.labels_of(v);
         let neighbours = match labels.len() {

@@ -195,7 +195,7 @@ fn clear_plane(
         let off = |v: &u32| (net.positions[*v as usize] - *origin).dot(*normal).abs();
         corners.iter().map(off).fold(f64::INFINITY, f64::min)
     };
-    // No simple angles: they go through vertices.
+    // No simple angles: the cuts would pass through vertices.
     let all = (0..CHOICES).filter_map(|k| surface.plane(0.013_77 + PI * k as f64 / CHOICES as f64));
     let all: Vec<((Vec3, Vec3), f64)> = all.map(|plane| (plane, far(&plane))).collect();
     // The first of those that are clear enough: the same one for the same body.

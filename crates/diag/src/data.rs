@@ -2,7 +2,8 @@
 
 use crate::{Diagnostic, Label, Sources, Span};
 
-/// A labelled place with file name, lines and columns (from 1; columns in characters; the end is exclusive).
+/// A labelled span with file name, lines and columns (from 1; columns in characters; the end is
+/// exclusive).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LabelData {
     /// Shown name of the file.
@@ -39,9 +40,9 @@ pub struct DiagnosticData {
     pub severity: &'static str,
     /// The message.
     pub message: String,
-    /// The place at fault.
+    /// The span at fault.
     pub primary: Option<LabelData>,
-    /// Other places that explain it.
+    /// Other spans that explain it.
     pub secondary: Vec<LabelData>,
     /// Expected input.
     pub expected: Option<String>,
@@ -60,7 +61,7 @@ pub struct DiagnosticData {
 }
 
 impl Diagnostic {
-    /// The same facts with all places resolved.
+    /// The same facts with all spans resolved.
     pub fn to_data(&self, sources: &Sources) -> DiagnosticData {
         let label = |label: &Label| place(label.span, &label.text, sources);
         DiagnosticData {

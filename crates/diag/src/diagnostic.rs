@@ -33,7 +33,7 @@ impl fmt::Display for Severity {
     }
 }
 
-/// A place with a few words about it; the words may be empty.
+/// A span with a few words about it; the words may be empty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Label {
     /// Position.
@@ -62,9 +62,9 @@ pub struct DiagnosticFields {
     pub severity: Severity,
     /// A self-contained line: lower case, no full stop.
     pub message: String,
-    /// The place at fault.
+    /// The span at fault.
     pub primary: Option<Label>,
-    /// Other places that explain it.
+    /// Other spans that explain it.
     pub secondary: Vec<Label>,
     /// Expected input.
     pub expected: Option<String>,
@@ -251,7 +251,7 @@ impl Diagnostic {
         self.0.severity == Severity::Error
     }
 
-    /// The place at fault, or the unknown place.
+    /// The span at fault, or the unknown span.
     pub fn span(&self) -> Span {
         self.0.primary.as_ref().map_or(Span::UNKNOWN, |label| label.span)
     }

@@ -12,7 +12,8 @@ const MOST_LINES: u32 = 8;
 
 /// The diagnostic as text with its source lines, ending with a line end.
 ///
-/// A place that spans several lines is marked from its first to its last; one of more than eight lines on its first alone.
+/// A span of several lines is marked from its first to its last; one of more than eight lines on
+/// its first alone.
 pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let expectation = diagnostic.expectation();
     let primary = diagnostic.primary.as_ref().map(|label| {
@@ -88,7 +89,7 @@ pub fn render_all<'a>(
     texts.join("\n")
 }
 
-/// A label whose place exists.
+/// A label whose span exists.
 struct MarkedPlace<'a> {
     label: &'a Label,
     kind: AnnotationKind,
@@ -292,7 +293,7 @@ warning[shapes-differ]: shapes differ
         );
     }
 
-    /// Any places in any text: marks within the text or past it, inside of characters, at line ends.
+    /// Any spans in any text: marks within the text or past it, inside characters, at line ends.
     #[test]
     fn any_place_can_be_printed() {
         let pieces = [

@@ -15,7 +15,7 @@ impl Default for FileId {
     }
 }
 
-/// A half-open range of bytes `start..end` of one source text. The default is the unknown place.
+/// A half-open range of bytes `start..end` of one source text. The default is the unknown span.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// The text.
@@ -27,7 +27,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The place of things that have no source text.
+    /// The span of things that have no source text.
     pub const UNKNOWN: Span = Span { file: FileId::UNKNOWN, start: 0, end: 0 };
 
     /// The bytes `start..end` of `file`.
@@ -35,7 +35,7 @@ impl Span {
         Span { file, start, end }
     }
 
-    /// The empty place before the byte `at`.
+    /// The empty span before the byte `at`.
     pub const fn point(file: FileId, at: u32) -> Self {
         Span { file, start: at, end: at }
     }
@@ -45,7 +45,8 @@ impl Span {
         self.file != FileId::UNKNOWN
     }
 
-    /// The smallest place that covers both; the known one if only one is known, `self` if the files differ.
+    /// The smallest span that covers both; the known one if only one is known, `self` if the files
+    /// differ.
     #[must_use]
     pub fn to(self, other: Span) -> Span {
         if !other.is_known() || (self.is_known() && self.file != other.file) {

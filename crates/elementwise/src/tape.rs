@@ -70,7 +70,6 @@ impl Instr {
     }
 }
 
-/// A source of numbers.
 #[derive(Clone, Debug)]
 enum NumberSource<T: Real> {
     Numbers(Arc<Array<T>>),

@@ -284,7 +284,7 @@ impl Export<'_> {
     /// The panels of the selected patches.
     ///
     /// # Errors
-    /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
+    /// Panels that cannot be made; unknown tags; wires and points, when the format cannot hold
     /// them.
     pub fn panels(&mut self) -> Result<Panels, ExportFailure> {
         let lines = self.lines_and_points();

@@ -8,7 +8,6 @@ use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
 use moldloft_picture::{Options, PatchStyle, PointName, StyledPolyline, render};
 use moldloft_registry::Value;
 
-/// Colour of the subject.
 const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
 /// Colour of its parents.
 const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];

@@ -290,7 +290,6 @@ impl SurfaceFit<'_> {
     }
 }
 
-/// Even parts of [0, 1].
 fn even_parts(count: usize) -> impl Iterator<Item = [f64; 2]> + Clone {
     let at = move |k: usize| k as f64 / count as f64;
     (0..count).map(move |k| [at(k), at(k + 1)])

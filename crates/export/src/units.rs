@@ -13,7 +13,7 @@ pub fn length_unit(document: &Document) -> (String, f64) {
     length.map_or(("m".into(), 1000.0), |(word, _, metres)| (word.into(), MILLIMETRES * metres))
 }
 
-/// In a metre.
+/// Millimetres in a metre.
 const MILLIMETRES: f64 = 1000.0;
 
 /// The unit of a 3MF file with this length in metres; metres if there is none.

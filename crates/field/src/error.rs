@@ -216,8 +216,8 @@ impl fmt::Display for FieldError {
             ),
             Self::NotReached { asked, reached, cells } => write!(
                 f,
-                "with {cells} cells the volume is known to {reached:.3e}, not to the {asked:.3e} asked: ask for that, \
-                 or allow more `cells`"
+                "with {cells} cells the volume is known to {reached:.3e}, not to the required {asked:.3e}: require \
+                 less, or allow more `cells`"
             ),
             Self::Unbounded { axis, sign } => {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);

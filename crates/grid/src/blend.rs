@@ -228,7 +228,6 @@ impl<T: Real> EdgeRows<T> {
         }
     }
 
-    /// Row i of the grid.
     #[inline(always)]
     fn row(&self, i: usize, [along, across]: &[Vec<T>; 2], out: [&mut [T]; 3]) {
         let (m, n) = (self.low[0].len(), self.t.len());

@@ -52,7 +52,7 @@ pub struct Elliptic<'a, T: Real> {
     pub on: Option<(&'a dyn Surface<T>, [Vec<T>; 2])>,
 }
 
-/// Sweeps in one direction before it is the other's turn: rows and columns change places then.
+/// Number of sweeps in one direction before the other's turn: rows and columns are exchanged then.
 const TURN: usize = 2;
 
 /// A smoothed grid.
@@ -222,7 +222,6 @@ impl<T: Real, const L: usize> SmoothedPoints<'_, T, L> {
         }
     }
 
-    /// The planes of the grid.
     fn planes(&self, turned: bool) -> Vec<Vec<T>> {
         match (self, turned) {
             (SmoothedPoints::Free(banks), false) => banks.planes(),
@@ -313,7 +312,7 @@ impl<T: Real> Constraint<'_, T> {
                 let (e, f, g) = (jet.u.norm_sq(), jet.u.dot(jet.v), jet.v.norm_sq());
                 let whole = e * g - f * f;
                 let (a, b) = (jet.u.dot(step) * omega, jet.v.dot(step) * omega);
-                // At a singular place of the surface the point stays.
+                // At a singular point of the surface the point stays.
                 if whole.re() > 1e-12 * (e * g).re() {
                     let inside = |t: T| t.max(T::zero()).min(T::one());
                     u[j] = inside(u[j] + (a * g - b * f) / whole);

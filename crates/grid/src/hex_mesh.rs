@@ -97,7 +97,7 @@ impl HexMesh {
                             if !outer {
                                 continue;
                             }
-                            // Turned over, bottom and top have changed places.
+                            // Turned over, bottom and top are exchanged.
                             let side_now = match (left_handed, side) {
                                 (true, 4) => 5,
                                 (true, 5) => 4,

@@ -80,7 +80,7 @@ pub fn quality_until<T: Real>(
     measured(grid, metric, &|| budget.poll())
 }
 
-/// The metric of each cell, as long as the work may go on.
+/// The metric of each cell, as long as the work is not stopped.
 fn measured<T: Real>(
     grid: &SurfaceGrid<T>,
     metric: QualityMetric,

@@ -265,7 +265,6 @@ fn round_up(x: f64) -> f64 {
     steps.into_iter().map(|s| s * power).find(|&s| s >= x * (1.0 - ROUNDING)).unwrap_or(x)
 }
 
-/// The drawing's place on its sheet.
 struct SheetLayout {
     /// Model coordinates of the drawing's edges, on grid lines: left, right, bottom, top.
     edges: [f64; 4],

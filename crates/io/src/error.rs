@@ -33,14 +33,14 @@ pub enum WriteError {
         /// A patch beyond the plane.
         patch: String,
     },
-    /// The model has something that the format has no place for.
+    /// The model has something that the format cannot hold.
     CannotHold {
         /// The format.
         format: &'static str,
         /// Unsupported content.
         what: &'static str,
     },
-    /// An object is of a dimension that the format has no place for.
+    /// An object is of a dimension that the format cannot hold.
     NoPlace {
         /// The format.
         format: &'static str,
@@ -56,7 +56,7 @@ pub enum WriteError {
         /// A patch with such a panel.
         patch: String,
     },
-    /// The places are too far from the origin for the format's single precision.
+    /// The positions are too far from the origin for the format's single precision.
     Single {
         /// The format.
         format: &'static str,
@@ -157,7 +157,7 @@ impl fmt::Display for WriteError {
 
 impl std::error::Error for WriteError {}
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePosition {
     /// A line of text, from 1.

@@ -62,7 +62,7 @@ impl MeshInProgress {
         }
     }
 
-    /// The mesh; with `weld` points at equal places are one.
+    /// The mesh; with `weld`, points at equal positions are one.
     pub fn built(
         mut self,
         format: &'static str,

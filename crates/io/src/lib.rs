@@ -92,7 +92,7 @@ impl LinesAndPoints {
         self.wires.is_empty() && self.dots.is_empty()
     }
 
-    /// Refuses them, by name, for a format that has no place for them.
+    /// Refuses them, by name, for a format that cannot hold them.
     ///
     /// # Errors
     /// When there are some.

@@ -61,7 +61,6 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(out)
 }
 
-/// The longest header accepted.
 const LONGEST_HEADER: usize = 1 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -344,7 +343,6 @@ impl PlyBody<'_> {
         })
     }
 
-    /// The length of a list.
     fn length(&mut self, scalar: PlyScalar, element: &str, k: usize) -> Result<usize, ReadError> {
         let length = self.number(scalar, element, k)?;
         let most = self.rest.len();

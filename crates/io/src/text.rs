@@ -149,7 +149,6 @@ pub(crate) fn lines_text<'a>(
     Ok(text_of(bytes))
 }
 
-/// The bytes as text.
 pub(crate) fn utf8<'a>(bytes: &'a [u8], format: &'static str) -> Result<&'a str, ReadError> {
     std::str::from_utf8(bytes).map_err(|e| ReadError {
         format,

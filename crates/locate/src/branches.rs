@@ -51,7 +51,7 @@ const MOST_STEPS: usize = 12;
 /// With more touches than this the shapes touch along a line, or are the same.
 const MOST_TOUCHES: usize = 64;
 
-/// A place where two shapes touch without crossing.
+/// A point where two shapes touch without crossing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// The unknowns there.
@@ -194,7 +194,6 @@ impl CellPart {
     }
 }
 
-/// A node of a tree in a search.
 #[derive(Clone, Copy)]
 struct TreeNode<'a> {
     /// Number of a fork, or of a cell with [`LEAF`] added.
@@ -332,7 +331,6 @@ impl Crossing<'_> {
     }
 }
 
-/// The root of a tree and its box.
 fn root(cells: &Cells) -> (u32, &Box3) {
     (if cells.forks.is_empty() { LEAF } else { 0 }, &cells.tree.bounds)
 }
@@ -733,7 +731,7 @@ fn bins_between(a: f64, b: f64) -> std::ops::Range<usize> {
 }
 
 impl Crossing<'_> {
-    /// The place near `guess` where the shapes have one tangent plane and one is straight above the
+    /// The point near `guess` where the shapes have one tangent plane and one is straight above the
     /// other, if they touch there.
     fn contact(&self, guess: Unknowns, ranges: &[[f64; 2]; 4]) -> Option<Touch> {
         let n = self.unknowns();

@@ -22,7 +22,6 @@ const COARSE_BEND: f64 = 0.12;
 pub(crate) const MOST_HALVINGS: u32 = 6;
 const MOST_CELLS: usize = 1 << 17;
 
-/// The polynomial of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolynomialPiece {
     /// Its parameters on the surface.

@@ -31,10 +31,9 @@ const MOST_NEAREST: usize = 20_000;
 /// Relative difference of distances below which a pair of points is not nearer.
 const NEARER: f64 = 1e-12;
 
-/// The most steps of a descent.
 const MOST_STEPS: u32 = 40;
 
-/// A place at which the distance is least in a rectangle of parameters.
+/// A point at which the distance is least in a rectangle of parameters.
 struct LeastPlace {
     at: [f64; 2],
     distance: f64,
@@ -46,7 +45,7 @@ struct LeastPlace {
 enum PairVerdict {
     /// The least distance is that of a neighbouring pair.
     Elsewhere,
-    /// There is one least place at most.
+    /// There is at most one such point.
     One,
     Unknown,
 }

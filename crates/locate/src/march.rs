@@ -96,7 +96,7 @@ impl Branch {
 /// The most steps of a branch.
 const MOST_STATIONS: usize = 20_000;
 
-/// A place at which the sine of the angle is less than this begins no branch.
+/// No branch begins at a point where the sine of the angle is less than this.
 pub(crate) const TANGENT: f64 = 1e-5;
 
 /// Length of a step, relative to the size, after which the error (its square) is below rounding.
@@ -392,7 +392,7 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// The place that a Newton step leads to, and how long it is in space.
+    /// The result of a Newton step, and the length of the step in space.
     #[inline(always)]
     fn next(&self, q: Unknowns, view: &MarchResidual, d: Vec3) -> Option<(Unknowns, f64)> {
         let ([p, u, v], n) = (view.j, view.normal);
@@ -811,7 +811,8 @@ impl<'a> Crossing<'a> {
     }
 }
 
-/// The place a step on from two stations: their cubic by the length, carried on. Also in space.
+/// The point a step beyond two stations, by extrapolation of their cubic in the length. Also in
+/// space.
 #[inline(always)]
 fn onward(a: &TracePoint, b: &TracePoint, step: f64, sign: f64) -> (Unknowns, Vec3) {
     // A chord of turn w is shorter than its arc by w^2 / 24, the path along a tangent by w^2 / 6.

@@ -23,7 +23,6 @@ const FARTHEST: f64 = 1e60;
 /// surface are equally near.
 const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
 
-/// The most feet that are distinguished.
 const MOST_FEET: usize = 256;
 
 /// The point whose nearest one is searched.
@@ -431,7 +430,8 @@ pub(crate) fn on_crease(
         m.dot(n)
     };
     let axis = usize::from(bent(1) < bent(0));
-    // The place on the crease at a value of the other parameter, where it is, and the crease's tangent.
+    // The point on the crease at a value of the other parameter: parameters, position, and the
+    // crease's tangent.
     let place = |q: [f64; 2]| -> Option<([f64; 2], Vec3, Vec3)> {
         let [(mut low, m), (mut high, n)] = sides(q, axis, CREASE_WITHIN);
         if m.dot(n) > CREASE || m == Vec3::zero() || n == Vec3::zero() {

@@ -454,7 +454,7 @@ fn mark_smooth(cells: &mut [(BezierPatch, [f64; 2])], columns: usize, size: f64)
     }
 }
 
-/// The k-th sample place of a span: the nodes first.
+/// The k-th sample parameter of a span: the nodes first.
 fn place(span: [f64; 2], k: usize) -> f64 {
     along(span, if k < 4 { NODES[k] } else { BETWEEN[k - 4] })
 }

@@ -26,7 +26,6 @@ fn slope(a: &Row, b: &Row, by: f64) -> Row {
     out
 }
 
-/// a + s b.
 #[inline(always)]
 fn plus(a: &Row, b: &Row, by: f64) -> Row {
     let mut out = [0.0; 8];

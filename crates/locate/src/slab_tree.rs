@@ -161,7 +161,7 @@ impl<'a> Sight<'a> {
         self.place().cell as usize
     }
 
-    /// True when the surfaces go on beyond both in the same direction.
+    /// True when the surfaces continue beyond both in the same direction.
     #[inline(always)]
     pub fn smooth(&self, o: &Sight) -> bool {
         self.place().smooth && o.place().smooth
@@ -197,7 +197,6 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The plates of a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Plates {
     /// The pieces' first, in their order.

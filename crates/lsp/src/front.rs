@@ -30,7 +30,6 @@ const EXIT_TIMEOUT: Duration = Duration::from_secs(10);
 enum FrontEvent {
     Editor(Message),
     EditorGone,
-    /// A message of the engine of that number.
     Engine(u32, Message),
     EngineGone(u32),
 }
@@ -44,7 +43,6 @@ pub struct EngineCommand {
     pub arguments: Vec<OsString>,
 }
 
-/// The engine that is running.
 struct EngineProcess {
     number: u32,
     child: Child,
@@ -63,7 +61,7 @@ impl EngineProcess {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
-        let taken = "a pipe was asked for";
+        let taken = "a pipe was requested";
         let input = BufWriter::new(child.stdin.take().expect(taken));
         let mut output = BufReader::new(child.stdout.take().expect(taken));
         // The engine may not write files, which standard error may be.

@@ -49,7 +49,6 @@ pub struct Ran {
 pub struct OpenDocument {
     pub text: String,
     version: Option<i32>,
-    /// Number of changes.
     changes: u64,
     /// Other texts that diagnostics of this one were reported for.
     reported: Vec<String>,

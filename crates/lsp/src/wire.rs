@@ -11,7 +11,6 @@ use std::thread::JoinHandle;
 /// The longest message of an editor, in bytes.
 const LONGEST: u64 = 512 << 20;
 
-/// The longest line of a header.
 const LONGEST_LINE: u64 = 8 << 10;
 
 /// A connection, and the thread that writes its messages.

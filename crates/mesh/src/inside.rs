@@ -24,7 +24,8 @@ pub struct InnerSkin {
 /// Number of panels of a piece that are tested.
 const PLACES: usize = 48;
 
-/// A place round which a piece winds more than this is inside it: no place on a skin is, but in a sharp hollow.
+/// A point about which a piece winds more than this is inside it: no point on a skin is, except in
+/// a sharp hollow.
 const INSIDE: f64 = 0.9;
 
 /// A piece of the skin, with its mirror images where these touch it.
@@ -35,7 +36,6 @@ struct SkinPiece {
     places: Vec<Vec3>,
     bounds: Box3,
     open: bool,
-    /// The piece whose image it is.
     image_of: Option<usize>,
 }
 

@@ -640,7 +640,8 @@ impl<T: Scalar> Run<'_, T> {
             if self.extent == Extent::Whole {
                 let children = std::mem::take(&mut object.children);
                 self.graph.remove(&[key]);
-                // They were declared on the old object; in this run they come again or go.
+                // They were declared on the old object; this run declares them again or removes
+                // them.
                 for child in children {
                     if let Some(child) = &mut self.graph.objects[child.0 as usize] {
                         child.parents.retain(|p| *p != key);
@@ -654,7 +655,7 @@ impl<T: Scalar> Run<'_, T> {
         object.origin = origin;
         if self.extent == Extent::Whole {
             if object.order != order {
-                // Meshes go by the order of declaration.
+                // Meshes follow the order of declaration.
                 object.order = order;
                 self.graph.last_change = clock;
             }

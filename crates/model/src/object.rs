@@ -76,7 +76,7 @@ pub struct Object<T: Scalar> {
     pub parents: SmallVec<[Key; 4]>,
     /// Direct dependants.
     pub children: Vec<Key>,
-    /// Its place in the order of declaration.
+    /// Its index in the order of declaration.
     pub order: u32,
     /// Result of its evaluation.
     pub state: State<T>,

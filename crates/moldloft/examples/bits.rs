@@ -40,7 +40,7 @@ fn of(mut document: Document, formats: &[&str]) -> String {
     let mut hash = Hash::new();
     let mut reported = String::new();
     for fault in document.diagnostics() {
-        // Ids and places: words may be improved.
+        // Ids and spans: words may be improved.
         hash.bytes(fault.id.as_bytes());
         if let Some(label) = &fault.primary {
             hash.bytes(&label.span.start.to_le_bytes()).bytes(&label.span.end.to_le_bytes());

@@ -16,7 +16,7 @@ pub struct Fineness {
 /// Maximum ratio of a panel's longest side to the shortest that curvature requires there.
 const MAX_ASPECT: f64 = 6.0;
 
-/// A place with a sine between S_u and S_v below this has no normal.
+/// A point where the sine between S_u and S_v is below this has no normal.
 const NO_NORMAL: f64 = 1e-9;
 
 impl Fineness {

@@ -94,8 +94,8 @@ pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
     })
 }
 
-/// Over which sides of a surface, those of u and of v, its first derivatives go on, to rounding, of those that are
-/// `closed`; they are compared in places.
+/// For u and v: true if `closed` and if the first derivatives are continuous across the seam, to
+/// rounding; they are compared at samples.
 pub fn smooth_seams<T: Real>(surface: &dyn Surface<T>, closed: [bool; 2]) -> [bool; 2] {
     let jet = |axis: usize, end: f64, w: f64| {
         let [u, v] = if axis == 0 { [end, w] } else { [w, end] };

@@ -38,7 +38,7 @@ pub const GAUSS_8_UNIT: [(f64, f64); 8] = [
 /// The most points of a rule.
 pub const MAX_GAUSS_POINTS: usize = 24;
 
-/// The places and weights of the rule of `n` points on [0, 1], `1 <= n <= MAX_GAUSS_POINTS`.
+/// The nodes and weights of the rule of `n` points on [0, 1], `1 <= n <= MAX_GAUSS_POINTS`.
 pub fn gauss_rule(n: usize) -> &'static [(f64, f64)] {
     static RULES: OnceLock<Vec<Vec<(f64, f64)>>> = OnceLock::new();
     let rules = RULES.get_or_init(|| (0..=MAX_GAUSS_POINTS).map(rule).collect());
@@ -76,7 +76,7 @@ pub fn gauss_legendre<T: Real>(a: T, b: T, mut f: impl FnMut(T) -> T) -> T {
     sum * half
 }
 
-/// The places and weights of the 8-point Gauss-Legendre rule on [`a`, `b`], in pairs about the
+/// The nodes and weights of the 8-point Gauss-Legendre rule on [`a`, `b`], in pairs about the
 /// middle.
 pub fn gauss_points(a: f64, b: f64) -> [(f64, f64); 8] {
     let (half, mid) = (0.5 * (b - a), 0.5 * (a + b));

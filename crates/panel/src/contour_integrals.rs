@@ -48,7 +48,7 @@ const MOST_STEPS: usize = 12;
 /// Distance from a knuckle at which its two sides are evaluated.
 const ASIDE: f64 = 1e-4;
 
-/// A place of the line: its parameters, and the grid line that holds it when the model changes.
+/// A node of the line: its parameters, and the grid line that contains it when the model changes.
 #[derive(Clone, Copy)]
 struct ContourNode<T> {
     uv: [T; 2],

@@ -136,7 +136,7 @@ pub(crate) fn drafts<'g>(
     let mut draft = |object: &'g Object<f64>, meshed| {
         let surface = surface_of(object)?.clone();
         let (mut edges, reversed) = (surface.edges(), reversed(graph, object));
-        // Corners that are no point objects go by their own names.
+        // Corners without point objects are named after themselves.
         for (k, corner) in edges.corners.iter_mut().enumerate() {
             *corner = corner.or_else(|| object.key.corner(k));
         }

@@ -24,7 +24,6 @@ pub(crate) struct DivisionRun {
     pub shares: Shares,
 }
 
-/// Division of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum EdgePlan {
     /// From 0 to 1 in one stretch.
@@ -41,7 +40,6 @@ pub(crate) enum EdgePlan {
 pub(crate) trait PatchLookup<T: Real> {
     /// Divisions of the edges of a draft.
     fn plans(&self, draft: u32) -> &[EdgePlan; 4];
-    /// The edges of a draft.
     fn edges(&self, draft: u32) -> Option<&Edges<T>>;
     /// The identity of its surface in this graph.
     fn owner(&self, draft: u32) -> Key;

@@ -31,7 +31,7 @@ const ROUNDS: usize = 6;
 /// Origin of a line or a point, as a number; equal for equal origins.
 type Make = u64;
 
-/// The roots and points that go by other names.
+/// The roots and points with other identities.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Identities {
     roots: HashMap<Root, (Root, bool)>,

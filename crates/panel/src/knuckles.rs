@@ -33,7 +33,7 @@ pub(crate) fn knuckles(surface: &dyn Surface<f64>) -> [Vec<f64>; 2] {
     })
 }
 
-/// The places along a break.
+/// The positions along a break.
 fn trials() -> [f64; TRIALS] {
     std::array::from_fn(|i| (i as f64 + 0.37) / TRIALS as f64)
 }

@@ -82,7 +82,7 @@ impl Orientation {
             patches[first].reversed != against
         };
         let centre = apex(points, free_edges);
-        // The open bodies count as one, in the last place.
+        // The open bodies count as one, the last.
         let mut cones = vec![(0.0, 0.0); patches.len() + 1];
         for (patch, frame) in patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             let sum = &mut cones[self.body(patch)];

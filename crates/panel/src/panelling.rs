@@ -46,7 +46,8 @@ pub fn too_many_panels(count: u64) -> CallError {
         .help("lower the divisions of the surfaces")
 }
 
-/// Refuses a patch with places that are no numbers, such as the limit at a pole that an object does not take.
+/// Refuses a patch with positions that are not finite, such as the limit at a pole that an object
+/// does not take.
 fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
     // Zero times a number is zero, times infinity or NaN it is NaN.
     let sum: f64 = points.iter().map(|p| p.x * 0.0 + p.y * 0.0 + p.z * 0.0).sum();
@@ -58,7 +59,7 @@ fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
     Err(CallError::new("not-finite", message)
         .expected("finite coordinates")
         .found("NaN or infinity")
-        .help("look for edges of no length and tangents of no direction in what it is made of")
+        .help("look for edges of length zero and zero tangents in its parents")
         .help(format!("or hide it: {name}(..., visible = 0)")))
 }
 
@@ -86,7 +87,6 @@ pub struct Panelling {
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<PanelNote>,
     measured: bool,
-    /// The knuckles of the surfaces.
     knuckles: HashMap<Key, Knuckles>,
     /// The graph's last change at that time.
     clock: u64,

@@ -42,7 +42,7 @@ impl MarkSource {
     }
 }
 
-/// A place on a root that some patch ends at.
+/// A point of a root where a patch ends.
 #[derive(Clone, Debug)]
 pub(crate) struct RootPlace {
     /// Lowest and highest parameter under which it is known.
@@ -66,11 +66,11 @@ pub(crate) type RootPlaceId = u32;
 /// The stretch from a mark to the next on its root has the number of the mark.
 pub(crate) type IntervalId = u32;
 
-/// The places of all roots in ascending order, root by root.
+/// The points of all roots in ascending order, root by root.
 #[derive(Debug, Default)]
 pub(crate) struct RootTable {
     ids: HashMap<Root, usize>,
-    /// The first place of each root, and one past the last.
+    /// The index of the first point of each root, and one past the last.
     start: Vec<u32>,
     places: Vec<RootPlace>,
     roots: Vec<Root>,
@@ -84,7 +84,7 @@ pub(crate) struct EdgeInterval {
     pub interval: Option<IntervalId>,
     /// True if the edge has the opposite direction to the root.
     pub backwards: bool,
-    /// The places at its begin and end, in the direction of the edge.
+    /// The points at its beginning and end, in the direction of the edge.
     pub ends: [RootPlaceId; 2],
     /// The edge's parameter at its end.
     pub until: EdgeParameter,
@@ -93,7 +93,6 @@ pub(crate) struct EdgeInterval {
 /// A parameter of an edge, as something that can be had with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EdgeParameter {
-    /// End of a piece.
     Piece(u16),
     /// Inside a piece, at a mark of its root; true for a piece of opposite direction to its root.
     Inside(u16, MarkSource, bool),
@@ -107,7 +106,7 @@ struct RawMark {
 }
 
 impl RootTable {
-    /// All places that edges and corners of the patches mark.
+    /// All points marked by edges and corners of the patches.
     pub fn new(graph: &Graph<f64>, drafts: &[Draft], identities: Identities) -> Self {
         let mut all = Self { identities, ..Self::default() };
         let mut raw = Vec::new();
@@ -232,7 +231,7 @@ impl RootTable {
         self.places.len()
     }
 
-    /// The places.
+    /// The points.
     pub fn places(&self) -> &[RootPlace] {
         &self.places
     }

@@ -323,7 +323,6 @@ impl Panelling {
         first
     }
 
-    /// The open panel edges.
     fn sides(&self, graph: &Graph<f64>) -> Vec<OpenPanelEdge> {
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let open: HashSet<(u32, u32, u32)> = self.joined.free_edges.iter().copied().collect();

@@ -349,7 +349,6 @@ impl TopologySolver<'_, '_> {
         stops
     }
 
-    /// The weights of the parts of a sum.
     fn weights(&self, sum: usize) -> Vec<f64> {
         let PartLengths { patch, lines, ranges } = &self.lengths[sum];
         let weight = |&[from, to]: &[f64; 2]| {

@@ -60,7 +60,6 @@ pub(crate) fn bodies(graph: &Graph<f64>, fineness: Option<&Fineness>) -> Vec<Mes
         .collect()
 }
 
-/// A topology and the bodies after it.
 pub(crate) fn with_bodies(
     base: &Topology,
     bodies: &[MeshedBody],

@@ -4,7 +4,7 @@ use moldloft::diag::{DiagnosticData, LabelData};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A place in a text: lines and columns from 1, the end exclusive.
+/// A span of a text: lines and columns from 1, the end exclusive.
 #[pyclass(frozen, get_all, name = "Label", module = "moldloft")]
 #[derive(Clone)]
 pub struct PyLabel {

@@ -34,7 +34,7 @@ type Answers<'py> = (
     Bound<'py, PyArray1<u8>>,
 );
 
-/// Parameters (n, N), places (n, 3), distances and codes of statuses.
+/// Parameters (n, N), positions (n, 3), distances and codes of statuses.
 fn arrays_of<'py, const N: usize>(
     py: Python<'py>,
     answers: &[Nearest<N>],

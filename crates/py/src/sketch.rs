@@ -65,7 +65,7 @@ impl Files for Disk {
 /// A dimension that the picture suggests: axis, from, to, value, and whether the depth is a guess.
 type Suggested = (String, u32, u32, f64, bool);
 
-/// Subject of a reply: kind, points, lines, faces, names, axis, value, place, suggestion.
+/// Subject of a reply: kind, points, lines, faces, names, axis, value, position, suggestion.
 type About = (
     &'static str,
     Vec<u32>,
@@ -88,7 +88,7 @@ type Answer<'py> = (
     Option<About>,
 );
 
-/// A dimension on the page: name, text, value, whether it only measures, axis, place of the text, dimension line,
+/// A dimension on the page: name, text, value, whether it only measures, axis, position of the text, dimension line,
 /// witness lines.
 type Mark = (
     String,
@@ -260,7 +260,7 @@ impl PySketch {
         self.lock(py).rollback();
     }
 
-    /// The place on the page that a pointer snaps to: u, v, a point, a line with the part of its length, the
+    /// The point of the page to which a pointer snaps: u, v, a point, a line with the part of its length, the
     /// axis of an extension through the point.
     #[allow(clippy::type_complexity)]
     fn snap(

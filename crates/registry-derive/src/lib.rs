@@ -309,7 +309,6 @@ fn field_names(list: &Expr) -> syn::Result<Vec<syn::Ident>> {
     array.elems.iter().map(name).collect()
 }
 
-/// The constant of a field.
 fn constant(field: &syn::Ident) -> syn::Ident {
     syn::Ident::new(&field.unraw().to_string().to_uppercase(), field.span())
 }

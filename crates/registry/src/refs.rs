@@ -89,7 +89,8 @@ impl<T: Real> Point<T> {
         curve.max(self.on_surface.as_ref().map_or(0, |p| p.0.depth))
     }
 
-    /// True when position and places are the same bits and the same shapes.
+    /// True when the positions have the same bits and the parameters belong to the same shapes with
+    /// the same bits.
     pub fn same(&self, o: &Self) -> bool {
         let curves = match (&self.on_curve, &o.on_curve) {
             (Some(a), Some(b)) => a.1.bits_eq(b.1) && a.0.same(&b.0),

@@ -29,7 +29,7 @@ pub struct SearchReport {
     pub start: Vec<f64>,
     /// The parameters it ended with.
     pub last: Vec<f64>,
-    /// Solutions that were not taken: their parameters and places.
+    /// Solutions that were not taken: their parameters and positions.
     pub alternatives: Vec<(Vec<f64>, Vec3)>,
     /// Advice for another solution, or against the warning.
     pub advice: &'static str,

@@ -315,7 +315,7 @@ pub struct Record<T: Real> {
 }
 
 impl<T: Real> Record<T> {
-    /// The place of the member of that name.
+    /// The index of the member of that name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| **own == *name)
     }

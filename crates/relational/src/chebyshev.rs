@@ -4,7 +4,6 @@
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use std::f64::consts::PI;
 
-/// The degree of a polynomial.
 const DEGREE: usize = 16;
 
 /// Number of samples of one polynomial.

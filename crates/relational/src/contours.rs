@@ -6,7 +6,6 @@ use moldloft_registry::{
 };
 use std::sync::Arc;
 
-/// The most sections of one family.
 const MOST_SECTIONS: i64 = 10_000;
 
 /// The values start + i step, for i from first to last; `field` is that of the last.

@@ -233,7 +233,6 @@ impl<T: Real> FoilArguments<T> {
     }
 }
 
-/// A curve that is shared with its object.
 struct Shared<T: Real>(CurveRef<T>);
 
 impl<T: Real> Curve<T> for Shared<T> {
@@ -267,7 +266,6 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
     moldloft_num::curve_one_by_one!(J);
 }
 
-/// The fault of a foil.
 fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
     let text = error.to_string();
     match error {
@@ -282,8 +280,8 @@ fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
         FoilError::Range { name, value, min, max } => {
             let field = match name {
                 "a nose index" => fields.nose_index,
-                "the place of the greatest thickness" => fields.thickness_at,
-                "the place of the greatest camber" => fields.camber_at,
+                "the position of the greatest thickness" => fields.thickness_at,
+                "the position of the greatest camber" => fields.camber_at,
                 _ => fields.load,
             };
             CallError::new("out-of-range", text)

@@ -18,7 +18,7 @@ pub fn normal<T: Real>(magnet: &Magnet<T>) -> Result<Vec3<T>, CallError> {
     let product = product(&jet, [u.re(), v.re()]);
     product.and_then(Vec3::normalized).ok_or_else(|| {
         CallError::new("no-normal", "the surface has no normal there")
-            .expected("a place where the surface has a tangent plane")
+            .expected("a point where the surface has a tangent plane")
             .found(format!("none at (u, v) = ({}, {})", u.re(), v.re()))
             .help("move the magnet off the pole or crease")
             .related(magnet.key, "is there")

@@ -160,7 +160,7 @@ pub enum FeatureKind {
         /// The angle.
         angle: DimensionExpr,
     },
-    /// One body in another place.
+    /// One body at another position.
     Place(Placement),
     /// Copies, each placed as the next from the last, united.
     Pattern {

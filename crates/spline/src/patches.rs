@@ -26,7 +26,6 @@ pub(crate) struct Patches<T> {
 struct Spans {
     /// Start of each span, for the search; the first is minus infinity.
     starts: Vec<f64>,
-    /// Middle of each span.
     middles: Vec<f64>,
     /// The span in which bucket k of equal width begins.
     buckets: Vec<u32>,

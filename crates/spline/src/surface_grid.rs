@@ -119,7 +119,6 @@ impl<T: Real> Linear for Vec3<T> {
     }
 }
 
-/// A weighted point and its weight.
 #[derive(Clone, Copy)]
 struct Weighted<T> {
     p: Vec3<T>,

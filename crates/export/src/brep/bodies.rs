@@ -1,6 +1,7 @@
 //! Bodies of sets as exact faces where these are planes, quadrics with an axis and tori, else as patches.
 //!
-//! `set -> facets, each with its primitive -> faces, edges, vertices -> places on the border of the set?`
+//! `set -> facets, each with its primitive -> faces, edges, vertices -> points on the border of the
+//! set?`
 //!
 //! A body with any other surface, as a blend, has exact plane faces, and patches of splines that are
 //! within the accuracy elsewhere.
@@ -75,7 +76,6 @@ pub fn add(
     Ok(true)
 }
 
-/// The set of a body.
 struct SetOfBody<'a> {
     set: &'a Set,
     over: &'a Box3,
@@ -465,7 +465,8 @@ fn between_one_line(made: &Brep) -> Option<Vec3> {
     Some(made.edges[found.first()?.edge].curve.points[0])
 }
 
-/// A place of the faces' edges, or of triangles moved onto their surfaces, that is not on the border of the set.
+/// A point of the faces' edges, or of triangles moved onto their surfaces, that is not on the
+/// border of the set.
 fn elsewhere(
     made: &Brep,
     set: &Set,
@@ -521,7 +522,7 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
     let of = if surfaces.is_empty() { format!("`{name}`") } else { format!("`{surfaces}`") };
     let what = match fault.kind {
         FacetFaultKind::NotClosed => "has facets that do not close",
-        FacetFaultKind::Seam => "goes round its axis without room for a seam",
+        FacetFaultKind::Seam => "closes around its axis, and no seam fits on it",
         FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
         FacetFaultKind::Vertex => "meet in a corner that is not found",
         FacetFaultKind::Surface => "is none of the surfaces that formats have",

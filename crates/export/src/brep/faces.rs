@@ -59,7 +59,7 @@ const COPIED: f64 = 1e-11;
 
 /// Rigid motion from one surface to another.
 struct RigidMotion {
-    /// A place of each, and axes there.
+    /// A point of each, and axes there.
     origins: [Vec3; 2],
     axes: [[Vec3; 3]; 2],
     /// Points nearer to each other than this are one.
@@ -83,7 +83,7 @@ fn sampled(surface: &dyn Surface<f64>, axes: &[Vec<f64>; 2]) -> Vec<Vec3> {
     out
 }
 
-/// The motion that takes a few places of a surface to those of another, if there is one.
+/// The motion that moves a few points of a surface to those of another, if there is one.
 fn motion(from: &dyn Surface<f64>, to: &dyn Surface<f64>) -> Option<RigidMotion> {
     const FEW: usize = 5;
     if from.joints() != to.joints() {

@@ -202,7 +202,7 @@ pub(crate) fn thin(brep: &Brep, document: &Document) -> Option<Diagnostic> {
     let remark = Diagnostic::warning("thin-faces", message)
         .found(format!("the first near ({:.6}, {:.6}, {:.6})", place.x, place.y, place.z))
         .help(
-            "another `tolerance` may leave none; else check the file in the program that reads it",
+            "another `tolerance` may avoid them; otherwise check the file in the program that reads it",
         );
     Some(remark)
 }

@@ -29,7 +29,7 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
             "curves-in-space",
             format!("edges of `{}` and its like have no curves in the parameters of their surfaces", face.name),
         )
-        .help("programs make these anew, and may read a face that crosses its seam wrongly; STEP holds the same faces")
+        .help("programs recompute these, and may misread a face that crosses its seam; STEP can hold the same faces")
     });
     let reported = [thin(&brep, export.document), fitted(&brep, export.document), in_space];
     let reported = reported.into_iter().flatten().collect();

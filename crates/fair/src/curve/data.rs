@@ -123,7 +123,7 @@ const TOGETHER: f64 = 1e-6;
 /// Merges coincident neighbours: to their mean, with a tolerance within all of theirs.
 ///
 /// # Errors
-/// [`FairError::Coincident`] when no place is within the tolerances of both.
+/// [`FairError::Coincident`] when no point is within the tolerances of both.
 pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merged, FairError> {
     let first = points.first().copied().unwrap_or_default();
     let extent = points.iter().map(|p| (*p - first).norm()).fold(0.0, f64::max);
@@ -579,7 +579,6 @@ impl Data {
         self.rounding().max(1e-8 * mean)
     }
 
-    /// Rounding of the data.
     fn rounding(&self) -> f64 {
         let first = self.points.first().copied().unwrap_or_default();
         let size =
@@ -845,7 +844,7 @@ pub fn fair_data_with<T: Real>(
     if !options.shape.is_empty() || !options.conditions.is_empty() || !options.bends {
         if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
             return Err(FairError::NoDerivative(
-                "derivatives of curves with conditions on their shape, places or inflections are \
+                "derivatives of curves with conditions on their shape, points or inflections are \
                  not known: take the curve without them",
             ));
         }

@@ -351,7 +351,7 @@ mod tests {
         points.iter().map(place).collect()
     }
 
-    /// Uneven places in [0, 1].
+    /// Uneven parameters in [0, 1].
     fn places(n: usize) -> Vec<f64> {
         let mut x = 0.0;
         let all: Vec<f64> = (0..n)

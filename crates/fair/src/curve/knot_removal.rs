@@ -111,7 +111,7 @@ impl KnotRemovalOptions {
     }
 }
 
-/// One step: a control point and its new place.
+/// One step: a control point and its new position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
     /// The control point.
@@ -278,7 +278,7 @@ pub fn knot_removal_from(
         match options.rule {
             Rule::Literal => form,
             Rule::Achievable if check.is_some() && drop(j, points, to) <= 0.0 => 0.0,
-            // Points that want to go beyond their limits tie: the one comes first that wants to go farther,
+            // Points that are wanted beyond their limits tie: the one comes first that wants to go farther,
             // and not the one that rounding prefers.
             Rule::Achievable => {
                 let length = (to - points[j]).norm();

@@ -56,7 +56,7 @@ impl Limit {
         Ok(Self { motion, radii })
     }
 
-    /// The place nearest to `wanted` that point `i`, now at `here` and originally at `original`,
+    /// The position nearest to `wanted` that point `i`, now at `here` and originally at `original`,
     /// may take. For measures that are isotropic in one point this is the exact constrained
     /// minimiser when `wanted` is the free one.
     #[inline]
@@ -165,7 +165,7 @@ fn inside(original: Vec3<f64>, away: Vec3<f64>, radius: f64) -> Vec3<f64> {
     original
 }
 
-/// A finite place, or the one before.
+/// A finite position, or the one before.
 trait Pick {
     fn pick(self, here: Self) -> Self;
 }

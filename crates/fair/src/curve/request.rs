@@ -100,8 +100,7 @@ impl<T: Real> NearCurve<T> {
     }
 }
 
-const MERGED: &str =
-    "derivatives of curves through points of which some are in one place are not known";
+const MERGED: &str = "derivatives of curves through coincident points are not known";
 
 const GATED: &str = "derivatives of a curve that is fairer than its goal so that it bends no more often than the \
                      fairest, or that has conditions against bends, are not known: allow them (bends = 1)";

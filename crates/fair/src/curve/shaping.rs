@@ -89,7 +89,7 @@ struct CollinearPoints {
     points: Vec<usize>,
     /// A direction that is known.
     along: Option<Vec3<f64>>,
-    /// A place on it, where that is known, too.
+    /// A point on it, where one is known, too.
     through: Option<Vec3<f64>>,
     owner: usize,
 }

@@ -50,7 +50,6 @@ pub fn near_budget(points: &[Vec3<f64>], motion: Motion) -> f64 {
     PLANE_BUDGET
 }
 
-/// True if the points are in one plane.
 fn is_plane(points: &[Vec3<f64>]) -> bool {
     let Some(&first) = points.first() else { return true };
     let far = |of: &dyn Fn(Vec3<f64>) -> Vec3<f64>| {

@@ -68,7 +68,7 @@ impl std::fmt::Display for DataFinding {
             ),
             Self::Swapped { index } => write!(
                 f,
-                "points {number} and {}: in the wrong order? the way through them runs back",
+                "points {number} and {}: in the wrong order? the path through them turns back",
                 index + 2
             ),
         }
@@ -624,7 +624,6 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
         sharpness: f64,
         /// True if the turns beside it grow towards it, as at a nose.
         led: bool,
-        /// The turn of the polygon.
         turn: f64,
     }
     let turn = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>| {

@@ -552,7 +552,7 @@ pub struct Logarithmic {
 
 /// The logarithmic curvature graph of a plane curve: a straight line of slope alpha for
 /// log-aesthetic curves (-1 clothoid, 1 logarithmic spiral, 2 involute of a circle). Samples where
-/// curvature or its slope vanishes have no place on it.
+/// curvature or its slope vanishes are left out.
 pub fn logarithmic_graph(samples: &[Sample]) -> Vec<Logarithmic> {
     let Some(normal) = plane_normal(samples) else { return Vec::new() };
     let point = |s: &Sample| {

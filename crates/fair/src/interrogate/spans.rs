@@ -67,7 +67,7 @@ pub(crate) fn each_span(
         }
         let knots = space.local_knots(k);
         let sample = |(share, row): &(f64, Vec<f64>)| {
-            // The end is bit-identical to the next span's start, by which spans are told apart.
+            // The end is bit-identical to the next span's start, which distinguishes spans.
             let t = if *share == 1.0 { b } else { a + (b - a) * share };
             let mut sums = [Vec3::zero(); 4];
             let mut w = [0.0; 4];

@@ -119,7 +119,6 @@ const TOGETHER: f64 = 1e-9;
 
 const JOINS: FieldId = FairCurve::<f64>::JOINS;
 
-/// Values of `spacing`.
 const SPACINGS: [&str; 8] = ["auto", "chord", "centripetal", "x", "y", "z", "index", "curvature"];
 
 impl<T: Real> FairCurve<T> {

@@ -50,7 +50,6 @@ pub(crate) struct DirectResult<T> {
     pub figures: FairFigures,
 }
 
-/// A spline to be faired.
 struct SplineToFair<T> {
     space: Space,
     control: Vec<Vec3<T>>,

@@ -35,7 +35,6 @@ pub(crate) struct CurveContext<T> {
     pub spacings: &'static [&'static str],
 }
 
-/// A faired spline and its members.
 pub(crate) struct FairedSpline<T: Real> {
     pub curve: FairedCurve<T>,
     pub members: Vec<(&'static str, f64)>,
@@ -72,7 +71,6 @@ impl<T: Real> Curve<T> for FairedCurve<T> {
     moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
-/// Values of `mode`.
 const MODES: [&str; 6] = ["optimum", "faithful", "literal", "vertex", "sweeps", "levels"];
 
 /// Default numbers of sweeps and of multilevel cycles.
@@ -150,9 +148,12 @@ impl<T: Real> CurveOptions<T> {
             return Err(self.not_near(what, field));
         }
         let refused = |what: &str, field, expected: &'static str| {
-            CallError::new("other-mode", format!("`{what}` does not go with the other options"))
-                .expected(expected)
-                .in_field(field)
+            CallError::new(
+                "other-mode",
+                format!("`{what}` cannot be combined with the other options"),
+            )
+            .expected(expected)
+            .in_field(field)
         };
         if !optimum && bound.is_some() {
             return Err(refused("bound", fields.bound, "mode = \"optimum\""));

@@ -165,7 +165,6 @@ impl GivenKnots {
     }
 }
 
-/// Role of the given points.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointRole {
     /// The spline is interpolated through the points, then faired.
@@ -193,7 +192,6 @@ fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> CallError {
         .in_field(field)
 }
 
-/// Role called `name`.
 pub(crate) fn role(name: &str, field: FieldId) -> Result<PointRole, CallError> {
     Ok(match name {
         "fit" => PointRole::Fit,

@@ -89,9 +89,9 @@ macro_rules! shared_options {
             /// Parameters of `tangents`, from 0 to 1.
             #[field(default)]
             tangents_at: Option<Vec<T>>,
-            /// 1: allows more inflections and monotone pieces of curvature than the fairest curve
-            /// within the tolerances has. 0: such are removed; derivatives exist if there are none
-            /// to remove.
+            /// 1 allows more inflections and monotone pieces of curvature than the fairest curve
+            /// within the tolerances has; 0 removes them. With 0, derivatives exist where there is
+            /// nothing to remove.
             #[field(default = 0, min = 0, max = 1)]
             bends: usize,
             /// Parameters of the individual points, increasing, instead of `spacing` (closed:

@@ -10,7 +10,6 @@ use moldloft_registry::{
 };
 use std::sync::Arc;
 
-/// A point on a surface.
 struct SurfacePoint<T: Real> {
     point: Point<T>,
     surface: SurfaceRef<T>,
@@ -92,7 +91,6 @@ shared_options! {
     }
 }
 
-/// Values of `spacing`.
 const SPACINGS: [&str; 7] = ["auto", "chord", "centripetal", "x", "y", "index", "curvature"];
 
 impl<T: Real> FairSnake<T> {

@@ -134,7 +134,7 @@ fn the_curve_keeps_its_ends_and_its_tolerance() {
     for ends in ["free", "position", "tangent", "curvature"] {
         let faired = line(1e-2, ends);
         for p in &points {
-            // Samples are up to 1.25e-4 from the nearest place.
+            // Samples are up to 1.25e-4 from the nearest point.
             assert!(near(&faired, *p) <= 1e-2 * (1.0 + 1e-3));
         }
         let kept = ["position", "tangent", "curvature"].iter().position(|e| *e == ends);

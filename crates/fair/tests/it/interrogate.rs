@@ -64,8 +64,8 @@ fn the_twisted_cubic_has_its_torsion() {
     );
 }
 
-/// Points of a circle or a helix at random places know of one curvature, whatever a spline through them
-/// does between; an oval has its own pieces.
+/// Points of a circle or a helix at random parameters determine one curvature, whatever a spline
+/// through them does between; an oval has its own pieces.
 #[test]
 fn circles_have_one_piece_at_any_places() {
     let rounds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 2000 } else { 60 };
@@ -108,7 +108,7 @@ fn circles_have_one_piece_at_any_places() {
             assert!((4..=5).contains(&found), "{wide} {n}: {found}");
             let jitter = &mut |k| if k == 0 || k == n { 0.0 } else { 0.7 * random.centred() };
             let found = oval(wide, n, jitter);
-            // So few places leave spans that do not tell an oval so round from a circle.
+            // With so few points an oval this round cannot be distinguished from a circle.
             let least = if wide < 1.1 && n < 40 { 1 } else { 4 };
             assert!((least..=7).contains(&found), "{wide} {n}, jitter: {found}");
         }

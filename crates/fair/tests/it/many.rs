@@ -23,7 +23,8 @@ fn dense(at: &dyn Fn(f64) -> Vec3<f64>) -> Vec<Vec3<f64>> {
     (0..=20_000).map(|k| at(f64::from(k) / 20_000.0)).collect()
 }
 
-/// A shape at even, jittered or random places, with noise in each coordinate that stays within the tolerance.
+/// A shape at even, jittered or random parameters, with noise in each coordinate that stays within
+/// the tolerance.
 fn case(name: &str, n: usize, kind: usize, rough: f64, seed: u64) -> Case {
     let mut random = Lcg::new(seed);
     let mut at: Vec<f64> = (0..n)

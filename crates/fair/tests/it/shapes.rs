@@ -153,7 +153,7 @@ fn the_nearest_of_a_measure_is_between_the_data_and_the_fairest() {
     assert_eq!(run(Goal::Closest).unwrap().points, near.original);
 }
 
-/// Flats and a bilge of random sizes with points at random places, some so near each other that noise puts
+/// Flats and a bilge of random sizes with points at random parameters, some so near each other that noise puts
 /// them in the wrong order.
 #[test]
 fn midship_sections_at_random_places() {

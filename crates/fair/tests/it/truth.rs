@@ -176,7 +176,7 @@ pub fn rms(fit: &DataFit, space: &Space, truth: &[Vec3<f64>]) -> f64 {
     (sum / f64::from(count + 1)).sqrt()
 }
 
-/// Curvature at 3001 places even in arc length, inner 98 %: pieces with hysteresis of
+/// Curvature at 3001 points evenly spaced in arc length, inner 98 %: pieces with hysteresis of
 /// max(1 % of the range, 2 % of the largest), and sign changes above 1 % of the largest.
 pub fn counted(space: &Space, control: &[Vec3<f64>], plane: bool) -> (usize, usize) {
     let all = shape::samples(space, control, None, 60);

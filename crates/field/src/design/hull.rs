@@ -10,7 +10,7 @@ use moldloft_num::{Axis, Real, Vec3};
 /// Balls that one hull may be spanned by.
 const MOST_BALLS: usize = 400;
 
-/// Directions and places that differ by less, of the size, count as one.
+/// Directions and points that differ by less than this, relative to the size, count as one.
 const SAME: f64 = 1e-10;
 
 /// A ball; of radius 0, a point. In a plane, a disc.
@@ -244,7 +244,6 @@ fn polyhedron<T: Real>(
     Ok(Some(set))
 }
 
-/// The hull of balls and points.
 pub(super) fn of_balls<T: Real>(balls: &[HullBall<T>]) -> Result<Set<T>, FieldError> {
     let balls = outermost(balls);
     let flat = FieldError::Degenerate { what: "hull: it has no volume; it" };

@@ -32,7 +32,6 @@ const DEEP: f64 = 1e-9;
 /// negative side of surface k, 2 k + 1 for the positive one.
 type LiteralTerm = Vec<u32>;
 
-/// The terms of a body.
 pub(super) struct BodyTerms<T: Real> {
     /// For every literal the half-space, with the attributes of its leaf.
     literals: Vec<Option<Leaf<T>>>,
@@ -162,7 +161,6 @@ struct TermSpace {
     wide: Box3,
     /// The body, or its complement.
     target: Set,
-    /// The literals as sets.
     literals: Vec<Set>,
     /// For every literal the sample points strictly inside.
     inside: Vec<SampleBits>,

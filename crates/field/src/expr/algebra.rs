@@ -33,7 +33,6 @@ pub enum Unary {
 }
 
 impl Unary {
-    /// The value.
     #[inline(always)]
     pub(crate) fn of<T: Real>(self, x: T) -> T {
         match self {
@@ -98,7 +97,6 @@ impl Unary {
         }
     }
 
-    /// The range.
     pub(crate) fn range(self, x: Interval) -> Interval {
         match self {
             Unary::Neg => -x,
@@ -173,7 +171,6 @@ impl Unary {
 
 /// A number on which formulas can be computed.
 pub(crate) trait Algebra<T: Real>: Copy {
-    /// Type of the position.
     type At;
     fn real(x: T) -> Self;
     fn plane(normal: Vec3<T>, offset: T, at: &Self::At) -> Self;

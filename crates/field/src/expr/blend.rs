@@ -196,7 +196,7 @@ const DEPTH: u32 = 8;
 /// rail meets one body, the other is positive and the one has a normal.
 ///
 /// # Errors
-/// The place where that fails, or could not be proved by boxes of 1/256 of the given one.
+/// The point where this fails, or could not be proved by boxes of 1/256 of the given one.
 pub fn check_rail(
     [l1, l2]: [&Primitive; 2],
     rail: &Primitive,

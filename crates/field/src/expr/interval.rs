@@ -333,7 +333,6 @@ pub(crate) fn octants(sides: &[Interval; 3]) -> [[Interval; 3]; 8] {
     })
 }
 
-/// The three sides of a box.
 pub(crate) fn sides(b: &Box3) -> [Interval; 3] {
     [0, 1, 2].map(|k| Interval { low: b.low[k], high: b.high[k] })
 }

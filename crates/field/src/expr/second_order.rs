@@ -71,7 +71,7 @@ impl HessianRange {
         Self { value: f(self.value), slope: self.slope.map(&f), second: self.second.map(&f) }
     }
 
-    /// One of two values that may change places in the box.
+    /// One of two values whose order may change in the box.
     fn either(self, o: Self, value: Interval) -> Self {
         let slope = [0, 1, 2].map(|k| self.slope[k].hull(o.slope[k]));
         Self { value, slope, second: UNKNOWN }

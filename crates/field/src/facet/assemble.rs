@@ -81,7 +81,6 @@ pub(super) struct Changes {
     pub(super) merged: BTreeSet<u32>,
 }
 
-/// A vertex of a cell.
 pub(super) type Corner<'s> = (VertexKey, &'s PlacedVertex, &'s Surfaces);
 
 /// A vertex outside cells, with a cell beside it.
@@ -124,7 +123,7 @@ impl<'a> Assembly<'a> {
         Self { grid, leaves, blocks, at, base, count, changes: Changes::default() }
     }
 
-    /// The block of a vertex and the vertex's place in it.
+    /// The block of a vertex and the vertex's index in it.
     pub(super) fn owner(&self, vertex: u32) -> (usize, usize) {
         let owner = self.base.partition_point(|b| *b <= vertex) - 1;
         (owner, (vertex - self.base[owner]) as usize)
@@ -160,7 +159,6 @@ impl<'a> Assembly<'a> {
         block.path(cell, from, to)
     }
 
-    /// All triangles.
     pub(super) fn triangles(&self) -> (Assembled, VertexNames) {
         let Self { blocks, count, .. } = *self;
         let parts: Vec<AssemblyPart> = (0..blocks.len())
@@ -229,7 +227,7 @@ impl<'a> Assembly<'a> {
         [0, 1, 2].map(|i| at[i] as usize * SIDE + cell[i] as usize)
     }
 
-    /// The block of a cell, most often `near`, and the cell's place in it.
+    /// The block of a cell, most often `near`, and the cell's indices in it.
     fn block_of(&self, near: usize, cell: [usize; 3]) -> Option<(usize, [usize; 3])> {
         let at = cell.map(|x| (x / SIDE) as u32);
         let block = if self.blocks[near].1.at == at { near } else { *self.at.get(&at)? };

@@ -13,7 +13,6 @@ use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Corners along a side.
 pub(super) const CORNERS: usize = SIDE + 1;
 
 fn corner_index(c: [usize; 3]) -> usize {

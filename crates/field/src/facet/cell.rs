@@ -23,7 +23,6 @@ pub(super) struct Case {
     pub(super) side: [u8; 12],
 }
 
-/// The corner from which `edge` starts.
 pub(super) fn start_corner(edge: usize) -> usize {
     let a = edge / 4;
     ((edge & 1) << ((a + 1) % 3)) | ((edge >> 1 & 1) << ((a + 2) % 3))

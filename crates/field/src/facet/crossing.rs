@@ -179,7 +179,6 @@ fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
     TrianglePlane::of([a, b, c]).side(d)
 }
 
-/// The plane of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct TrianglePlane {
     at: Vec3,

@@ -63,14 +63,14 @@ struct CutOffRoom {
 
 /// A cell with the surfaces of its triangles' corners.
 struct ShownCell {
-    /// Its place in the block, the bits of the axes interleaved.
+    /// Its index in the block, the bits of the axes interleaved.
     place: u16,
     around: Box3,
     shown: SmallVec<[u32; 4]>,
     triangles: usize,
 }
 
-/// The bits of a cell's place in its block in turn.
+/// The bits of a cell's index in its block, interleaved.
 fn interleaved(local: [usize; 3]) -> u16 {
     let bits = SIDE.ilog2();
     let bit = |b: u32, k: usize| (local[k] >> b & 1) << (3 * b + k as u32);
@@ -208,7 +208,8 @@ impl CutOffSearch<'_> {
         self.open_cells(tape, cells, SIDE.ilog2(), placed, (ranges, hidden));
     }
 
-    /// Halves cells of a block, in the order of their interleaved places, as long as something that not all of them show may be there.
+    /// Halves cells of a block, in the order of their interleaved indices, as long as they may
+    /// contain something not shown by all of them.
     fn open_cells(
         &self,
         tape: &ExprTape<f64>,
@@ -300,7 +301,8 @@ impl CutOffSearch<'_> {
         on
     }
 
-    /// The place, on the surfaces that it should be on, if the set is not zero there nor near.
+    /// The sample moved onto its surfaces, if the set is not zero there nor nearby; the sample
+    /// itself, if its surface is absent and another one contains all corners.
     fn cuts(
         &self,
         tape: &ExprTape<f64>,

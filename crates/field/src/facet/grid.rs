@@ -41,7 +41,7 @@ impl Grid {
         Self::at(over, step, 0)
     }
 
-    /// The same in one of a few places.
+    /// The same at one of a few offsets.
     pub(super) fn at(over: &Box3, step: f64, place: usize) -> Result<Self, FieldError> {
         let margin = MARGINS[place];
         let mut cells = [0; 3];
@@ -63,7 +63,6 @@ impl Grid {
         Ok(Self { origin, step, cells, goal })
     }
 
-    /// The position of a corner.
     #[inline(always)]
     pub(super) fn corner(&self, at: [usize; 3]) -> Vec3 {
         let x = |k: usize| self.origin[k] + self.step * at[k] as f64;
@@ -86,7 +85,6 @@ impl Grid {
         [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / self.step).max(0.0) as usize)
     }
 
-    /// The box of a cell.
     pub(super) fn cell(&self, at: [usize; 3]) -> Box3 {
         Box3 { low: self.corner(at), high: self.corner(at.map(|x| x + 1)) }
     }

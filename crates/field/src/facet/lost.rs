@@ -63,7 +63,7 @@ fn clusters(open: &[Unresolved], step: f64) -> Vec<Vec<usize>> {
     all
 }
 
-/// The place that is lost most plainly, if any is.
+/// The most evident lost region, if there is one.
 pub(super) fn lost(facets: &Facets, accuracy: f64) -> Option<Unresolved> {
     let open = &facets.unresolved;
     let largest =

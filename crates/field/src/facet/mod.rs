@@ -401,7 +401,8 @@ const FEW_CELLS: usize = 60_000;
 /// The same of those for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
 
-/// The facets with the fewest edges that are cut off, and cells whose triangles cut others, of a few places of the grid.
+/// The facets with the fewest cut-off edges and cells whose triangles intersect others, among a few
+/// positions of the grid.
 fn sharpest(
     set: &Set,
     over: &Box3,
@@ -563,7 +564,6 @@ fn cells(grid: &Grid, mut cells: Vec<[usize; 3]>) -> Vec<Box3> {
     cells.into_iter().map(|c| grid.cell(c)).collect()
 }
 
-/// Attributes of the patch of a leaf.
 pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
     let kind = leaf.primitive.form().name();
     let name = leaf.attributes.name.clone().unwrap_or_else(|| kind.to_owned());
@@ -572,7 +572,7 @@ pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
 }
 
 impl Facets {
-    /// The unresolved places, neighbours joined: at most 100, the largest first.
+    /// The unresolved regions, neighbours joined: at most 100, the largest first.
     pub fn open_places(&self) -> Vec<Unresolved> {
         unresolved::gathered(&self.unresolved, self.step)
     }

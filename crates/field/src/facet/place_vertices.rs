@@ -29,7 +29,6 @@ pub(super) struct VertexPlacer<'a> {
     pub(super) registers: &'a mut Vec<f64>,
 }
 
-/// Vertices of a piece of surface.
 pub(super) enum PieceVertices {
     /// One vertex, on these surfaces; `blunt` if it should be on more, `creased` if one of them has an edge of its own.
     One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool, creased: bool },
@@ -127,7 +126,7 @@ impl VertexPlacer<'_> {
         None
     }
 
-    /// True when a point is further from one of the surfaces than may go unsaid.
+    /// True when a point is so far from one of the surfaces that this must be reported.
     fn away(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
         let slack = MIN_FEATURE * (self.cell.high.x - self.cell.low.x);
         surfaces.iter().any(|&s| {

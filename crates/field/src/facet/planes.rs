@@ -35,7 +35,6 @@ const MOST_PLANES: usize = 20_000;
 /// Polygons that a body may be split into for each of its planes.
 const MOST_POLYGONS: usize = 2_000;
 
-/// A formula of planes.
 enum PlaneFormula {
     /// The plane, and whether the side to which its normal points is solid.
     Side(u32, bool),

@@ -137,7 +137,6 @@ impl Refiner<'_> {
         self.positions[v as usize]
     }
 
-    /// The normal of a leaf at a vertex.
     fn normal(&self, v: u32, leaf: u32) -> Option<Vec3> {
         let k = self.surfaces[v as usize].iter().position(|&s| s == leaf)?;
         let n = self.normals[v as usize][k];

@@ -1,4 +1,4 @@
-//! Triangles without crossings: vertices that make triangles cut others go where they do no harm.
+//! Removal of intersections: vertices whose triangles cut others are moved to harmless positions.
 //!
 //! First, vertices are joined differently ([`unfold`]). Then the polygons around them become fans
 //! about the crossings of the grid, which are on the surface. Then vertices outside their cells, on

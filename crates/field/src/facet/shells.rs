@@ -10,8 +10,9 @@ use std::collections::HashMap;
 /// Shells no thicker than this part of a cell enclose nothing.
 const FLAT: f64 = 1e-9;
 
-/// Removes shells that enclose nothing: a corner of the grid just within a sharp edge, whose neighbours all are outside, has a shell of
-/// its own, whose vertices all go to the edge and the faces beside it, where the other triangles are already.
+/// Removes shells that enclose nothing: a corner of the grid just within a sharp edge, whose
+/// neighbours are all outside, has a shell of its own. Its vertices all move to the edge and the
+/// faces beside it, where the other triangles are already.
 pub(super) fn remove_flat(made: &mut Assembled, step: f64) {
     // Excluded elsewhere by construction.
     if made.doubtful.is_empty() {

@@ -1,8 +1,8 @@
 //! Fewer triangles where the surface is flat: vertices are moved into neighbours, the cheapest first.
 //!
-//! Only whole vertices go, so those that stay are on their surfaces as before. A vertex of a face may go into
-//! any neighbour, one of an edge only along the edge, one of a corner never. On a cylinder triangles
-//! become long along its axis, which is where most is saved.
+//! Only whole vertices are removed, so the others stay on their surfaces. A vertex of a face may be
+//! merged into any neighbour, one of an edge only along the edge, one of a corner never. On a
+//! cylinder triangles become long along its axis, which saves most.
 
 use super::refine::{Normals, normals};
 use super::{Facets, crossing_faces, distance, vertex};
@@ -22,7 +22,7 @@ const TURN: f64 = 0.8;
 /// Number of repetitions, with vertices beside intersecting triangles locked.
 const TRIES: usize = 4;
 
-/// A vertex that may go into another, at the error that this makes.
+/// A vertex that may be merged into another, and the error of this.
 struct EdgeCollapse {
     error: f64,
     from: u32,
@@ -83,7 +83,7 @@ impl Simplifier<'_> {
         ring
     }
 
-    /// The triangles that go when `v` moves into `w`; `None` when that must not be.
+    /// The triangles removed when `v` is merged into `w`; `None` when it must not be.
     fn beside(&self, v: u32, w: u32) -> Option<SmallVec<[u32; 2]>> {
         let (own, other) = (&self.surfaces[v as usize], &self.surfaces[w as usize]);
         if self.locked[v as usize] || own.len() > 2 || !own.iter().all(|s| other.contains(s)) {
@@ -108,7 +108,6 @@ impl Simplifier<'_> {
         a.iter().filter(|x| b.contains(x)).count() == 2
     }
 
-    /// The normal of a leaf at a vertex.
     fn normal(&self, v: u32, leaf: u32) -> Vec3 {
         let k = self.surfaces[v as usize].iter().position(|&s| s == leaf);
         k.map_or_else(Vec3::zero, |k| self.normals[v as usize][k])

@@ -28,7 +28,6 @@ struct CrossingRun {
     change: Option<Vec3>,
 }
 
-/// A part of the ring with its vertices.
 struct RingPart {
     vertices: SmallVec<[(PlacedVertex, Surfaces); 2]>,
     parent: SmallVec<[u8; 2]>,

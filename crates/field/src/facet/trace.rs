@@ -231,7 +231,6 @@ impl<'a> Tracer<'a> {
         Some(())
     }
 
-    /// The next point of an edge.
     fn next(&mut self, p: Vec3, t: Vec3, ray: &EdgeRay) -> Option<Vec3> {
         let mut step = self.step;
         for _ in 0..8 {

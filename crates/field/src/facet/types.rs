@@ -51,7 +51,6 @@ pub(super) const SIDE: usize = 8;
 pub(super) struct EdgeCrossing {
     /// Lattice position of the edge's start, within the block.
     pub(super) at: [u8; 3],
-    /// Axis of the edge.
     pub(super) axis: u8,
     /// True if the edge points from solid to air.
     pub(super) outward: bool,
@@ -76,7 +75,7 @@ pub(super) struct CellVertex {
     pub(super) surfaces: Surfaces,
 }
 
-/// A place that the corners of cells say nothing of.
+/// A region that the corners of cells do not resolve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unresolved {
     /// A cell, or a part of one.
@@ -92,7 +91,6 @@ pub struct Unresolved {
     pub(super) solid: bool,
 }
 
-/// Facets of one block.
 #[derive(Clone, Debug)]
 pub(super) struct FacetBlock {
     /// Position in blocks.
@@ -188,7 +186,6 @@ impl FacetBlock {
         (self.signs[k] & 1 == 1) != (self.joins[k] >> (2 * axis) & 1 == 1)
     }
 
-    /// The case of a cell.
     pub(super) fn case(&self, cell: [usize; 3]) -> &'static Case {
         case(self.signs[cell_index(cell)], self.joins[cell_index(cell)])
     }

@@ -32,7 +32,7 @@ pub(super) type Corners = [u32; 3];
 pub(super) struct Change {
     /// New corners, with the surface, of triangles, …
     pub(super) made: SmallVec<[(usize, u32, Corners); 8]>,
-    /// … and those that go.
+    /// … and the removed ones.
     pub(super) gone: SmallVec<[usize; 2]>,
 }
 
@@ -76,7 +76,6 @@ pub(super) struct FoldedRegion<'a> {
     gone: FxHashSet<usize>,
     /// Vertices of changed triangles, with the number of the last change.
     touched: FxHashMap<u32, usize>,
-    /// Number of changes.
     changes: usize,
 }
 

@@ -219,11 +219,11 @@ fn volume(sides: &[Interval; 3]) -> f64 {
     sides.iter().map(|s| s.width()).product()
 }
 
-/// The most places that are reported.
+/// Maximum number of reported regions.
 const MOST_PLACES: usize = 100;
 
-/// Open places joined with their neighbours, by cubes of a size at which they are few: each with all the volume that it may
-/// hold. The largest come first.
+/// Unresolved regions joined with their neighbours, by cubes large enough to make them few: each
+/// with all the volume that it may hold. The largest come first.
 pub(super) fn gathered(open: &[Unresolved], step: f64) -> Vec<Unresolved> {
     let mut all = open.to_vec();
     let mut size = 2.0 * step;

@@ -187,7 +187,7 @@ fn refined<T: Real>(
         if depth == DEPTHS[1] {
             context.remark(
                 "accuracy-not-reached",
-                format!("the last two values differ by {step:.3e}, {alike:.3e} is asked"),
+                format!("the last two values differ by {step:.3e}, more than {alike:.3e}"),
                 "give a smaller box, or a coarser accuracy",
             );
         }

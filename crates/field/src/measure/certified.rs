@@ -257,7 +257,7 @@ pub fn certified(
     take(first, &mut open);
     loop {
         work.budget.poll()?;
-        // The widest first; equally wide ones by place.
+        // The widest first; equally wide ones by coordinates.
         let place = |c: &Open| c.sides.map(|s| s.low);
         open.sort_by(|a, b| {
             let by_place = place(a).into_iter().zip(place(b)).map(|(a, b)| a.total_cmp(&b));

@@ -50,7 +50,6 @@ pub(crate) struct Curved<'a> {
     /// The midpoints, and their leaves: empty for straight sides.
     middles: Vec<Vec3>,
     on: Vec<Surfaces>,
-    /// The ends of each side.
     ends: Vec<[u32; 2]>,
     /// The sides of each face: that from its corner k to the next.
     sides: Vec<[u32; 3]>,

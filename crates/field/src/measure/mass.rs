@@ -22,7 +22,6 @@ use std::sync::Arc;
 
 /// Boxes may be halved this often at most.
 const DEEPEST: u32 = 12;
-/// The most cells of brackets.
 const MOST_CELLS: usize = 30_000_000;
 /// Cells of the bracket that every best value is checked by.
 const CHECK: usize = 3000;
@@ -121,8 +120,8 @@ impl<T: Real> BracketedMass<T> {
         (self.estimate > enough).then(|| Remark {
             id: "volume-uncertain",
             message: format!("the volume is known to {:.1e} only", self.uncertain),
-            advice: "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
-                     and a greater `accuracy` takes what there is",
+            advice: "edges thinner than its cells limit the accuracy; `volume_bracket` with a greater depth is narrower, \
+                     and a greater `accuracy` accepts this result",
         })
     }
 }

@@ -16,7 +16,6 @@ use smallvec::SmallVec;
 /// More leaves than this are not parted.
 pub(crate) const MOST_LEAVES: usize = 6;
 
-/// Combination of leaves.
 #[derive(Clone, Copy, Debug)]
 enum CombinationNode {
     /// A leaf, or its complement.

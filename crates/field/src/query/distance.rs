@@ -103,7 +103,7 @@ impl PartialOrd for Pair {
     }
 }
 impl Ord for Pair {
-    /// The nearest first; of equally near ones the smallest, then by place.
+    /// The nearest first; of equally near ones the smallest, then by coordinates.
     fn cmp(&self, o: &Self) -> Ordering {
         let place = |p: &Self| {
             let low = |k: usize| p.parts[k].sides.map(|s| s.low);

@@ -31,7 +31,7 @@ impl PartialOrd for Candidate {
     }
 }
 impl Ord for Candidate {
-    /// The nearest first; of equally near ones the smallest, then by place.
+    /// The nearest first; of equally near ones the smallest, then by coordinates.
     fn cmp(&self, o: &Self) -> Ordering {
         let place = |c: &Self| c.sides.map(|s| s.low);
         let by_place = place(o).into_iter().zip(place(self)).map(|(a, b)| a.total_cmp(&b));

@@ -52,7 +52,7 @@ impl RayIndex {
         Self { body, over: *over, root }
     }
 
-    /// The first place where a ray crosses the surface, or meets a sheet.
+    /// The first point where a ray crosses the surface, or meets a sheet.
     pub(crate) fn first(&self, ray: &Ray) -> Option<Hit> {
         let [from, to] = clip(ray, &self.over, [0.0, ray.length])?;
         self.visit(&self.root, &self.over, &mut RayWalk { ray, inside: None }, [from, to])

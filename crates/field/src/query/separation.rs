@@ -184,7 +184,6 @@ fn set_range(gauge: &Gauge, set: &Set, over: &Box3) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// The gauges that the primitives of sets suggest.
 pub(super) fn suggested(sets: [&Set; 2]) -> Vec<Gauge> {
     const MOST: usize = 64;
     let mut out = Vec::new();

@@ -31,11 +31,9 @@ const MOST_FREE: usize = 5;
 /// Relation of a leaf to its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LeafSide {
-    /// The number of its surface.
     pub(crate) surface: u32,
     /// True when it is solid where the surface's function is positive.
     pub(crate) flipped: bool,
-    /// True for a sheet.
     sheet: bool,
 }
 
@@ -79,7 +77,6 @@ pub struct SurfacedSet {
     pub(crate) compiled: Compiled<f64>,
     /// One function for each surface.
     pub(crate) surfaces: Vec<Primitive>,
-    /// Sides of every leaf.
     pub(crate) sides: Vec<LeafSide>,
 }
 

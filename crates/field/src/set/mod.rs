@@ -126,7 +126,6 @@ pub struct Leaf<T: Real = f64> {
     pub attributes: SetAttributes,
 }
 
-/// A compiled set.
 #[derive(Clone)]
 pub(crate) struct Compiled<T: Real> {
     pub(crate) tape: Arc<ExprTape<T>>,
@@ -327,7 +326,6 @@ impl<T: Real> Set<T> {
         Arc::strong_count(&self.node) > 1
     }
 
-    /// True for a union.
     pub(crate) fn is_union(&self) -> bool {
         matches!(self.node.kind, SetNodeKind::Union)
     }

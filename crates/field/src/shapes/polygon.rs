@@ -113,7 +113,6 @@ fn cross(o: FlatPoint, a: FlatPoint, b: FlatPoint) -> f64 {
 }
 
 impl SideChain<'_> {
-    /// The ends of a side.
     fn ends(&self, side: usize) -> [FlatPoint; 2] {
         let n = self.corners.len();
         [self.corners[side], self.corners[(side + 1) % n]]

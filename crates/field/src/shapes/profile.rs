@@ -38,7 +38,6 @@ const MOST_CORNERS: usize = 400;
 /// Projection of a point into the plane of the curve.
 #[derive(Clone, Copy)]
 enum ProfileMap<T: Real> {
-    /// Along the normal.
     Along,
     /// Rotation about the line into the half plane with the second direction.
     About(Axis<T>, Vec3<T>),
@@ -63,7 +62,6 @@ struct ProfileOutline {
     close: f64,
     /// Parameters of possible corners.
     breaks: Vec<f64>,
-    /// The corners.
     corners: Vec<Vec3>,
 }
 

@@ -20,7 +20,6 @@ const MOST: usize = 1 << 13;
 /// Pieces that a box of the tree holds.
 const LEAF: usize = 4;
 
-/// A piece of the surface.
 struct SurfacePiece {
     middle: Vec3,
     /// Maximum distance of its points from the centre, …
@@ -92,7 +91,6 @@ impl SurfacePiece {
 }
 
 impl SignedSide {
-    /// Pieces of a surface.
     pub(crate) fn new(surface: &dyn Surface<f64>) -> Self {
         let mut pieces = Vec::new();
         let mut bounds = Vec::new();

@@ -1,4 +1,4 @@
-//! Certified integrals: thin bodies, edges, places far from the origin, all beside closed forms.
+//! Certified integrals: thin bodies, edges, points far from the origin, all beside closed forms.
 
 use crate::common::{axis, cube, t_piece, v};
 use moldloft_field::{

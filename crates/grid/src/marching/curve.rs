@@ -15,7 +15,6 @@ pub trait Support<T: Real>: Sync {
     fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)>;
 }
 
-/// The plane of a curve.
 struct MarchPlane<T> {
     normal: Vec3<T>,
 }
@@ -89,7 +88,6 @@ struct CurveFront<'a, T: Real> {
     ends: [MarchBoundary; 2],
 }
 
-/// Data of a curve at a node.
 struct CurveNode<T> {
     next: Vec3<T>,
     last: Vec3<T>,

@@ -7,7 +7,6 @@ use crate::GridError;
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 
-/// One step of a march.
 pub(super) struct MarchStep<'a, T> {
     /// The points, and those of the step before.
     pub r: &'a [Vec3<T>],
@@ -26,14 +25,12 @@ pub(super) struct MarchStep<'a, T> {
 
 /// The marched front: the unique points of a curve or a surface, with their neighbours.
 pub(super) trait Front<T: Real> {
-    /// The points of the wall.
     fn wall(&self) -> &[Vec3<T>];
     /// The first layer along the bisecting normals, or `None` where corners are so tight that it has to be
     /// approached by steps.
     fn first_layer(&self, height: T) -> Result<Option<Vec<Vec3<T>>>, MarchFailure>;
     /// The shortest edge, and its node.
     fn shortest_edge(&self, r: &[Vec3<T>]) -> (f64, usize);
-    /// The mean length of the edges.
     fn mean_edge(&self, r: &[Vec3<T>]) -> f64;
     /// The points after a step.
     fn step(&self, step: MarchStep<'_, T>, budget: &Budget) -> Vec<Vec3<T>>;
@@ -60,7 +57,6 @@ const MOST_STEPS: usize = 40_000;
 /// clustered points need; and with more dissipation.
 const LADDER: [(Option<f64>, f64); 3] = [(Some(CAP), 1.0), (None, 1.0), (None, 3.0)];
 
-/// Result of a march.
 pub(super) struct MarchOutcome<T> {
     pub layers: Vec<Vec<Vec3<T>>>,
     pub steps: usize,

@@ -82,7 +82,6 @@ struct SurfaceFront<T> {
     sides: [MarchBoundary; 4],
 }
 
-/// Data of one direction at a node.
 #[derive(Clone, Copy)]
 struct NodeDirection<T> {
     next: Vec3<T>,
@@ -101,7 +100,6 @@ impl<T: Real> NodeDirection<T> {
     }
 }
 
-/// Data of the surface at a node.
 #[derive(Clone, Copy)]
 struct SurfaceNode<T> {
     ways: [NodeDirection<T>; 2],

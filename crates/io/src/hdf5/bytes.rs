@@ -13,7 +13,7 @@ pub(super) fn fault(byte: usize, expected: &str, found: impl Display) -> ReadErr
     }
 }
 
-/// A place in a file, or in a part of it.
+/// A position in a file, or in a part of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'a> {
     pub bytes: &'a [u8],

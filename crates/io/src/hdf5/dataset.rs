@@ -1,11 +1,10 @@
-//! StoredNumbers and texts: their types, extents and places.
+//! Numbers and texts: their types, extents and positions.
 
 use super::Hdf5File;
 use super::bytes::{Cursor, fault};
 use super::header::{self, Message};
 use crate::ReadError;
 
-/// The numbers of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StoredNumbers {
     /// Extents, the last running fastest.
@@ -14,7 +13,6 @@ pub(crate) struct StoredNumbers {
     pub values: Vec<f64>,
 }
 
-/// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct NumberType {
     /// 0 whole, 1 real, 3 text.
@@ -129,7 +127,7 @@ pub(super) fn numbers<'a>(
     let extents = extents(&mut of(header::DATASPACE, "extents")?.body.clone())?;
     let count = extents.iter().try_fold(1usize, |all, n| all.checked_mul(*n));
     let bytes = count.and_then(|count| count.checked_mul(kind.size));
-    let layout = of(header::LAYOUT, "a place of numbers")?;
+    let layout = of(header::LAYOUT, "the layout of the numbers")?;
     let here = layout.body.at;
     let Some(bytes) = bytes.filter(|bytes| *bytes <= file.bytes.len().saturating_mul(1024)) else {
         return Err(fault(here, "no more numbers than bytes", format!("{extents:?} of them")));
@@ -212,11 +210,7 @@ fn contiguous(
     if at.is_nothing(address) {
         // No more than a file of them would hold.
         if bytes > file.bytes.len() {
-            return Err(fault(
-                at.at,
-                &format!("{bytes} bytes of numbers"),
-                "none that were written",
-            ));
+            return Err(fault(at.at, &format!("{bytes} bytes of numbers"), "none written"));
         }
         return Ok(vec![0; bytes]);
     }

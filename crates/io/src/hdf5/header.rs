@@ -14,7 +14,6 @@ pub(super) const ATTRIBUTE: u16 = 12;
 const CONTINUATION: u16 = 16;
 pub(super) const SYMBOL_TABLE: u16 = 17;
 
-/// A message.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Message<'a> {
     pub kind: u16,

@@ -5,7 +5,6 @@ use super::header::{self, Message};
 use super::{Hdf5File, Link, MOST_OBJECTS, StoredObject};
 use crate::ReadError;
 
-/// The links of a group.
 pub(super) fn links<'a>(
     file: &Hdf5File<'a>,
     messages: &[Message<'a>],
@@ -34,7 +33,6 @@ pub(super) fn links<'a>(
     Ok(links)
 }
 
-/// One link message.
 fn link(mut at: Cursor<'_>) -> Result<Link, ReadError> {
     at.skip(1)?;
     let flags = at.byte()?;
@@ -200,7 +198,6 @@ impl FractalHeap {
         Ok(Self { place, length, columns, first, most_direct, root, rows })
     }
 
-    /// The object of an identifier.
     fn object<'a>(&self, file: &Hdf5File<'a>, id: &[u8]) -> Result<Cursor<'a>, ReadError> {
         let mut at = Cursor { bytes: id, at: 0, offset: file.offset, length: file.length };
         let kind = at.byte()? >> 4 & 3;
@@ -251,6 +248,6 @@ impl FractalHeap {
                 start = end;
             }
         }
-        Err(fault(at.at, "a place inside of the heap", place))
+        Err(fault(at.at, "a position inside the heap", place))
     }
 }

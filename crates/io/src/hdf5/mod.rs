@@ -26,7 +26,6 @@ const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 /// Objects that a file may have; links in a circle end there.
 const MOST_OBJECTS: usize = 1 << 20;
 
-/// A file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hdf5File<'a> {
     /// All bytes from the superblock on: addresses count from there.
@@ -47,7 +46,7 @@ pub(crate) struct Link {
     pub name: String,
     /// `None` of links by name and into other files.
     pub to: Option<StoredObject>,
-    /// The place among the links of the group as they were made, where it was kept.
+    /// The index among the links of the group in order of creation, where the file has it.
     pub order: Option<u64>,
 }
 

@@ -183,7 +183,6 @@ fn records(
     if all.len() < 2 { Err(None) } else { Ok(all) }
 }
 
-/// Bytes of a record in order.
 fn joined<'a>(bytes: &'a [u8], record: &FortranRecord) -> std::borrow::Cow<'a, [u8]> {
     match &record.parts[..] {
         [one] => bytes[one.clone()].into(),

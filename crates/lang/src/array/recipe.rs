@@ -35,7 +35,6 @@ pub(crate) enum Slot<T: Real> {
     Never,
 }
 
-/// Slots by expression.
 pub(crate) type Slots<T> = HashMap<ExprKey, Slot<T>, BuildHasherDefault<KeyHasher>>;
 
 /// An expression of all files of a model.
@@ -71,7 +70,6 @@ impl Hasher for KeyHasher {
     }
 }
 
-/// Required kind of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LeafKind {
     Number,

@@ -15,11 +15,10 @@ pub(crate) struct NamedBlock {
     pub faces: FaceNames,
 }
 
-/// Kinds of boundaries.
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
 
-/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last place (i, j, k) from 0.
+/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last node (i, j, k) from 0.
 pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 
 /// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
@@ -40,7 +39,6 @@ pub struct CgnsBlocks {
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
-/// Connections of blocks.
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,
@@ -58,7 +56,7 @@ pub(crate) fn face_names(words: &str, flat: bool) -> Result<FaceNames, Diagnosti
                 .found(format!("\"{}\"", entry.trim()))
         };
         let Some((of, meaning)) = entry.split_once('=') else {
-            return Err(wrong("the name of a face stands behind `=`".into()));
+            return Err(wrong("the name of a face follows `=`".into()));
         };
         let mut meaning = meaning.split_whitespace();
         let Some(name) = meaning.next() else {

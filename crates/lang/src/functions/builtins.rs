@@ -86,7 +86,7 @@ pub(crate) enum Action {
 /// Arguments of writers of meshes of blocks.
 const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
     ("name", "text", "Name of the file, beside the program."),
-    ("b", "block or surface …", "Blocks, or surfaces in one plane; a list stands for its members."),
+    ("b", "block or surface …", "Blocks, or surfaces in one plane; a list counts as its members."),
     (
         "faces?",
         "text",
@@ -238,7 +238,7 @@ pub const BUILTINS: [Builtin; 32] = [
         name: "refined_step",
         action: Action::RefinedStep,
         signature: "refined_step(ds)",
-        doc: "A step per index consistent with refined(n): halved at each refinement; of d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.",
+        doc: "A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.",
         returns: "number",
         help: &[("ds", "number", "The step of the coarse run.")],
         example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
@@ -281,7 +281,7 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
         ],
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
@@ -306,12 +306,12 @@ pub const BUILTINS: [Builtin; 32] = [
         name: "write_stl",
         action: Action::WriteGrids(&grid_formats::STL),
         signature: "write_stl(name, words, s1, s2, ...)",
-        doc: "Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; \"flip\" reverses the normals.",
+        doc: "Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; \"flip\" reverses the normals.",
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
             ("words?", "text", "\"flip\" reverses the normals."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
         ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
@@ -319,11 +319,11 @@ pub const BUILTINS: [Builtin; 32] = [
         name: "write_cgns",
         action: Action::WriteGrids(&grid_formats::CGNS),
         signature: "write_cgns(name, s1, s2, ...), write_cgns(name, b1, \"k1 = hull wall\", b2, ...)",
-        doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.",
+        doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.",
         returns: "nothing",
         help: &[
             ("name", "text", "Name of the file, beside the program."),
-            ("s", "curve, surface or block …", "Arrays to write; a list stands for its members."),
+            ("s", "curve, surface or block …", "Arrays to write; a list counts as its members."),
             (
                 "faces?",
                 "text",
@@ -345,7 +345,7 @@ pub const BUILTINS: [Builtin; 32] = [
         name: "write_gmsh",
         action: Action::WriteGrids(&grid_formats::GMSH),
         signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
-        doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, of surfaces one physical curve.",
+        doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",

@@ -305,7 +305,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// As many numbers as the place can hold.
+    /// As many numbers as the variable can hold.
     fn read_place(&mut self, unit: u32, place: &Place) -> Evaluated<T> {
         let (ty, value, _) = self.known(place)?;
         if ty == Type::String {

@@ -134,7 +134,7 @@ fn reduced<T: Real>(
     if let Value::Number(axis) = axis {
         return match &given[..] {
             [(_, value)] => along_axis(value, axis.re(), &f),
-            _ => Err(CallError::new("unused-argument", "an axis goes with one array")
+            _ => Err(CallError::new("unused-argument", "an axis needs exactly one array")
                 .expected("one array")
                 .in_field(field_id(4))),
         };
@@ -200,8 +200,11 @@ fn componentwise<T: Real>(
                 let c: [T; 3] = std::array::from_fn(|k| f(a[k], b[k]));
                 Ok(Value::Vector(c.into()))
             }
-            _ => Err(CallError::new("wrong-class", "a vector goes with a vector or a number")
-                .expected("a number or a vector, or arrays of numbers in all places")),
+            _ => Err(CallError::new(
+                "wrong-class",
+                "a vector can be combined with a vector or a number only",
+            )
+            .expected("a number or a vector, or arrays of numbers in all arguments")),
         },
         _ => pairs(a, b, &f),
     }
@@ -322,7 +325,6 @@ macro_rules! elementary {
         unary { $($u:literal, $u_doc:literal, $u_example:literal, $u_f:expr;)* }
         binary { $($b:literal, $b_doc:literal, $b_example:literal, $x:literal, $y:literal, $b_f:expr;)* }
     ) => {
-        /// The elementary function of that name.
         pub(crate) fn elementary<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
             Some(match name {
                 $($u => ($u, Elementary::Unary($u_f)),)*

@@ -28,7 +28,6 @@ pub(crate) struct EncodedFiles {
     pub cgns: Option<CgnsBlocks>,
 }
 
-/// A format of grid files.
 #[derive(Debug)]
 pub(crate) struct GridFormat {
     /// True if blocks are written besides curves and surfaces.
@@ -277,7 +276,6 @@ fn cgns(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
 /// The name of the two sides that a plane grid has as a layer of cells.
 const FRONT_AND_BACK: &str = "frontAndBack";
 
-/// The plane mesh of surfaces.
 fn plane_mesh(blocks: &[NamedBlock]) -> Result<PlaneMesh, Diagnostic> {
     let (layers, plane) = extruded(blocks, FRONT_AND_BACK)?;
     Ok(PlaneMesh::under(&one_mesh(&layers), plane.axes, plane.normal, FRONT_AND_BACK))

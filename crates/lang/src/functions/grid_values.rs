@@ -57,7 +57,7 @@ fn finite(
     Err(Diagnostic::error("not-finite", format!("point {place} of `{written}` is not finite"))
         .expected("finite coordinates")
         .found(format!("{{{x}, {y}, {z}}}"))
-        .help("look for a division by zero in what it was computed from"))
+        .help("look for a division by zero in its computation"))
 }
 
 /// The grid that an array of points is.

@@ -62,7 +62,7 @@ fn distance_from<T: Scalar>(shape: &Value<T>, point: Vec3<T>) -> Option<Result<T
     }
 }
 
-/// The place of a point or vector.
+/// The position of a point or vector.
 fn place<T: Scalar>(value: &Value<T>) -> Option<Vec3<T>> {
     match value {
         Value::Point(point) => Some(point.xyz),

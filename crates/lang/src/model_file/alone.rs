@@ -30,7 +30,7 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
             "cannot-read",
             format!("`{name}` is not sound: {}", first.message),
         )
-        .help("open the model file by itself to see all that is wrong with it")),
+        .help("open the model file alone to see all its faults")),
     }
 }
 

@@ -70,7 +70,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             .found(text)
             .object(name(cycle[0]));
         for &at in cycle[1..].iter().take(5) {
-            diagnostic = diagnostic.note_at(source.lines[at].name, "on the way round");
+            diagnostic = diagnostic.note_at(source.lines[at].name, "part of the cycle");
         }
         let missing = self.root(vec![diagnostic]);
         for &at in cycle {

@@ -94,7 +94,7 @@ pub enum Trouble {
     Blocked {
         /// The root, by its number.
         root: usize,
-        /// The place of the reference.
+        /// The span of the reference.
         span: Span,
     },
 }

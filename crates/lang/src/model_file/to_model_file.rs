@@ -597,7 +597,7 @@ impl<'a> ToModelFile<'a> {
         if !attributes.is_empty() {
             let _ = write!(out, " {attributes}");
         }
-        // Panels that were left to the neighbours, and cells of solids, have no place in the head.
+        // Panels that were left to the neighbours, and cells of solids, cannot be stated in the head.
         let [u, v, w] = head.blocks;
         match class.dimension() {
             Some(2) if !head.divided => {

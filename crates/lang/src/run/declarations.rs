@@ -11,7 +11,6 @@ use moldloft_registry::Scalar;
 use moldloft_syntax::sdl::{Declarator, ExprId, Ident, NodeList, StmtId, Type};
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// Declares a variable.
     pub(super) fn declare(
         &mut self,
         m: &Module,

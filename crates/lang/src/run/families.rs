@@ -9,7 +9,8 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{CallError, Row, Scalar, Value};
 use std::sync::Arc;
 
-/// The places of the steps among the arguments of a distribution, and whether these are cells rather than slopes.
+/// The indices of the steps among the arguments of a distribution, and whether these are cells
+/// rather than slopes.
 fn steps_of(name: &str) -> Option<(&'static [usize], bool)> {
     Some(match name {
         "d_tanh" | "d_sinh" => (&[2, 3], false),

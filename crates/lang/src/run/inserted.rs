@@ -16,7 +16,6 @@ pub struct InsertedFile {
     pub(crate) content: Content,
 }
 
-/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Content {
     Component,
@@ -32,7 +31,7 @@ pub const INSERTED_FILES: [InsertedFile; 2] = [
 A file of objects inserted under a name, on parents of the model's own.
 
 The arguments replace the file's own declarations of these names: its points and curves, its `param`s.
-What only they were built on is not made. The file sees no other name of the model, and runs by itself
+Parents needed by those alone are not made. The file sees no other name of the model, and runs by itself
 as well, on its own parents. Its objects are `name.tip`, its parameters `name.span`: design parameters
 of the model.",
         arguments: &[

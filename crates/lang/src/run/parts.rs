@@ -14,7 +14,6 @@ pub(super) struct StatementParts {
     pub inner: Vec<StmtId>,
 }
 
-/// The parts of a statement.
 pub(super) fn of_statement(m: &Module, stmt: StmtId) -> StatementParts {
     let (mut values, mut inner) = (Vec::new(), Vec::new());
     match m.program[stmt].kind {
@@ -105,7 +104,6 @@ fn operands(m: &Module, items: NodeList<ChainItem>) -> Vec<ExprId> {
     m.program[items].iter().filter_map(operand).collect()
 }
 
-/// The expressions of subscripts.
 pub(super) fn of_subscripts(m: &Module, subs: NodeList<Subscript>) -> Vec<ExprId> {
     let mut all = Vec::new();
     for sub in &m.program[subs] {

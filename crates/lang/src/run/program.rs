@@ -27,7 +27,7 @@ pub struct RunContext<'a> {
     pub world: &'a dyn World,
     /// The rows of everything that can be called.
     pub registry: &'a Registry,
-    /// The source texts, for places in diagnostics.
+    /// The source texts, for spans in diagnostics.
     pub sources: &'a mut Sources,
     /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
@@ -39,14 +39,14 @@ pub struct RunContext<'a> {
 pub enum NotLiteral {
     /// It is computed from these names.
     Expression {
-        /// The place of the expression.
+        /// The span of the expression.
         span: Span,
         /// The names that it reads.
         names: Vec<String>,
     },
     /// The statement makes several objects.
     Shared {
-        /// The place of the statement.
+        /// The span of the statement.
         span: Span,
     },
     /// It is a default.

@@ -15,7 +15,6 @@ use moldloft_syntax::sdl::{
 };
 use std::sync::Arc;
 
-/// A member of a record, as it is declared.
 struct DeclaredMember {
     stmt: StmtId,
     ty: (Type, Span),
@@ -200,7 +199,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.bind_variable(m, global, item.name, what)
     }
 
-    /// Declares a variable that is a record.
     pub(super) fn declare_record(
         &mut self,
         m: &Module,

@@ -145,7 +145,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The place that a returned argument writes to.
+    /// The place to which a returned argument is written.
     fn returned(
         &mut self,
         m: &Module,

@@ -1,4 +1,4 @@
-//! Subscripts of a program that runs, and the places that assignments write to.
+//! Subscripts during a run, and the places that assignments write to.
 
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -12,7 +12,6 @@ use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, ExprKind, NodeList, Subscript};
 use smallvec::SmallVec;
 
-/// Meaning of subscripts.
 enum Subscripted {
     Section(ArraySection),
     Chosen(Chosen),

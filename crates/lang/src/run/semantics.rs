@@ -84,7 +84,6 @@ pub(crate) struct Semantics<'a> {
     found: Vec<Diagnostic>,
 }
 
-/// Scope of a statement.
 struct JudgedScope<'a> {
     m: &'a Module,
     module: usize,
@@ -214,7 +213,7 @@ impl<'a> Semantics<'a> {
                     self.say(
                         Diagnostic::remark("unreachable", "this statement is never reached")
                             .at(m.program[next].span)
-                            .note_at(m.program[stmt].span, "what stands before it always leaves"),
+                            .note_at(m.program[stmt].span, "the statement before it always leaves"),
                     );
                     break;
                 }

@@ -48,7 +48,6 @@ impl<T: Real> Build<T> for SolveSet<T> {
     }
 }
 
-/// The row of this module.
 pub(crate) fn row() -> Row {
     <SolveSet<f64> as StaticRow>::row()
 }

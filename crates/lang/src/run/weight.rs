@@ -110,7 +110,7 @@ impl<T: Real> Build<T> for Weight<T> {
                 (Some(if body.is_closed() { m.volume } else { m.area }), m.centroid)
             }
             other => {
-                return Err(CallError::new("wrong-class", "a weight has a place")
+                return Err(CallError::new("wrong-class", "a weight needs a position")
                     .expected("a point, {x, y, z}, a curve, a surface, a solid or a body")
                     .found(other.class().with_article())
                     .in_field(Self::AT));
@@ -219,7 +219,6 @@ pub fn member<T: Scalar>(object: &Object<T>, word: &str) -> Option<Value<T>> {
     })
 }
 
-/// The rows of this module.
 pub(crate) fn rows() -> [Row; 2] {
     [<Weight<f64> as StaticRow>::row(), <WeightSum<f64> as StaticRow>::row()]
 }

@@ -105,7 +105,7 @@ pub struct SolveUnknown<T> {
 pub struct Solve<T> {
     /// The name of the set.
     pub name: Arc<str>,
-    /// The place of its declaration.
+    /// The span of its declaration.
     pub span: Span,
     /// Unknowns.
     pub unknowns: Vec<SolveUnknown<T>>,
@@ -126,7 +126,7 @@ pub struct Environment<T: Scalar> {
     pub param_values: Vec<T>,
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
-    /// The place of declaration of each object, by its key.
+    /// The origin of the declaration of each object, by its key.
     pub origins: Vec<DeclarationOrigin>,
     /// Variables and formulas of a model file.
     pub numbers: IndexMap<String, T>,

@@ -262,7 +262,7 @@ pub struct Loader<'a> {
     pub world: &'a dyn World,
     /// The rows of everything that can be called.
     pub registry: &'a Registry,
-    /// The source texts, for places in diagnostics.
+    /// The source texts, for spans in diagnostics.
     pub sources: &'a mut Sources,
     /// Diagnostics of the texts read.
     pub diagnostics: &'a mut Vec<Diagnostic>,

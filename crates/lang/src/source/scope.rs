@@ -81,7 +81,7 @@ pub enum Passed<T: Scalar> {
 /// A binding and where it was made.
 #[derive(Clone, Debug)]
 pub struct ScopedBinding<T: Scalar> {
-    /// The place of the declaration.
+    /// The span of the declaration.
     pub span: Span,
     /// The meaning of the name.
     pub what: Binding<T>,
@@ -229,7 +229,7 @@ impl<T: Scalar> Scope<T> {
         if self.frame().global { self.global(name) } else { self.frame().local(name) }
     }
 
-    /// The variable that a place is in.
+    /// The variable that contains a place.
     pub fn root(&self, place: &Place) -> Option<&ScopedBinding<T>> {
         match place.frame {
             None => self.global(place.name),
@@ -237,7 +237,7 @@ impl<T: Scalar> Scope<T> {
         }
     }
 
-    /// The variable that a place is in, to change.
+    /// The variable that contains a place, mutable.
     pub fn root_mut(&mut self, place: &Place) -> Option<&mut ScopedBinding<T>> {
         match place.frame {
             None => self.globals.get_mut(place.name.0 as usize)?.as_mut(),

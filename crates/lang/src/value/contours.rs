@@ -25,7 +25,6 @@ const MEET: f64 = 1e-9;
 /// Tolerance of equal lines, relative to their length.
 const SAME: f64 = 1e-9;
 
-/// One section, measured.
 struct MeasuredSection<T> {
     length: T,
     area: T,

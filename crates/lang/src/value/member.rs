@@ -185,7 +185,7 @@ pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Valu
     })
 }
 
-/// The fault of a surface without finite places.
+/// The fault of a surface whose positions are not finite.
 pub fn not_finite() -> Diagnostic {
     Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
 }

@@ -213,7 +213,6 @@ pub(crate) fn logical<T: Real>(
     })
 }
 
-/// `not a` of an array.
 pub(crate) fn not<T: Real>(a: &Array<T>) -> Value<T> {
     numbers(mapped(a, |x| T::from(f64::from(u8::from(x.re() == 0.0)))))
 }

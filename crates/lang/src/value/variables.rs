@@ -119,7 +119,7 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
                 Some("the layers of a block are surfaces of one shape")
             }
             (Type::List(_), Value::Block(_)) => Some("`foreach (s in b)` walks its layers"),
-            (Type::List(_), _) => Some("a list stands in braces: {a, b}"),
+            (Type::List(_), _) => Some("a list is written in braces: {a, b}"),
             _ => None,
         };
         Diagnostic::error("wrong-type", format!("expected {}, found {found}", described(ty)))
@@ -564,7 +564,7 @@ fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
 /// The selected part of an array.
 ///
 /// # Errors
-/// When subscripts and dimensions do not go together.
+/// When subscripts and dimensions do not match.
 pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>, Diagnostic> {
     Ok(match value {
         Value::Numbers(array) => {

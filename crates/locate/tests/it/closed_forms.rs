@@ -131,7 +131,7 @@ fn curves_meet_where_they_should() {
     assert!((x.x - 0.75f64.sqrt()).abs() < 1e-12 && (x.y - 0.5).abs() < 1e-12);
     let left = curve_curve(&c, &l, Some([0.4, 0.3]), 0.0).unwrap();
     assert!(left.report.residual < 1e-12 && left.at[1] < 0.5);
-    // Skew: the nearest place, with its gap.
+    // Skew: the nearest points, with their gap.
     let up = Line(v(-2.0, 0.5, 0.25), v(2.0, 0.5, 0.25));
     let gap = curve_curve(&c, &up, None, 0.0).unwrap_err();
     assert_eq!(gap.status, LocateStatus::NoSolution);

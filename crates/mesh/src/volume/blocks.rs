@@ -66,7 +66,7 @@ impl HexBlock {
         }
     }
 
-    /// The place (i, j, k) of (a, b) on face 0..6.
+    /// The indices (i, j, k) of (a, b) on face 0..6.
     pub fn on_face(&self, face: usize, [a, b]: [usize; 2]) -> [usize; 3] {
         let [p, q, own] = Self::face_axes(face);
         let mut place = [0; 3];

@@ -185,7 +185,7 @@ fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
                 bytes.splice(at..end, part);
             }
             7 => {
-                // Two lines change places.
+                // Two lines are exchanged.
                 let mut lines: Vec<&[u8]> = bytes.split(|b| *b == b'\n').collect();
                 let (a, b) = (random.below(lines.len()), random.below(lines.len()));
                 lines.swap(a, b);

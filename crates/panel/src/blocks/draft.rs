@@ -42,7 +42,6 @@ impl BlockDraft<'_> {
     }
 }
 
-/// The identity of a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum FaceId {
     Surface(Key),

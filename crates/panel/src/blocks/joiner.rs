@@ -12,7 +12,6 @@ use std::collections::{HashMap, HashSet};
 /// are reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
-/// Identity of a vertex.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum VertexIdentity {
     Point(Key),

@@ -23,7 +23,6 @@ pub use notes::BlockNote;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The most cells of a model.
 const MOST_CELLS: u64 = 20_000_000;
 
 /// The vertices of volume blocks and the blocks that compute them; independent of the scalar.

@@ -42,7 +42,7 @@ impl std::fmt::Display for BlockNote {
         match self {
             BlockNote::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
                 f,
-                "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
+                "`{a}` has {n} cells along an edge, `{b}` has {m} along the part {share} of it, \
                  so their cells do not join"
             ),
             BlockNote::Apart { blocks: [a, b], distance, at } => write!(

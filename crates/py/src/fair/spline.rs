@@ -307,7 +307,7 @@ impl Spline {
         flat.reshape([graph.len(), 2]).expect("two numbers a point")
     }
 
-    /// The places of the knots in [0, 1], and the jump vectors there.
+    /// The parameters of the knots in [0, 1], and the jump vectors there.
     fn jumps<'py>(
         &self,
         py: Python<'py>,

@@ -109,7 +109,7 @@ pub fn no_fit(error: SplineError) -> CallError {
     match error {
         SplineError::Count { .. } => fault
             .expected("knots with room between them")
-            .found("a control point that no place of the original determines"),
+            .found("a control point that no point of the original determines"),
         _ => fault.expected("ascending knots, and more points than the degree"),
     }
 }

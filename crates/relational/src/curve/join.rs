@@ -58,7 +58,7 @@ impl<T: Real> Build<T> for Join<T> {
         let (alike, against) = (gap(false), gap(true));
         let (gap, t, at) = if against.0 < alike.0 { against } else { alike };
         if gap.is_nan() || gap > tolerance {
-            return Err(CallError::new("edges-apart", "the edges do not lie in one place")
+            return Err(CallError::new("edges-apart", "the edges do not coincide")
                 .expected(format!("at most {tolerance} between them"))
                 .found(format!("{gap} at t = {t} of the first, at ({}, {}, {})", at.x, at.y, at.z))
                 .related(first.key, "is the first")
@@ -98,7 +98,6 @@ fn whole<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<(), CallError> {
     }
 }
 
-/// The first edge.
 struct JoinedEdge<T: Real> {
     first: CurveRef<T>,
 }

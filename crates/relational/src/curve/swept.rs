@@ -63,11 +63,12 @@ pub const ACCURACY: f64 = 1e-12;
 
 /// Error of a `noun` without a value for the bead at `t`.
 pub fn no_locus(noun: &str, t: f64, fault: &CallError, field: FieldId) -> CallError {
-    let whole = CallError::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
-        .expected(format!("a {noun} wherever the bead is"))
-        .found(fault.message.clone())
-        .help("sweep only a part of the curve: give t1 and t2")
-        .in_field(field);
+    let whole =
+        CallError::new("no-locus", format!("the {noun} has no position with the bead at {t}"))
+            .expected(format!("a {noun} wherever the bead is"))
+            .found(fault.message.clone())
+            .help("sweep only a part of the curve: give t1 and t2")
+            .in_field(field);
     fault.related.iter().fold(whole, |whole, (key, label)| whole.related(Some(*key), label.clone()))
 }
 

@@ -57,14 +57,14 @@ impl<T: Real> Build<T> for TanCurve<T> {
                 .in_field(Self::CURVE)
         };
         if let Some(t) = still {
-            let help = "leave the place out: take a part of the curve";
+            let help = "take a part of the curve without this point";
             return Err(fault("the curve has a zero tangent", t, help));
         }
         for &t in &ends[1..ends.len() - 1] {
             let [a, b] = [velocity(t.next_down()), velocity(t.next_up())];
             let [a, b] = [a / a.norm(), b / b.norm()];
             if (a - b).norm() > TOLERANCE.sqrt() {
-                let help = "take the tangents of each side by itself: a part of the curve";
+                let help = "take a part of the curve on each side of the corner";
                 return Err(fault("the curve has a corner, where its tangent jumps", t, help));
             }
         }

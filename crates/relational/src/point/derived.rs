@@ -51,7 +51,7 @@ impl<T: Real> Build<T> for OffsetPoint<T> {
 pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
         CallError::new("no-tangent", "the curve has no tangent there")
-            .expected("a place with a non-zero tangent")
+            .expected("a point with a non-zero tangent")
             .found(format!("no speed at t = {}", bead.t.re()))
             .related(bead.key, "is there")
             .in_field(field)

@@ -52,11 +52,11 @@ impl<T: Real> Build<T> for ArcLenRelabel<T> {
         ends.extend(curve.breaks());
         ends.push(1.0);
         if let Some(t) = standstill(&curve, &ends, NO_SLOPE * rough) {
-            return Err(CallError::new("zero-slope", "the curve stands still inside")
+            return Err(CallError::new("zero-slope", "the curve has zero speed at an inner point")
                 .expected("a curve that moves everywhere")
                 .found(format!("no speed at t = {}", parameter(t)))
                 .related(curve.key, "is the curve")
-                .help("leave the place out: take a part of the curve")
+                .help("take a part of the curve without this point")
                 .in_field(Self::CURVE));
         }
         let mut places = vec![0.0];

@@ -55,7 +55,7 @@ pub(super) fn crossing<T: Real>(
                     "missing-argument",
                     "a sphere about a point needs a radius",
                 )
-                .expected("the point through which the sphere goes")
+                .expected("a point on the sphere")
                 .found("nothing")
                 .in_field(field));
             };

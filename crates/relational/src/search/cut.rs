@@ -100,7 +100,6 @@ pub(super) fn on_guide([a, b, c, d]: &Guide, y: f64) -> [Vec3; 3] {
     ]
 }
 
-/// A polynomial in powers of y and its derivative.
 pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
     let (mut value, mut slope) = (S::zero(), S::zero());
     for p in powers.iter().rev() {
@@ -110,7 +109,6 @@ pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
     [value, slope]
 }
 
-/// Approximate unknowns at `y`.
 pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
     let mut q = places[NODES - 1];
     for p in places[..NODES - 1].iter().rev() {
@@ -171,7 +169,7 @@ pub(super) struct CutJet<T> {
     pub curvature: Vec3<T>,
 }
 
-/// Nodes on [-1, 1] inside: a surface may go on differently beyond the ends (Chebyshev 1854).
+/// Nodes on [-1, 1] inside: a surface may continue differently beyond the ends (Chebyshev 1854).
 pub(super) fn node(k: usize) -> f64 {
     -Real::cos((k as f64 + 0.5) * std::f64::consts::PI / NODES as f64)
 }

@@ -227,7 +227,8 @@ fn second_derivatives(n: usize) -> Vec<f64> {
     dd
 }
 
-/// The equations at the inner nodes and their matrix by the inner places, in the order u, v of each.
+/// The equations at the inner nodes and their matrix by the inner parameters, in the order u, v of
+/// each.
 fn equations<T: Real>(
     sheet: &SeamlessSurface<T>,
     places: &[[T; 2]],
@@ -267,7 +268,7 @@ fn equations<T: Real>(
     (rest, matrix)
 }
 
-/// The places of a path at other nodes, by the barycentric formula.
+/// The parameters of a path at other nodes, by the barycentric formula.
 fn resampled(places: &[[f64; 2]], n: usize) -> Vec<[f64; 2]> {
     let m = places.len();
     (0..=n)
@@ -302,7 +303,7 @@ fn solved<T: Real>(
     let at = |w: [f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
     if from == to || (!turned && at(from).distance(at(to)) == 0.0) {
         return Err(CallError::new("coincident-points", "the geodesic has no length")
-            .expected("two magnets in different places")
+            .expected("two magnets at different points")
             .found("one place")
             .in_field(GeoSnake::<T>::M2));
     }
@@ -412,7 +413,7 @@ fn newton<T: Real>(
 const NOISE: f64 = 2.5e-15;
 
 /// The path in the parameter plane: the straight line and t (1 - t) p(t), with a polynomial p in
-/// Chebyshev's of the second kind, so that its ends are the magnets' places to the bit.
+/// Chebyshev's of the second kind, so its ends equal the magnets' parameters to the bit.
 struct GeodesicPath<T: Real> {
     ends: [[T; 2]; 2],
     /// The second end without its turns.

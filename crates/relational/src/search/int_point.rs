@@ -39,7 +39,6 @@ pub struct IntPoint<T: Real> {
     near: Option<Point<T>>,
 }
 
-/// One of the shapes.
 enum IntersectedShape<T: Real> {
     Surface(SurfaceRef<T>),
     Plane(Plane<T>),
@@ -200,7 +199,7 @@ fn common<T: Real, const N: usize>(
     Ok(Point::free(first.jet(q[0], q[1], Order::Zero).p).with_found(report))
 }
 
-/// All shapes go through S1(u, v).
+/// All shapes pass through S1(u, v).
 struct Common<'a, T: Real> {
     shapes: &'a [IntersectedShape<T>],
 }

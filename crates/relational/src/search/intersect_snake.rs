@@ -257,7 +257,7 @@ fn lost(why: &str) -> CallError {
     CallError::new("tangent-contact", "the intersection cannot be followed: the shapes touch there")
         .expected("shapes that cross at an angle all along")
         .found(why.to_owned())
-        .help("move one of them, or give `start` and `end` before the place of contact")
+        .help("move one of them, or give `start` and `end` before the point of contact")
 }
 
 /// Follows the intersection and sets up the snake.
@@ -506,7 +506,7 @@ fn set_up<T: Real>(
     for (k, end) in branch.ends.iter().enumerate() {
         let given = places[k].is_some();
         if !given && matches!(end, BranchEnd::Tangent | BranchEnd::Lost) {
-            return Err(lost("a place where they are tangent").in_field(fields.target));
+            return Err(lost("a point where they are tangent").in_field(fields.target));
         }
     }
     let stops = with_joints(first, &second, crossing, &branch);
@@ -533,7 +533,7 @@ fn set_up<T: Real>(
         let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
         (x, Vec3::lifted(stops[0].station.tangent))
     });
-    let failed = || lost("a place where they are nearly tangent").in_field(fields.target);
+    let failed = || lost("a point where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
     let mut pieces = Vec::with_capacity(fits.len());
@@ -661,7 +661,7 @@ fn with_joints<T: Real>(
     stops
 }
 
-/// The place of a closed branch nearest to `m`, between which stations it is and itself; the last
+/// The point of a closed branch nearest to `m`, between which stations it is and itself; the last
 /// station is not the first again.
 fn nearest_station(
     crossing: &Crossing<'_>,

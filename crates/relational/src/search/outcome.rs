@@ -37,7 +37,7 @@ pub fn no_intersection(report: &LocateReport, one: &str, other: &str) -> CallErr
         )
         .expected(format!("a {one} and another shape that do not run along each other"))
         .found(format!("a gap of {:.6e} at best, and parts not looked at", report.residual))
-        .help("start from a bead or a magnet near the place that is meant");
+        .help("start from a bead or a magnet near the intended point");
     }
     let at: Vec<String> = report.last.iter().map(|x| format!("{x:.6}")).collect();
     let fault = CallError::new("no-intersection", format!("the {one} does not meet the {other}"))
@@ -52,7 +52,7 @@ pub fn no_intersection(report: &LocateReport, one: &str, other: &str) -> CallErr
 
 /// The fault of a derivative at a contact: it is infinite.
 pub fn tangent() -> CallError {
-    CallError::new("tangent-contact", "the shapes touch, so the place has no finite derivative")
+    CallError::new("tangent-contact", "the shapes touch, so the point has no finite derivative")
         .expected("shapes that cross at an angle")
         .found("shapes that are tangent to each other")
         .help("move one of them until they cross, or take the nearest point instead (Prox…)")
@@ -62,5 +62,5 @@ pub fn tangent() -> CallError {
 pub fn diverged(report: &LocateReport) -> CallError {
     CallError::new("no-convergence", "the search for the nearest point did not converge")
         .found(format!("a residual of {:.3e}", report.residual))
-        .help("give a start near the place that is meant")
+        .help("give a start near the intended point")
 }

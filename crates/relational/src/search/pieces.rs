@@ -39,7 +39,7 @@ pub(super) fn at_seam(a: &TracePoint, b: &TracePoint) -> bool {
     (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
 }
 
-/// The cubic of both ends' places and tangents.
+/// The cubic of the positions and tangents of both ends.
 fn cubic(a: &TracePoint, b: &TracePoint) -> Guide {
     let half = 0.5 * a.x.distance(b.x);
     let (s, t) = (a.tangent * half, b.tangent * half);
@@ -92,7 +92,6 @@ fn between(a: &TracePoint, b: &TracePoint, y: f64) -> Unknowns {
     })
 }
 
-/// The matrix of [`to_powers`].
 type Matrix = [[f64; NODES]; NODES];
 
 impl PieceFit {

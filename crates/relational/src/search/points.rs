@@ -140,7 +140,7 @@ pub(super) fn foot_rate<T: Real>(
     rate: Vec3<T>,
 ) -> Option<[Vec3<T>; 2]> {
     let foot = foot_on_level(field, point).ok()?;
-    // The matrix at the foot, derivatives included: at its real place, then moved along.
+    // The matrix at the foot, derivatives included: at its real position, then moved along.
     let (_, g, h) = field.second_order(foot);
     let scale = T::one() / g.norm();
     let (g, h) = (g * scale, h.map(|row| row * scale));

@@ -212,7 +212,7 @@ fn end_keys<T: Real>(
     Ok([first.key, last.key])
 }
 
-/// A solved place along the curve.
+/// A solution at a parameter of the curve.
 #[derive(Clone, Copy, Debug)]
 struct ProjectionSample {
     t: f64,
@@ -319,7 +319,7 @@ impl<T: Real> ProjectedPath<T> {
         (x - p).dot(d) / d.norm_sq()
     }
 
-    /// The place at plain `t` near `guess`, and its rate.
+    /// The solution at plain `t` near `guess`, and its rate.
     fn solved(&self, t: f64, guess: [f64; 3]) -> Option<ProjectionSample> {
         let q = self.root(t, guess)?;
         let [_, rate, _] = self.derived(q, T::from(t), Order::First)?;
@@ -434,7 +434,6 @@ impl<T: Real> ProjectedPath<T> {
         }
     }
 
-    /// The unknowns at plain `t`.
     fn unknowns(&self, t: f64) -> [f64; 3] {
         let table = self.table.get_or_init(|| {
             let mut ends = vec![0.0];

@@ -157,7 +157,7 @@ impl<T: Real> Build<T> for NURBSnake<T> {
         if let Some(between) = &self.places {
             if places.len() != 2 || between.len() % 2 != 0 {
                 return Err(CallError::new("out-of-range", "control points between two magnets")
-                    .expected("two magnets, and u and v of each place")
+                    .expected("two magnets, and u and v of each control point")
                     .found(format!("{} magnets, {} numbers", places.len(), between.len()))
                     .in_field(Self::PLACES));
             }

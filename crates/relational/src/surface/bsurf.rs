@@ -195,7 +195,6 @@ impl<T: Real> Surface<T> for KeyedBSpline<T> {
     moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
-/// The fields of a net.
 struct NetFields {
     points: FieldId,
     degrees: [FieldId; 2],

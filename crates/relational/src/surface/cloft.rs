@@ -194,7 +194,6 @@ fn is_one_point<T: Real>(points: &[Vec3<T>]) -> bool {
     points.iter().all(|p| near(p.re()))
 }
 
-/// Knots of a loft.
 #[derive(Clone, Copy)]
 enum Knots {
     /// At chord lengths.

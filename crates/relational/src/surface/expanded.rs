@@ -138,7 +138,7 @@ impl<T: Real> Plate<T> {
         let message = format!("the surface has no tangent plane along the line u = {}", at.u);
         Err(CallError::new("no-normal", message)
             .expected("lines u = const with a length and one tangent plane along each")
-            .found("a line without a length, or at which the surface stands still")
+            .found("a line of length zero, or along which the surface is singular")
             .help("expand a part of the surface that leaves this line out")
             .related(self.surface.key, "is singular there")
             .in_field(ExpandedSurf::<T>::SURFACE))

@@ -79,7 +79,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallErro
             )
             .expected("a surface with a tangent plane everywhere")
             .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
-            .help("offset a part of the surface that leaves this place out")
+            .help("offset a part of the surface without this point")
             .related(surface.key, "is singular there")
             .in_field(OffsetSurf::<T>::SURFACE));
         }

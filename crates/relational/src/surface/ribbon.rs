@@ -7,7 +7,7 @@ use moldloft_num::{Jet, Order, Real, Vec3, lift_curve};
 /// A point of a snake with the tangent plane of its surface.
 #[derive(Clone, Copy)]
 pub struct SnakePoint<J> {
-    /// The place (u, v, 0) on the surface.
+    /// The parameters (u, v, 0) on the surface.
     pub place: Vec3<J>,
     /// The position.
     pub p: Vec3<J>,

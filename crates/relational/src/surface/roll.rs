@@ -146,9 +146,9 @@ fn spine<T: Scalar>(
                 .in_field(RollFillet::<T>::RADIUS);
         }
         CallError::new("no-ball", message)
-            .expected("surfaces that a ball of that radius touches both, on the sides that are meant")
+            .expected("surfaces that a ball of that radius touches both, on the intended sides")
             .found(found)
-            .help("choose the sides (side1, side2), give magnets near the places of contact, or another radius")
+            .help("choose the sides (side1, side2), give magnets near the points of contact, or another radius")
             .related(onto[0].surface.key, "is the first surface")
             .related(onto[1].surface.key, "is the second surface")
             .in_field(RollFillet::<T>::RADIUS)

@@ -183,12 +183,12 @@ impl<T: Real> RulingSearch<'_, T> {
                 .help("bring the curves nearer together, or bend them less"),
             None => {
                 let at = if level == 0 {
-                    "no pair of places with a common tangent plane".to_owned()
+                    "no pair of points with a common tangent plane".to_owned()
                 } else {
-                    format!("none that go on from u = {:.4}", (level as f64 - 1.0) * RISE)
+                    format!("none that continue from u = {:.4}", (level as f64 - 1.0) * RISE)
                 };
                 CallError::new("no-rulings", "no rulings of a developable surface")
-                    .expected("places of both curves with a common tangent plane")
+                    .expected("points of both curves with a common tangent plane")
                     .found(at)
                     .help(
                         "make one of the curves free to follow: a RuledSurf needs no such rulings",

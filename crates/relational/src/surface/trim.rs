@@ -217,7 +217,6 @@ fn hem<T: Real>(
     }
 }
 
-/// The parameters of the divisions of one curve of the border.
 fn divisions<T: Real>(hem: &BorderCurve<T>) -> Vec<T> {
     hem.divisions().into_iter().map(T::from).collect()
 }

@@ -75,7 +75,7 @@ const DEGENERATIONS: [(&str, Degeneration); 20] = [
     }),
 ];
 
-/// The places of the points that a program states, and their coordinates.
+/// The source ranges of the points that a program states, and their coordinates.
 fn points(text: &str) -> Vec<(std::ops::Range<usize>, Vec3)> {
     let mut found = Vec::new();
     for (at, _) in text.match_indices("AbsPoint ") {
@@ -108,7 +108,7 @@ fn parameters(breaks: &[f64]) -> Vec<f64> {
     all
 }
 
-/// The objects of a scene that have places, or slopes, that are not finite.
+/// The objects of a scene with positions, or slopes, that are not finite.
 fn not_finite(scene: &Scene<f64>) -> Vec<String> {
     let mut wrong = Vec::new();
     for object in &scene.0 {

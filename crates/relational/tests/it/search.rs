@@ -224,7 +224,7 @@ fn check_closely(text: &str, names: &[&str], h: f64, tolerance: f64) {
         for k in first..count.min(first + 4) {
             let mut moved =
                 |d: f64| measured::<f64>(text, names, &mut |i, x| if i == k { x + d } else { x });
-            // Fourth order: the bends of sharp places must not show.
+            // Fourth order: the bends at sharp points must not affect the result.
             let [a, b, c, d] = [h, -h, 2.0 * h, -2.0 * h].map(&mut moved);
             for (n, e) in exact.iter().enumerate() {
                 let near = (a[n] - b[n]) * (8.0 / (12.0 * h));

@@ -154,7 +154,7 @@ impl SketchSession {
                 if back || (at != line.p && at != line.q) {
                     return Err(CommandError::new(
                         300,
-                        format!("line {}-{} does not go on from point {at}", line.p, line.q),
+                        format!("line {}-{} does not continue from point {at}", line.p, line.q),
                         "name lines in a row",
                     )
                     .about(ReplySubject::of("lines-apart").points([at, line.p, line.q])));

@@ -11,7 +11,6 @@ pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.2e}").parse().unwrap_or(x)
 }
 
-/// A place in words.
 pub(super) fn place_text(p: Vec3) -> String {
     p.to_array().map(|x| plain(rounded(x))).join(" ")
 }

@@ -498,7 +498,7 @@ impl SketchSession {
         self.set_number(&name, args)
     }
 
-    /// Takes places on the page of a section for its coordinates, or not.
+    /// Sets whether points on the page of a section are taken as its coordinates.
     pub(super) fn set_exact(&mut self, on: bool) -> Result<(), CommandError> {
         let drawing = &self.active()?.drawing;
         let plain =
@@ -748,7 +748,6 @@ fn in_range(
     }
 }
 
-/// A fault of a dimension in words.
 pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
     let (kind, names, value): (_, Vec<&String>, _) = match fault {
         DimensionFault::Redundant { name, path } => {

@@ -292,7 +292,7 @@ impl SketchSession {
                 moldloft_syntax::number::plain(super::digits::rounded(apart))
             );
             let about = ReplySubject::of("far-weld").points([p, q]).value(apart);
-            let next = Some("UNDO, if they are two places".to_owned());
+            let next = Some("UNDO, if they are two points".to_owned());
             self.out.push(CommandReply { next, about, ..CommandReply::warning(text) });
         }
         self.report_gone(gone);

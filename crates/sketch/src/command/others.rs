@@ -85,7 +85,6 @@ fn key(object: &SketchObject) -> String {
     identifier(&object.name).to_ascii_lowercase()
 }
 
-/// All expressions of an object.
 fn expressions_of(object: &mut SketchObject) -> impl Iterator<Item = &mut DimensionExpr> {
     let values = object.variables.values_mut().map(|v| &mut v.value);
     let values = values.chain(object.dimensions.values_mut().filter_map(|d| d.value.as_mut()));

@@ -121,7 +121,6 @@ impl From<CommandError> for CommandReply {
     }
 }
 
-/// State of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
     pub labels: bool,
@@ -418,7 +417,6 @@ impl SketchSession {
         }
     }
 
-    /// Adds a state for UNDO.
     pub(super) fn push_undo(&mut self, before: SessionState) {
         self.undo.push(before);
         self.forget();
@@ -618,7 +616,7 @@ impl SketchSession {
         self.object(self.state.active.as_deref()?)
     }
 
-    /// Adds an object, or takes its namesake's place; it becomes active.
+    /// Adds an object, or replaces its namesake; it becomes active.
     pub fn insert(&mut self, object: SketchObject) {
         let key = object.name.to_lowercase();
         self.state.objects.insert(key.clone(), Arc::new(object));
@@ -653,7 +651,6 @@ impl SketchSession {
         })
     }
 
-    /// The active object, to change it.
     pub(crate) fn active_mut(&mut self) -> Result<&mut SketchObject, CommandError> {
         let none = || {
             CommandError::new(
@@ -666,7 +663,6 @@ impl SketchSession {
         self.state.objects.get_mut(&key).map(Arc::make_mut).ok_or_else(none)
     }
 
-    /// The active object.
     pub(crate) fn active(&self) -> Result<&SketchObject, CommandError> {
         self.active_object().ok_or_else(|| {
             CommandError::new(
@@ -677,7 +673,6 @@ impl SketchSession {
         })
     }
 
-    /// The active object, shared.
     pub(crate) fn active_arc(&self) -> Result<Arc<SketchObject>, CommandError> {
         self.active()?;
         let key = self.state.active.as_deref().unwrap_or_default();

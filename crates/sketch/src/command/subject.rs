@@ -30,7 +30,7 @@ pub struct ReplySubject {
     pub axis: Option<CoordinateAxis>,
     /// The number of the sentence: a distance, a coordinate, a confidence from 0 to 1.
     pub value: Option<f64>,
-    /// The place in space.
+    /// The position in space.
     pub place: Option<[f64; 3]>,
     /// The dimension that would supply a missing one.
     pub suggestion: Option<Suggestion>,

@@ -34,7 +34,7 @@ pub enum SketchCommand {
     Point {
         /// Its label; the next free one when `None`.
         id: Option<PointId>,
-        /// The place on the page.
+        /// The point of the page.
         at: [f64; 2],
     },
     /// A line drawn.

@@ -38,7 +38,6 @@ pub static VERBS: LazyLock<Vec<Verb>> = LazyLock::new(|| {
     verbs
 });
 
-/// The rows of the table.
 fn table() -> Vec<Verb> {
     let mut rows: Vec<Verb> = Vec::new();
     let (mut group, mut forms) = ("", Vec::new());

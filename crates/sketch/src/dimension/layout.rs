@@ -176,7 +176,6 @@ impl DimensionGraph {
         self.sets.join(a, b);
     }
 
-    /// The dimensions on the path from `a` to `b`, each with its sign.
     fn path(&self, a: usize, b: usize) -> Vec<(usize, bool)> {
         let mut from = vec![None; self.next.len()];
         let mut queue = VecDeque::from([a]);

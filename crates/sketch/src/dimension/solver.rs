@@ -63,7 +63,6 @@ pub fn value<T: Real>(
     }
 }
 
-/// The points of a derived measure.
 fn points(object: &SketchObject, measure: &MeasuredQuantity) -> Vec<PointId> {
     let lines = match *measure {
         MeasuredQuantity::Length(l) | MeasuredQuantity::Slope(l) => vec![l],
@@ -332,7 +331,6 @@ impl<T: Real> System<'_, T> {
         self.dimensions.iter().map(turn).collect()
     }
 
-    /// The values that are measured at `x`.
     fn measured(&self, x: &[f64]) -> Option<Vec<f64>> {
         let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
         let one = |(d, turn): (&&Dimension, &f64)| match d.measure {

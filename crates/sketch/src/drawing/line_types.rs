@@ -205,7 +205,7 @@ impl Drawing {
         found
     }
 
-    /// Inclined lines that happen to be drawn along an axis make planes of different places one, so that other
+    /// Inclined lines that happen to be drawn along an axis make different planes one, so that other
     /// lines lose their length, and face loops cannot be plane: the groups of parallel lines are taken as inclined
     /// that make the whole likeliest, one or two at a time, as long as that gains anything.
     fn mend(&mut self, verdicts: &BTreeMap<LineId, Verdict>) {

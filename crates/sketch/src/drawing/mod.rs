@@ -118,10 +118,10 @@ pub enum DrawingHit {
     },
 }
 
-/// A place on the page that a pointer snaps to.
+/// A point of the page to which a pointer snaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
-    /// The place.
+    /// The point.
     pub at: [f64; 2],
     /// The element there, or the point whose extension it is on.
     pub hit: Option<DrawingHit>,

@@ -70,13 +70,11 @@ fn unit(code: &str) -> Option<&'static str> {
     }
 }
 
-/// Content of a file.
 #[derive(Default)]
 struct DxfFile {
     entities: Vec<Entity>,
     /// Base point and entities by name.
     blocks: BTreeMap<String, ([f64; 2], Vec<Entity>)>,
-    /// The current block.
     block: Option<String>,
     unit: Option<&'static str>,
 }
@@ -124,7 +122,6 @@ impl DxfFile {
     }
 }
 
-/// An entity.
 #[derive(Clone, Default)]
 struct Entity {
     kind: String,

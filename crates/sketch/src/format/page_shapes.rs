@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// A straight stroke on the page.
 pub type Stroke = [[f64; 2]; 2];
 
-/// Angles up to this part of a radian make lines go on straight.
+/// Lines with smaller angles between them, in radians, continue straight.
 const STRAIGHT: f64 = 1e-6;
 
 /// Shapes on the page.
@@ -254,7 +254,6 @@ fn add_curve(
     name
 }
 
-/// A full turn.
 pub(crate) const TURN: f64 = TAU;
 
 /// Adds strokes to a drawing, ends within `tolerance` being one point; the numbers of new points and

@@ -56,7 +56,6 @@ enum SvgElement {
         to: [f64; 2],
         colour: &'static str,
     },
-    /// A centred text.
     Centred {
         at: [f64; 2],
         text: String,
@@ -133,7 +132,6 @@ fn around(items: &[SvgElement]) -> Option<[f64; 4]> {
     })
 }
 
-/// A sketch as drawn.
 fn sketch(
     object: &SketchObject,
     data: &ObjectData,

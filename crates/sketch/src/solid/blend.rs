@@ -131,7 +131,7 @@ fn blended_at_once<T: Real>(
     Ok(out)
 }
 
-/// Adds the edges that go on from chosen ones without a corner.
+/// Adds the edges that continue chosen ones without a corner.
 fn follow_tangents<T: Real>(
     body: &SketchSolid<T>,
     sides: &[Vec<EdgeSide>],
@@ -624,7 +624,7 @@ impl<T: Real> Blending<'_, T> {
                 return Ok(());
             }
         }
-        let next = "choose arcs that go on in other edges without a corner, or end in a plane through their axis";
+        let next = "choose arcs that continue in other edges without a corner, or end in a plane through their axis";
         Err(TreatmentFault::new("an arc ends in a corner", Some(at.re()), next).into())
     }
 

@@ -11,12 +11,10 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The sizes of a blend.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum BlendSize<T> {
     /// The distances from the edge in its first face and its second.
     Chamfer([T; 2]),
-    /// The radius.
     Fillet(T),
 }
 

@@ -10,7 +10,7 @@ use crate::PointId;
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::sync::Arc;
 
-/// A place along an edge, as the map that brings the section there.
+/// A position along an edge, as the map that moves the section there.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SectionPlacing<T> {
     /// Moved along a direction into a plane.
@@ -120,7 +120,7 @@ pub(super) fn swept<T: Real>(
         ring.extend((1..n).map(|k| piece.at(T::from(k as f64 / n as f64))));
     }
     ring.push(second);
-    // The places of the corners in the ring.
+    // The indices of the corners in the ring.
     let places = [0, 1, n + 1];
     let own: Vec<usize> = (0..stations.len()).filter(|&k| stations[k].1).collect();
     let vertices = own.iter().flat_map(|&k| section.corners.map(|c| stations[k].0.point(c)));

@@ -14,7 +14,7 @@ use crate::solid::arrangement::SurfaceCoincidence;
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 
-/// A place where measures have two one-sided derivatives by one number.
+/// A state in which measures have two one-sided derivatives by one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink {
     /// The part of the scalar.
@@ -31,7 +31,7 @@ impl std::fmt::Display for Kink {
         let [x, y, z] = self.at.to_array().map(plain);
         write!(
             f,
-            "{what} at ({x}, {y}, {z}) and they do not move alike: there is a derivative on each side"
+            "{what} at ({x}, {y}, {z}) and they move differently: the derivatives of both sides differ"
         )
     }
 }
@@ -65,7 +65,6 @@ pub(super) fn rates<T: Real>(part: impl Fn(usize) -> Vec3) -> Vec3<T> {
     Vec3::new(T::from_parts(|k| all[k].x), T::from_parts(|k| all[k].y), T::from_parts(|k| all[k].z))
 }
 
-/// A part of a vector.
 pub(super) fn part<T: Real>(v: Vec3<T>, k: usize) -> Vec3 {
     Vec3::new(v.x.part(k), v.y.part(k), v.z.part(k))
 }

@@ -952,7 +952,7 @@ impl<'a, T: Real> Placing<'a, T> {
     }
 }
 
-/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
+/// The parameters u, v of a point on a surface, and the change of u as the point moves by `by`.
 pub(super) fn located<T: Real>(
     surface: &FaceSurface<T>,
     p: Vec3<T>,

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 const ON_ALL: f64 = 1e-11;
 
 impl<T: Real> Placing<'_, T> {
-    /// The place of a corner; `None` when the points of its closed edge say.
+    /// The position of a corner; `None` when the points of its closed edge determine it.
     pub(super) fn corner(
         &self,
         v: u32,
@@ -100,7 +100,8 @@ impl<T: Real> Placing<'_, T> {
         if let Some(at) = known {
             let met = best.filter(|b| b.0 > 1e-3);
             let met = met.and_then(|(_, on, start)| meet(&on, guess, &start, self.scale));
-            // The place is known to the last digit; only its motion is that of the surfaces.
+            // The position is known to the last digit; only its derivatives are those of the
+            // surfaces.
             let near = met.filter(|m| m.at.re().distance(at.re()) <= 1e-7 * self.scale);
             return Ok(Some(near.map_or(at, |m| m.at + Vec3::lifted(at.re() - m.at.re()))));
         }

@@ -65,7 +65,6 @@ pub(crate) struct EdgeFrame<T> {
 }
 
 impl<T: Real> SketchSolid<T> {
-    /// The sides of each edge.
     pub(crate) fn edge_sides(&self) -> Vec<Vec<EdgeSide>> {
         let mut sides = vec![Vec::new(); self.edges.len()];
         for (face, f) in self.faces.iter().enumerate() {
@@ -87,7 +86,6 @@ impl<T: Real> SketchSolid<T> {
         way
     }
 
-    /// True if an edge is straight.
     pub(crate) fn is_straight(&self, edge: usize) -> bool {
         let e = &self.edges[edge];
         let way: Vec<Vec3> = match (&e.trace, e.piece) {
@@ -103,7 +101,6 @@ impl<T: Real> SketchSolid<T> {
                 .all(|p| (*p - first).cross(last - first).norm() <= 1e-10 * length * length)
     }
 
-    /// Class of a face.
     pub(crate) fn form(&self, face: usize) -> FaceForm<T> {
         match self.surface(face) {
             None => {
@@ -275,7 +272,6 @@ impl<T: Real> SketchSolid<T> {
         dv.normalized()
     }
 
-    /// The faces that a choice means.
     pub(crate) fn chosen_faces(&self, choice: &FaceChoice) -> Result<Vec<usize>, TreatmentFault> {
         let found: Vec<usize> = match choice {
             FaceChoice::Named(name) => (0..self.faces.len())

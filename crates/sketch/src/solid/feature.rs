@@ -98,7 +98,7 @@ fn body_of_facets<T: Real>(
     if matches!(why.facet_error(), Some(CombineError::Coarse(_))) {
         return first;
     }
-    // The places of surfaces that touch are not all known.
+    // The points at which surfaces touch are not all known.
     for everywhere in 1..=FINEST_EVERYWHERE {
         match body_at(object, planes, layout, &FacetPlan { everywhere, ..FacetPlan::default() }) {
             Err(why) if why.unclear().is_some() => {}
@@ -128,7 +128,7 @@ struct FinerPlaces {
 }
 
 impl FacetPlan {
-    /// Makes facets finer near places; whether that is still possible.
+    /// Makes facets finer near points; returns whether that was still possible.
     fn refine(&mut self, way: Vec<usize>, places: Vec<Vec3>) -> bool {
         let own = self.near.entry(way).or_default();
         own.asked += 1;
@@ -143,7 +143,7 @@ impl FacetPlan {
         FacetDensity { everywhere: self.everywhere, near }
     }
 
-    /// The plan of an operand that is put into several places.
+    /// The plan of an operand that is used at several positions.
     fn of_operand<T: Real>(&self, k: usize, images: &[Similarity<T>]) -> FacetPlan {
         let near = self.density().near;
         let back =

@@ -212,7 +212,6 @@ fn halve<T: Real>(
     }
 }
 
-/// A triangle divided at the middles of its sides.
 fn divided(t: [u32; 3], middles: &HashMap<MeshSide, u32>) -> Vec<[u32; 3]> {
     let middle = |k: usize| middles.get(&side(t[k], t[(k + 1) % 3])).copied();
     let found = [middle(0), middle(1), middle(2)];

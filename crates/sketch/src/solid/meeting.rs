@@ -25,7 +25,6 @@ enum SymmetryAxis<T> {
     One(Axis<T>),
 }
 
-/// A round cylinder.
 pub(super) struct RoundCylinder<T> {
     axis: Axis<T>,
     radius: T,
@@ -62,7 +61,6 @@ fn translation<T: Real>(surface: &FaceSurface<T>) -> Option<(&SmoothPiece<T>, Ve
     same.then_some((near, *c - *centre))
 }
 
-/// The round cylinder that a surface is a part of.
 pub(super) fn round_cylinder<T: Real>(surface: &FaceSurface<T>) -> Option<RoundCylinder<T>> {
     let (&SmoothPiece::Conic { centre, a, b, .. }, way) = translation(surface)? else {
         return None;

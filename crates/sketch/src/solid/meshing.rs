@@ -208,7 +208,6 @@ impl<T: Real> SketchSolid<T> {
     }
 }
 
-/// A mesh of named parts.
 fn mesh_from<T: Real>(places: Vec<Vec3<T>>, parts: Vec<(String, Vec<[u32; 4]>)>) -> Mesh<T> {
     let mut topology = TopologyBuilder::new();
     // Both fit: the counts are those of the builder itself.

@@ -91,7 +91,6 @@ pub struct IntersectionEdge<T> {
 pub struct Trim<T> {
     /// Its surface.
     pub surface: FaceSurface<T>,
-    /// The face.
     pub(crate) face: usize,
 }
 
@@ -179,7 +178,6 @@ pub struct SketchSolid<T> {
     steps: BTreeMap<usize, u32>,
 }
 
-/// A corner to be replaced.
 struct RoundedCorner<T> {
     curve: usize,
     ends: [PointId; 2],
@@ -252,7 +250,7 @@ pub(crate) fn unchecked<T: Real>(
     Some(build.finish())
 }
 
-/// Labels of points as places in a list: by a table where they are dense, else by search.
+/// Indices of labels in a list: by a table where the labels are dense, else by search.
 struct Labels<'a> {
     ids: &'a [PointId],
     table: Vec<u32>,
@@ -288,7 +286,7 @@ impl<T: Real> Places<'_, T> {
         self.labels.index(p).map(|k| self.at[k])
     }
 
-    /// The place of a point of a face or curve: those exist.
+    /// The position of a point of a face or curve: those exist.
     fn of(&self, p: PointId) -> Vec3<T> {
         self.get(p).unwrap_or_default()
     }
@@ -918,7 +916,6 @@ impl<T: Real> SketchSolid<T> {
         nodes
     }
 
-    /// The surface of a round face.
     pub(crate) fn surface(&self, face: usize) -> Option<FaceSurface<T>> {
         let f = &self.faces[face];
         if let Some(trim) = f.trim {

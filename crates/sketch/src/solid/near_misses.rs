@@ -42,7 +42,7 @@ pub(super) struct NearMissSearch<'a, T> {
     pub scale: f64,
 }
 
-/// A place of a shape: a vertex, or one in an edge or a face, by up to two parameters.
+/// A part of a shape: a vertex, or a point in an edge or a face, by up to two parameters.
 #[derive(Clone, Copy)]
 enum Stratum<'a, T> {
     Vertex(Vec3),
@@ -127,7 +127,6 @@ struct Element<'a, T> {
     operand: usize,
     stratum: Stratum<'a, T>,
     corners: Vec<Vec3>,
-    /// The middle of its corners.
     middle: Vec3,
     /// Its unit normal, or direction of a side.
     way: Vec3,
@@ -304,7 +303,7 @@ impl<T: Real> NearMissSearch<'_, T> {
         out
     }
 
-    /// The place of a common normal of two elements that facets are too coarse for.
+    /// The point of a common normal of two elements for which facets are too coarse.
     fn pair(&self, a: &Element<'_, T>, b: &Element<'_, T>) -> Option<Vec3> {
         // Tangent directions of one are perpendicular to normals of the other, up to the turn of
         // facets.
@@ -475,7 +474,7 @@ fn bounds(points: &[Vec3]) -> [Vec3; 2] {
     })
 }
 
-/// The place that a curve through four places has at a part of the chord.
+/// The point of a curve through four points at a part of the chord.
 fn between(through: &[(f64, Vec3); 4], s: f64) -> Vec3 {
     (0..4).fold(Vec3::zero(), |sum, k| {
         let rest = (0..4).filter(|j| *j != k);
@@ -484,7 +483,6 @@ fn between(through: &[(f64, Vec3); 4], s: f64) -> Vec3 {
     })
 }
 
-/// True for a straight piece.
 fn straight<T: Real>(piece: Option<&SmoothPiece<T>>) -> bool {
     match piece {
         Some(SmoothPiece::Cubic(p)) => {

@@ -91,7 +91,7 @@ impl<T: Real> SketchSolid<T> {
         all
     }
 
-    /// Marks the chords beside the facets of a round face that are near places.
+    /// Marks the chords beside the facets of a round face that are near given points.
     fn mark_face(
         &self,
         f: usize,

@@ -26,7 +26,7 @@ impl std::fmt::Display for ShapeFault {
             ShapeFault::Facets(fault) => {
                 let what = match fault.kind {
                     FacetFaultKind::NotClosed => "the body does not close",
-                    FacetFaultKind::Seam => "a face goes round its axis without room for a seam",
+                    FacetFaultKind::Seam => "a face closes around its axis, and no seam fits on it",
                     FacetFaultKind::Edge => "faces meet, or touch, in an edge that is not found",
                     FacetFaultKind::Vertex => "faces meet in a corner that is not found",
                     FacetFaultKind::Surface => "a face is on no surface that such files hold",

@@ -123,12 +123,9 @@ impl<T: Real> FaceSurface<T> {
     }
 }
 
-/// A carrier of a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carrier<'a, T> {
-    /// A surface.
     Surface(&'a FaceSurface<T>),
-    /// A curve.
     Curve(&'a SmoothPiece<T>),
 }
 

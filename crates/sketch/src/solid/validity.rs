@@ -145,14 +145,13 @@ fn open_edges<T>(body: &SketchSolid<T>) -> Vec<[PointId; 2]> {
     open.map(|(e, _)| body.edges[e].ends.map(|v| body.vertices[v].id)).collect()
 }
 
-/// A facet for the search of crossings.
 struct CrossingFacet {
     normal: Vec3,
     at: Vec3,
     loops: Vec<Vec<u32>>,
     low: Vec3,
     high: Vec3,
-    /// Its corners in order of their numbers, with cycle and place in it, once there are many.
+    /// Its corners in order of their numbers, with cycle and index in it, once there are many.
     corners: Vec<(u32, usize, usize)>,
 }
 
@@ -399,7 +398,6 @@ fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
 enum Shells {
     /// Outer ones outward, those of cavities inward.
     Outward,
-    /// All inward.
     Inward,
     /// Some outward, some inward.
     Mixed,

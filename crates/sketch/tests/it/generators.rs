@@ -81,7 +81,8 @@ fn by_cells(solid: &[[[f64; 2]; 3]], void: &[[[f64; 2]; 3]]) -> [f64; 2] {
     out
 }
 
-/// A block with a square hole whose place and size change at random: notches, pieces and nothing.
+/// A block with a square hole whose position and size change at random: notches, pieces and
+/// nothing.
 #[test]
 fn a_hole_that_wanders() {
     let mut random = Random::new(11);

@@ -11,7 +11,7 @@ pub enum MeanLine<T> {
     InOrdinates,
     /// Two parabolas that meet at the greatest height (four-digit).
     Parabolic {
-        /// That place.
+        /// The position x of that height.
         at: T,
     },
     /// Two cubics that meet at `r` (five-digit); see [`MeanLine::cubic`].
@@ -240,7 +240,7 @@ impl<T: Real> MeanLine<T> {
         }
     }
 
-    /// The places x at which a second derivative may jump.
+    /// The positions x at which a second derivative may jump.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
             MeanLine::Flat | MeanLine::InOrdinates => Vec::new(),

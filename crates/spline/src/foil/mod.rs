@@ -120,7 +120,7 @@ impl<T: Real> Section<T> {
         };
         let modified = |index: T, at: T| {
             let index = within("a nose index", index, 0.0, 9.0)?;
-            let at = within("the place of the greatest thickness", at, 0.2, 0.6)?;
+            let at = within("the position of the greatest thickness", at, 0.2, 0.6)?;
             Ok(Thickness::modified(index, at))
         };
         let half = T::from(0.5);
@@ -144,7 +144,7 @@ impl<T: Real> Section<T> {
         let mean = match if spec.mean.is_empty() { usual } else { spec.mean } {
             "flat" => MeanLine::flat(),
             "parabolic" => {
-                let at = within("the place of the greatest camber", spec.camber_at, 0.01, 0.99)?;
+                let at = within("the position of the greatest camber", spec.camber_at, 0.01, 0.99)?;
                 MeanLine::parabolic(at)
             }
             "a" => MeanLine::uniform_load(within("the extent of the load", load, 0.0, 1.0)?),
@@ -207,7 +207,7 @@ impl<T: Real> Section<T> {
         tail.thickness.re().abs() <= 1e-12 && tail.camber.re().abs() <= 1e-12
     }
 
-    /// The places s in (0, 1) at which a second derivative may jump, ascending.
+    /// The parameters s in (0, 1) at which a second derivative may jump, ascending.
     pub fn breaks(&self) -> Vec<f64> {
         self.with_mean(self.thickness.breaks())
     }

@@ -75,7 +75,7 @@ impl Mapping {
 pub struct ThicknessForm {
     /// Coefficients of the powers 0 to 3 of the position within each interval of s.
     pieces: Vec<[f64; 4]>,
-    /// The place x of the greatest thickness.
+    /// The position x of the greatest thickness.
     top: f64,
 }
 
@@ -138,7 +138,7 @@ pub struct Blended<T> {
 }
 
 impl<T: Real> Blended<T> {
-    /// The place x of the greatest thickness.
+    /// The position x of the greatest thickness.
     pub fn top(&self) -> T {
         let parts = self.forms.iter().zip(&self.shares);
         parts.fold(T::zero(), |sum, (form, share)| sum + *share * form.top)

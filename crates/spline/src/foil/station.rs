@@ -1,7 +1,7 @@
-//! A place of a section, before it is laid between points.
+//! A station of a section, before it is laid between points.
 
-/// A place of a section, in units of the chord, of half the greatest thickness and of the greatest
-/// camber.
+/// A station of a section, in units of the chord, of half the greatest thickness and of the
+/// greatest camber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station<J> {
     /// Distance from the nose along the chord.

@@ -3,7 +3,6 @@
 //! the angle on that circle from the nose (0) to the tail (pi), and the polynomials of their
 //! scale by the thickness ratio (Carmichael, AIAA 2001-5235). Both are in the public domain.
 
-/// A family of thickness forms.
 pub(super) struct ThicknessFamily {
     /// Its name.
     pub name: &'static str,
@@ -15,7 +14,6 @@ pub(super) struct ThicknessFamily {
     pub psi: [u16; 41],
 }
 
-/// The families.
 pub(super) const FAMILIES: [ThicknessFamily; 8] = [
     ThicknessFamily {
         name: "63",

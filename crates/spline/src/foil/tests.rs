@@ -116,7 +116,7 @@ fn the_propeller_section_reproduces_its_table() {
     for (x, y) in thickness::TMB {
         assert!((form.at(f64::sqrt(x)).thickness - y).abs() < 1e-14);
     }
-    // Greatest thickness and place stay when the tail is closed.
+    // Greatest thickness and its position stay when the tail is closed.
     let closed = section("66tmb", 0.1, true);
     assert!(closed.at(1.0).thickness.abs() < 1e-15);
     assert_eq!(closed.at(0.3).thickness.to_bits(), form.at(0.3).thickness.to_bits());

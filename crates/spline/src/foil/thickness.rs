@@ -19,14 +19,14 @@ pub enum Thickness<T: Real> {
         nose: [T; 4],
         /// Behind it.
         tail: [T; 4],
-        /// The place x of the greatest thickness.
+        /// The position x of the greatest thickness.
         at: T,
     },
     /// A spline over s, whose y is the thickness (and z the camber).
     Spline {
         /// The spline.
         spline: Arc<InterpolatingSpline<T>>,
-        /// The place x of the greatest thickness, about.
+        /// The approximate position x of the greatest thickness.
         at: f64,
         /// True when its z is the camber.
         cambered: bool,
@@ -244,7 +244,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The places s at which a second derivative may jump.
+    /// The parameters s at which a second derivative may jump.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
             Thickness::Polynomial(_) => Vec::new(),
@@ -275,7 +275,7 @@ impl<T: Real> Thickness<T> {
 fn tail_angle<T: Real>(m: T) -> T {
     const KNOWN: [(f64, f64); 5] =
         [(0.2, 0.200), (0.3, 0.234), (0.4, 0.315), (0.5, 0.465), (0.6, 0.700)];
-    // Newton's divided differences: exact at the five places up to rounding.
+    // Newton's divided differences: exact at the five points up to rounding.
     let mut table = KNOWN.map(|(_, d)| d);
     for level in 1..5 {
         for k in (level..5).rev() {

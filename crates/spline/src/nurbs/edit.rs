@@ -50,7 +50,6 @@ impl Nurbs<1> {
     }
 }
 
-/// Inserts a knot once.
 fn insert(p: usize, knots: &mut Vec<f64>, values: &mut Vec<data::Value>, t: f64) {
     let k = knots.partition_point(|&x| x <= t) - 1;
     let mut new = Vec::with_capacity(values.len() + 1);

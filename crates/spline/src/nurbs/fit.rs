@@ -162,7 +162,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
         40.0 * ROUNDING * self.scale
     }
 
-    /// Few parameters of an axis: its ends, and places inside each span.
+    /// A few parameters of an axis: its ends, and others inside each span.
     fn probes(&self, d: usize) -> Vec<f64> {
         let mut all = vec![0.0];
         // Many spans are distinguished from few of them.

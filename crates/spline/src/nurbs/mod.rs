@@ -31,7 +31,7 @@ pub struct Nurbs<const D: usize> {
     pub points: Vec<Vec3>,
     /// Weights in the order of the points; `None` if all are 1.
     pub weights: Option<Vec<f64>>,
-    /// A bound of the distance from the shape at equal places.
+    /// A bound of the distance from the shape at equal parameters.
     pub error: f64,
     /// True when the shape is this NURBS but for rounding.
     pub exact: bool,

@@ -1,4 +1,4 @@
-//! The tree as text without places, to compare and to look at.
+//! The tree as text without spans, for comparison and for reading.
 
 use super::ast::*;
 use super::interner::Symbol;

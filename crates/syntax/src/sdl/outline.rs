@@ -31,7 +31,6 @@ pub struct Fold {
     pub comment: bool,
 }
 
-/// A bracket that is open.
 struct OpenBracket {
     kind: Kind,
     callee: Option<(u32, u32)>,

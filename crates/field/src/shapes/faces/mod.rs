@@ -152,7 +152,6 @@ fn seen([a, b, c]: [Vec3; 3]) -> f64 {
     2.0 * libm::atan2(volume, rest)
 }
 
-/// A plane side.
 struct PlaneSide<T> {
     level: HessePlane,
     normal: Vec3<T>,

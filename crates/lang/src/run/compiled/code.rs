@@ -336,7 +336,6 @@ pub(super) enum ScalarOp {
     },
     /// `return;`, or the end of a routine.
     Leave,
-    /// The end of the region.
     End,
     /// A statement that the interpreter executes.
     Interpret {
@@ -352,7 +351,6 @@ pub(super) enum ScalarOp {
 /// For turns without a number, and for a dimension that is not there.
 pub(super) const NO_LABEL: u16 = u16::MAX;
 
-/// A variable of a unit.
 #[derive(Clone, Debug)]
 pub(super) struct CodeVariable {
     pub name: Name,
@@ -412,7 +410,6 @@ pub(super) struct CodeSite {
     pub valued: bool,
 }
 
-/// An argument of a call.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CodeArgument {
     Number {
@@ -545,7 +542,6 @@ impl<T: Real> CodeUnit<T> {
     }
 }
 
-/// Start of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum RegionStart {
     Loop(StmtId),

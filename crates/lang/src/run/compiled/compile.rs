@@ -20,7 +20,7 @@ use moldloft_syntax::sdl::{
 };
 use std::collections::{HashMap, HashSet};
 
-/// The most operations of a unit: places in it are small numbers.
+/// The most operations of a unit: indices in it are small numbers.
 const MOST_CODE: usize = 30_000;
 
 /// The most units of a region, and the most times it is compiled until all names are settled.
@@ -500,7 +500,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    /// A place where the interpreter takes over, or a routine is called.
+    /// A point where the interpreter takes over, or a routine is called.
     pub fn site(&mut self, stmt: StmtId, expr: Option<ExprId>, span: Span) -> Result<u16, Unfit> {
         let loops = self.progress[self.unit].loops.iter().map(|l| l.active).collect();
         let sites = &mut self.units[self.unit].sites;

@@ -13,7 +13,6 @@ pub(super) enum RegionState<T: Real> {
     Never(Generation),
 }
 
-/// The code of a run.
 pub(crate) struct ScalarCode<T: Real> {
     pub(super) regions: HashMap<(usize, RegionStart), RegionState<T>>,
     /// The names that `global` declarations in routines make, and whether all routines are known to load nothing.

@@ -191,7 +191,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 at!($to) = x;
             }};
         }
-        // A step is counted when it is sure that the run may go on.
+        // A step is counted once it is certain that the run may continue.
         macro_rules! step {
             () => {{
                 if now + 1 >= look_at {

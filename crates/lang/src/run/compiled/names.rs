@@ -155,7 +155,6 @@ pub(super) fn held<T: Scalar>(scope: &Scope<T>, bound: &ScopedBinding<T>) -> Opt
     }
 }
 
-/// The type of the elements of an array.
 pub(super) fn element_type(ty: Type) -> Type {
     if ty == Type::Farray { Type::Float } else { Type::Vector }
 }

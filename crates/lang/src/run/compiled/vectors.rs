@@ -15,7 +15,6 @@ use moldloft_syntax::sdl::{
     Symbol, Type, UnaryOp,
 };
 
-/// The registers of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum CodeValue {
     Number(u16),

@@ -403,7 +403,6 @@ fn split(pool: &Pool, segments: impl Iterator<Item = (u32, u32)>) -> Chains {
     chains
 }
 
-/// The points from `a` to `b`.
 fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
     match chains.get(&(a.min(b), a.max(b))) {
         None => vec![a, b],

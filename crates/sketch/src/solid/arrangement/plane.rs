@@ -4,7 +4,6 @@ use super::pool::Pool;
 use super::{Facet, edges_of};
 use moldloft_num::Vec3;
 
-/// Coordinates in a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneCoordinates {
     pub normal: Vec3,
@@ -57,7 +56,7 @@ pub(super) fn facet_winding(pool: &Pool, facet: &Facet, frame: &PlaneCoordinates
     winding(edges, frame.flat(p))
 }
 
-/// A stop on the common line of two planes: where along it, and the exact place.
+/// A stop on the common line of two planes: the parameter on the line, and the exact point.
 type Stop = (f64, Vec3);
 
 /// The intervals of a line in the plane of a facet that are in it, its border included.

@@ -106,7 +106,7 @@ pub(crate) struct SourceLayout {
     pub close_at: Vec<u32>,
 }
 
-/// The fault has been reported; whoever can go on after it takes over.
+/// The fault has been reported; the caller that can continue after it does so.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported;
 
@@ -116,7 +116,6 @@ struct Parser {
     tokens: Vec<Token>,
     at: usize,
     program: Program,
-    /// Height of each expression.
     heights: Vec<u16>,
     diagnostics: Vec<Diagnostic>,
     /// Faults beyond the limit.

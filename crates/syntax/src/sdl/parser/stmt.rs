@@ -142,7 +142,6 @@ impl Parser {
         Ok(self.push_stmt(kind, self.span_from(start)))
     }
 
-    /// A statement that begins with a name.
     fn named_statement(&mut self, depth: u32) -> Parse<StmtId> {
         let (first, second, third) = (self.token(), self.peek(1), self.peek(2));
         if first.is_ident(RECORD) && second.kind == Kind::Ident && third.kind == Kind::LBrace {
