@@ -247,6 +247,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="what the numbers of a file of points are in; default: what it states. Splines are "
         "written with it",
     )
+    parser.add_argument(
+        "--round",
+        metavar="STEP",
+        type=words.step,
+        help="the step of the numbers written, as in 0.001 or 1/16; 0 for all digits; default: of "
+        "a table of offsets its own digit, all digits of other points",
+    )
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
     parser.add_argument(
@@ -548,23 +555,23 @@ class _Points(_Source):
         self.unit = file.unit
 
     def fair(self, options: argparse.Namespace) -> Result:
+        import numpy as np
+
         if options.units and self.file.unit not in (None, options.units):
             raise Error(
                 f"--units {options.units}: the numbers of {self.file.path} are in {self.file.unit}"
             )
         self.unit = options.units or self.file.unit
-        if self.file.offsets and self.file.inches:
+        self.step = options.round
+        self.limits = np.asarray(np.inf if options.tol is None else options.tol, np.float64)
+        if self.file.offsets and self.file.inches and self.file.motions is None:
             self.said.append(
                 "stations and waterlines that are plain numbers are inches, too: "
                 "write their places, if they are numbers of stations"
             )
-        if self.file.offsets and _motion(options) == "ball":
-            if self.file.moves == 2:
-                self.said.append("heights move; stations and buttocks stay")
-                options.along = [0.0, 0.0, 1.0]
-            else:
-                self.said.append("half-breadths move; stations and heights stay")
-                options.along = [0.0, 1.0, 0.0]
+        if self.file.fixed_stations and _motion(options) == "ball":
+            self.said.append("offsets move; stations stay")
+            options.along = [0.0, 1.0]
         if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
             return self._network(options)
         from moldloft.fairing import fair
@@ -592,6 +599,8 @@ class _Points(_Source):
         return FairingError(f"{self.file.path}:{line}: {text}", index=error.index)
 
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
+        import numpy as np
+
         from moldloft.fairing import network
 
         _refuse_curves_only(options)
@@ -617,18 +626,10 @@ class _Points(_Source):
                 raise Error(
                     f"{name}: not for networks; {self.file.path} has {len(self.file.blocks)} curves"
                 )
-        places: dict[bytes, int] = {}
-        rows: list[int] = []
-        self.of_row: list[int] = []
-        for k, point in enumerate(self.file.points):
-            key = (point + 0.0).tobytes()
-            if key not in places:
-                places[key] = len(rows)
-                rows.append(k)
-            self.of_row.append(places[key])
+        rows = self._different()
         curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
-        first = [rows.index(rows[k]) for k in range(len(rows))]
-        assert first == list(range(len(rows)))
+        tolerances = self._tolerances(options, rows)
+        self.limits = np.broadcast_to(np.inf if tolerances is None else tolerances, len(rows))
         marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
         fixed: Any = options.ends or "corners"
         if options.fixed:
@@ -637,7 +638,7 @@ class _Points(_Source):
             result = network(
                 self.file.points[rows],
                 curves,
-                self._tolerances(options, rows),
+                tolerances,
                 degree=options.degree,
                 measure=options.measure or "third",
                 mode=options.mode,
@@ -645,7 +646,7 @@ class _Points(_Source):
                 goal=options.goal,
                 breaks=marks,
                 fixed=fixed,
-                motion=_motion(options),
+                motion=self._axes(options, rows),
                 bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
@@ -655,23 +656,42 @@ class _Points(_Source):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
         if self.file.offsets:
-            result = self._named(result, rows)
+            called = tuple(self.file.point_names[self.file.places[k]] for k in rows)
+            result = replace(result, names=tuple(self.file.names), point_names=called)
             if self.file.moves == 1:
                 self._across(result, rows)
         return result
 
-    def _named(self, result: NetworkFairing, rows: list[int]) -> NetworkFairing:
-        """With the stations and waterlines of the table for names."""
-        other = 3 - self.file.moves
-        word = "waterline" if other == 2 else "buttock"
-        points = self.file.points[rows]
-        names = []
-        for own in result.lists:
-            first, second = points[own[0]], points[own[1]]
-            station = first[0] == second[0]
-            names.append(f"station {first[0]:g}" if station else f"{word} {first[other]:g}")
-        called = tuple(f"station {p[0]:g}, {word} {p[other]:g}" for p in points)
-        return replace(result, names=tuple(names), point_names=called)
+    def _different(self) -> list[int]:
+        """Of each different point its first row; of each row of the curves its point."""
+        rows: list[int] = []
+        keys: dict[Any, int] = {}
+        self.of_row: list[int] = []
+        for k, point in enumerate(self.file.points):
+            key = self.file.places[k] if self.file.offsets else (point + 0.0).tobytes()
+            if key not in keys:
+                keys[key] = len(rows)
+                rows.append(k)
+            self.of_row.append(keys[key])
+        return rows
+
+    def _axes(self, options: argparse.Namespace, rows: list[int]) -> Any:
+        """The motion of the network, or the axes of each point of a table that has several."""
+        file, motion = self.file, _motion(options)
+        if motion != "ball" or not file.offsets:
+            return motion
+        if file.motions is None:
+            self.said.append(
+                "heights move; stations and buttocks stay"
+                if file.moves == 2
+                else "half-breadths move; stations and heights stay"
+            )
+            return (0.0, 0.0, 1.0) if file.moves == 2 else (0.0, 1.0, 0.0)
+        self.said.append(
+            "half-breadths of waterlines and heights of buttocks move, both of a sheer; stations "
+            "and ends on stem and post stay"
+        )
+        return [file.motions[file.places[k]] for k in rows]
 
     def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
         """One tolerance, or that of each different point."""
@@ -723,15 +743,25 @@ class _Points(_Source):
                 # Each row of the table once, as it stood.
                 table = like.table.copy()
                 table[like.places] = rows
-                rows, like = table, replace(like, blocks=[range(len(table))])
-            return _commit(path, points_text(rows, like).encode())
+                tol = np.zeros(len(table))
+                tol[like.places] = self.limits[self.of_row]
+                rows = table
+            else:
+                tol = self.limits[self.of_row]
+            return self._text(path, points_text(rows, like, tol=tol, step=self.step))
         points = result.points
         if self.closing:
             points = np.concatenate([points, points[:1]])
         same = path.suffix.lower() == self.file.path.suffix.lower()
         form = self.file if same else None
         delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-        return _commit(path, points_text(points, form, delimiter).encode())
+        tol = np.broadcast_to(self.limits, len(result.points))
+        if self.closing:
+            tol = np.append(tol, tol[:1])
+        return self._text(path, points_text(points, form, delimiter, tol=tol, step=self.step))
+
+    def _text(self, path: Path, text: str) -> Path:
+        return _commit(path, text.encode(self.file.encoding))
 
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
