@@ -15,7 +15,16 @@ from moldloft.cli.console import Progress, assignment, print_json
 from moldloft.errors import Error, FairingError
 
 if TYPE_CHECKING:
-    from moldloft.fairing import Fairing, NetworkFairing, PatchesFairing, Spline, SurfaceFairing
+    from collections.abc import Sequence
+
+    from moldloft.fairing import (
+        Fairing,
+        NetworkFairing,
+        PatchesFairing,
+        Spline,
+        Suspect,
+        SurfaceFairing,
+    )
     from moldloft.fairing.files import GridFile, PointFile
 
     Result = Fairing | SurfaceFairing | NetworkFairing | PatchesFairing
@@ -261,6 +270,22 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="P.html",
         help="one page about it: pictures to scale, every point and its move, the spline",
     )
+    parser.add_argument(
+        "--sheet",
+        metavar="P.pdf",
+        help="a sheet to sign, .pdf or .html: title block, offsets before and after, curves, "
+        "combs, the lines at a scale",
+    )
+    parser.add_argument(
+        "--suspects",
+        metavar="COUNT",
+        type=int,
+        nargs="?",
+        const=10,
+        default=0,
+        help="offsets that their neighbours contradict, the clearest first, with the reading that "
+        "was probably meant; default of COUNT: 10",
+    )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
     parser.add_argument(
@@ -309,6 +334,8 @@ def run(options: argparse.Namespace) -> int:
         raise Error(
             f"a report is .html, not `{options.report}`: a browser prints such a page as PDF"
         )
+    if options.sheet and Path(options.sheet).suffix.lower() not in (".html", ".htm", ".pdf"):
+        raise Error(f"a sheet is .pdf or .html, not `{options.sheet}`")
     if isinstance(options.tol, str):
         options.tol = _numbers(options.tol)
     if options.tol is None and not options.json:
@@ -345,6 +372,13 @@ def run(options: argparse.Namespace) -> int:
                 raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
+        if options.suspects:
+            progress.stage("looking for suspects")
+            found = source.suspects(result, options.suspects)
+            data["suspects"] = [s.as_dict() for s in found]
+        if options.sheet:
+            progress.stage(f"writing {options.sheet}")
+            files.append(source.sheet(result, Path(options.sheet), options))
         if options.report:
             from moldloft.fairing.page import write_page
 
@@ -359,6 +393,8 @@ def run(options: argparse.Namespace) -> int:
     print(result)
     for note in source.notes():
         print(f"note: {note}")
+    for rank, suspect in enumerate(found if options.suspects else (), 1):
+        print(f"suspect {rank}: {suspect}")
     for file in files:
         print(f"wrote {file}")
     return 0
@@ -422,6 +458,14 @@ class _Source(abc.ABC):
         command = shlex.join(["moldloft", *sys.argv[1:]])
         today = datetime.datetime.now().astimezone().date().isoformat()
         return [("source", self.title), ("command", command), ("date", today)]
+
+    def suspects(self, result: Any, most: int) -> Sequence[Suspect]:
+        """The suspects among the points."""
+        raise Error("--suspects: for files of points and tables of offsets")
+
+    def sheet(self, result: Any, path: Path, options: argparse.Namespace) -> Path:
+        """Writes the sheet; the path that it was written to."""
+        raise Error("--sheet: for files of points and tables of offsets; --report is for others")
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
@@ -585,6 +629,7 @@ class _Points(_Source):
         role = options.role or ("fit" if options.mode == "optimum" else "control")
         chosen = _curve_options(options, len(points), role)
         try:
+            self.rows, self.motion = list(range(len(points))), chosen["motion"]
             result = fair(points, options.tol, as_=role, **chosen)
         except FairingError as error:
             raise self._placed(error) from error
@@ -630,6 +675,7 @@ class _Points(_Source):
         curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
         tolerances = self._tolerances(options, rows)
         self.limits = np.broadcast_to(np.inf if tolerances is None else tolerances, len(rows))
+        self.rows, self.motion = rows, self._axes(options, rows)
         marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
         fixed: Any = options.ends or "corners"
         if options.fixed:
@@ -646,7 +692,7 @@ class _Points(_Source):
                 goal=options.goal,
                 breaks=marks,
                 fixed=fixed,
-                motion=self._axes(options, rows),
+                motion=self.motion,
                 bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
@@ -715,6 +761,45 @@ class _Points(_Source):
                 "`--fixed` keeps points"
             )
 
+    def suspects(self, result: Any, most: int) -> Sequence[Suspect]:
+        from moldloft.cli.fair_sheet import suspects_of
+
+        return suspects_of(self.file, result, self.rows, self.motion, most)
+
+    def sheet(self, result: Any, path: Path, options: argparse.Namespace) -> Path:
+        from moldloft.cli import fair_sheet
+        from moldloft.fairing.files import cell_texts
+        from moldloft.fairing.sheet import write_sheet
+
+        table = None
+        if self.file.offsets and self.file.cells is not None:
+            points, tol = self._rows(result)
+            texts = cell_texts(points, self.file, tol, self.step)
+            table = fair_sheet.sheet_table(self.file, texts)
+        facts = [*fair_sheet.source_facts(self.file.path, options), *self.stated()[1:]]
+        return write_sheet(
+            result,
+            path,
+            f"Fairing of {self.file.path.name}",
+            facts=facts,
+            table=table,
+            suspects=self.suspects(result, fair_sheet.MOST),
+            unit=self.unit,
+            limits=self.limits,
+            notes=self.said,
+        )
+
+    def _rows(self, result: Any) -> tuple[Any, Any]:
+        """The rows of the file as they are faired, and their tolerances."""
+        import numpy as np
+
+        rows, tol = result.points[self.of_row], self.limits[self.of_row]
+        if self.file.table is None:
+            return rows, tol
+        table, each = self.file.table.copy(), np.zeros(len(self.file.table))
+        table[self.file.places], each[self.file.places] = rows, tol
+        return table, each
+
     def notes(self) -> list[str]:
         return self.said
 
@@ -737,17 +822,11 @@ class _Points(_Source):
                 self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
             return _commit(path, encoded(curves, path, self.unit))
         if hasattr(result, "lists"):
-            rows = result.points[self.of_row]
             like: PointFile = self.file
+            rows, tol = self._rows(result)
             if like.table is not None:
                 # Each row of the table once, as it stood.
-                table = like.table.copy()
-                table[like.places] = rows
-                tol = np.zeros(len(table))
-                tol[like.places] = self.limits[self.of_row]
-                rows = table
-            else:
-                tol = self.limits[self.of_row]
+                like = replace(like, blocks=[range(len(rows))])
             return self._text(path, points_text(rows, like, tol=tol, step=self.step))
         points = result.points
         if self.closing:

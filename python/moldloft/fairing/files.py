@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = [
     "GridFile",
     "PointFile",
+    "cell_texts",
     "is_grid",
     "points_text",
     "read_grids",
@@ -355,7 +356,7 @@ def points_text(
     given = None if like is None else like.points if like.table is None else like.table
     alike = given is not None and np.shape(points) == np.shape(given)
     if like is not None and like.cells is not None and given is not None and alike:
-        return _in_cells(points, given, like, tol, step)
+        return like.cells.written(cell_texts(points, like, tol, step))
     if like is not None and like.table is not None:
         raise FairingError("the rows of a table of offsets are as many as were read")
     if step and given is not None and alike:
@@ -383,16 +384,28 @@ def _rounded_point(point: Floats, given: Floats, step: float, tol: float) -> Flo
     return np.array([b if a == b else rounded(a, b, step, abs(a - b)) for a, b in pairs])
 
 
-def _in_cells(
-    points: Floats,
-    given: Floats,
-    like: PointFile,
-    tol: Floats | float | None,
-    step: float | None,
-) -> str:
-    """The text of a table with the numbers that changed."""
-    cells = like.cells
-    assert cells is not None
+def cell_texts(
+    points: Floats, like: PointFile, tol: Floats | float | None = None, step: float | None = None
+) -> list[str | None]:
+    """The numbers of the cells of a table that changed, as they are written; ``None`` for others.
+
+    Parameters
+    ----------
+    points
+        The rows of the table, as many as were read.
+    like
+        The file read, with cells.
+    tol, step
+        See :func:`points_text`.
+
+    Raises
+    ------
+    FairingError
+        When a coordinate changed that has no cell.
+    """
+    cells, given = like.cells, like.points if like.table is None else like.table
+    if cells is None:
+        raise FairingError(f"`{like.path}` is no table with cells")
     changed = {(int(k), int(axis)) for k, axis in np.argwhere(points != given)}
     if beyond := changed - set(cells.owners):
         row, axis = min(beyond)
@@ -414,7 +427,7 @@ def _in_cells(
         new = float(at_step[row, axis])
         same = new == given[row, axis]
         texts.append(None if same else written_as(new, cells.cell(k), step))
-    return cells.written(texts)
+    return texts
 
 
 def _own_form(points: Floats, like: PointFile) -> str:
