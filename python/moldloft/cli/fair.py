@@ -22,14 +22,14 @@ if TYPE_CHECKING:
         NetworkFairing,
         PatchesFairing,
         Spline,
-        Suspect,
         SurfaceFairing,
+        Suspect,
     )
     from moldloft.fairing.files import GridFile, PointFile
 
     Result = Fairing | SurfaceFairing | NetworkFairing | PatchesFairing
 
-__all__ = ["add", "run"]
+__all__ = ["Source", "add", "commit_file", "curve_options", "fair_grid", "known_ending", "run"]
 
 _EPILOG = """
 FILE is rows of points (CSV, blanks or tabs; an aerofoil with its title), a Plot3D surface, or an
@@ -273,8 +273,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sheet",
         metavar="P.pdf",
-        help="a sheet to sign, .pdf or .html: title block, offsets before and after, curves, "
-        "combs, the lines at a scale",
+        help="a sheet to sign, .pdf or .html: offsets before and after, curves, combs, lines 1 : n",
     )
     parser.add_argument(
         "--suspects",
@@ -284,7 +283,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         const=10,
         default=0,
         help="offsets that their neighbours contradict, the clearest first, with the reading that "
-        "was probably meant; default of COUNT: 10",
+        "probably meant; default of COUNT: 10",
     )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
@@ -334,8 +333,6 @@ def run(options: argparse.Namespace) -> int:
         raise Error(
             f"a report is .html, not `{options.report}`: a browser prints such a page as PDF"
         )
-    if options.sheet and Path(options.sheet).suffix.lower() not in (".html", ".htm", ".pdf"):
-        raise Error(f"a sheet is .pdf or .html, not `{options.sheet}`")
     if isinstance(options.tol, str):
         options.tol = _numbers(options.tol)
     if options.tol is None and not options.json:
@@ -378,7 +375,7 @@ def run(options: argparse.Namespace) -> int:
             data["suspects"] = [s.as_dict() for s in found]
         if options.sheet:
             progress.stage(f"writing {options.sheet}")
-            files.append(source.sheet(result, Path(options.sheet), options))
+            files.append(source.sheet(result, Path(options.sheet)))
         if options.report:
             from moldloft.fairing.page import write_page
 
@@ -400,11 +397,13 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _source(options: argparse.Namespace) -> _Source:
+def _source(options: argparse.Namespace) -> Source:
     name = options.file
     model, colon, thing = name.rpartition(":")
     if colon and thing and Path(model).suffix.lower() in (".sdl", ".ms2", ".mul"):
-        return _Object(model, thing, options)
+        from moldloft.cli.fair_object import ObjectSource
+
+        return ObjectSource(model, thing, options)
     path = Path(name)
     if path.suffix.lower() in (".sdl", ".ms2"):
         raise Error(f"which object of `{name}` is to be faired? write `{name}:NAME`")
@@ -436,7 +435,7 @@ def _ends(options: argparse.Namespace) -> Any:
     return ends[0] if len(ends) == 1 else tuple(ends)
 
 
-class _Source(abc.ABC):
+class Source(abc.ABC):
     """Data to fair: its source, and how the result is written."""
 
     title = ""
@@ -446,9 +445,11 @@ class _Source(abc.ABC):
         """The result by these options."""
 
     def facts(self) -> dict[str, Any]:
+        """Data of the report beside those of the result."""
         return {"source": self.title}
 
     def notes(self) -> list[str]:
+        """Sentences beside those of the result."""
         return []
 
     def stated(self) -> list[tuple[str, str]]:
@@ -463,7 +464,7 @@ class _Source(abc.ABC):
         """The suspects among the points."""
         raise Error("--suspects: for files of points and tables of offsets")
 
-    def sheet(self, result: Any, path: Path, options: argparse.Namespace) -> Path:
+    def sheet(self, result: Any, path: Path) -> Path:
         """Writes the sheet; the path that it was written to."""
         raise Error("--sheet: for files of points and tables of offsets; --report is for others")
 
@@ -497,7 +498,8 @@ def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
     return out
 
 
-def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
+def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
+    """The options of a curve by their names in Python."""
     for name, given in (
         ("--rims", options.rims != "corners"),
         ("--normal", options.normal),
@@ -565,20 +567,14 @@ def _original(options: argparse.Namespace, count: int) -> Any:
     return file.points
 
 
-def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:
-    from moldloft.fairing.files import points_text
-
-    delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-    return points_text(result.points, like, delimiter).encode()
-
-
-def _commit(path: Path, data: bytes) -> Path:
+def commit_file(path: Path, data: bytes) -> Path:
+    """Writes a file, all of it or nothing."""
     from moldloft.files import Output, commit
 
     return commit(path.parent, [Output(path.name, data)])[0]
 
 
-def _known_ending(path: Path, source: Path | None) -> None:
+def known_ending(path: Path, source: Path | None) -> None:
     """Refuses an ending that says nothing, before anything is written."""
     from moldloft.fairing.spline_files import POINTS, SPLINES
 
@@ -589,7 +585,7 @@ def _known_ending(path: Path, source: Path | None) -> None:
     raise Error(f"--output: `{path}`: expected an ending of {', '.join(known)}")
 
 
-class _Points(_Source):
+class _Points(Source):
     """A file of points."""
 
     def __init__(self, file: PointFile) -> None:
@@ -627,7 +623,7 @@ class _Points(_Source):
             points = points[:-1]
             self.closing = True
         role = options.role or ("fit" if options.mode == "optimum" else "control")
-        chosen = _curve_options(options, len(points), role)
+        chosen = curve_options(options, len(points), role)
         try:
             self.rows, self.motion = list(range(len(points))), chosen["motion"]
             result = fair(points, options.tol, as_=role, **chosen)
@@ -766,33 +762,26 @@ class _Points(_Source):
 
         return suspects_of(self.file, result, self.rows, self.motion, most)
 
-    def sheet(self, result: Any, path: Path, options: argparse.Namespace) -> Path:
-        from moldloft.cli import fair_sheet
-        from moldloft.fairing.files import cell_texts
-        from moldloft.fairing.sheet import write_sheet
+    def sheet(self, result: Any, path: Path) -> Path:
+        from moldloft.cli.fair_sheet import SHEET_SUSPECTS, write_sheet_of
+        from moldloft.fairing.sheet import SheetDetails
 
-        table = None
-        if self.file.offsets and self.file.cells is not None:
-            points, tol = self._rows(result)
-            texts = cell_texts(points, self.file, tol, self.step)
-            table = fair_sheet.sheet_table(self.file, texts)
-        facts = [*fair_sheet.source_facts(self.file.path, options), *self.stated()[1:]]
-        return write_sheet(
-            result,
-            path,
-            f"Fairing of {self.file.path.name}",
-            facts=facts,
-            table=table,
-            suspects=self.suspects(result, fair_sheet.MOST),
+        points, tol = self._rows(result)
+        details = SheetDetails(
+            facts=self.stated()[1:],
+            suspects=self.suspects(result, SHEET_SUSPECTS),
             unit=self.unit,
             limits=self.limits,
             notes=self.said,
         )
+        return write_sheet_of(self.file, result, path, (points, tol, self.step), details)
 
     def _rows(self, result: Any) -> tuple[Any, Any]:
         """The rows of the file as they are faired, and their tolerances."""
         import numpy as np
 
+        if not hasattr(result, "lists"):
+            return result.points, np.broadcast_to(self.limits, len(result.points))
         rows, tol = result.points[self.of_row], self.limits[self.of_row]
         if self.file.table is None:
             return rows, tol
@@ -815,17 +804,16 @@ class _Points(_Source):
         from moldloft.fairing.files import points_text
         from moldloft.fairing.spline_files import SPLINES, encoded
 
-        _known_ending(path, self.file.path)
+        known_ending(path, self.file.path)
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
             if self.unit is None and path.suffix.lower() in (".igs", ".iges"):
                 self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
-            return _commit(path, encoded(curves, path, self.unit))
+            return commit_file(path, encoded(curves, path, self.unit))
         if hasattr(result, "lists"):
             like: PointFile = self.file
             rows, tol = self._rows(result)
             if like.table is not None:
-                # Each row of the table once, as it stood.
                 like = replace(like, blocks=[range(len(rows))])
             return self._text(path, points_text(rows, like, tol=tol, step=self.step))
         points = result.points
@@ -834,13 +822,13 @@ class _Points(_Source):
         same = path.suffix.lower() == self.file.path.suffix.lower()
         form = self.file if same else None
         delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-        tol = np.broadcast_to(self.limits, len(result.points))
+        tol = self._rows(result)[1]
         if self.closing:
             tol = np.append(tol, tol[:1])
         return self._text(path, points_text(points, form, delimiter, tol=tol, step=self.step))
 
     def _text(self, path: Path, text: str) -> Path:
-        return _commit(path, text.encode(self.file.encoding))
+        return commit_file(path, text.encode(self.file.encoding))
 
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
@@ -868,7 +856,8 @@ def _grid_weights(path: str | None, shape: tuple[int, int]) -> Any:
     return np.reshape(numbers, shape)
 
 
-def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
+def fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
+    """Fairs a grid of points as a surface."""
     from moldloft.fairing import fair
 
     _refuse_curves_only(options)
@@ -919,7 +908,7 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
     return fair(grid, tol, **chosen)  # type: ignore[return-value]
 
 
-class _Grids(_Source):
+class _Grids(Source):
     """A Plot3D file."""
 
     def __init__(self, file: GridFile, options: argparse.Namespace) -> None:
@@ -943,7 +932,7 @@ class _Grids(_Source):
     def fair(self, options: argparse.Namespace) -> Result:
         if self.all:
             return self._patches(options)
-        return _fair_grid(self.file.grids[self.at], options.role or "control", options)
+        return fair_grid(self.file.grids[self.at], options.role or "control", options)
 
     def _patches(self, options: argparse.Namespace) -> PatchesFairing:
         from moldloft.fairing import patches
@@ -1001,70 +990,6 @@ class _Grids(_Source):
         return self.file.write(path, grids)
 
 
-class _Object(_Source):
-    """An object of a model: a curve, a surface, or rows of points."""
-
-    def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
-        from moldloft.fairing.objects import sampled
-        from moldloft.loading import load
-
-        if isinstance(options.tol, list):
-            raise Error("--tol FILE is for points: those of an object are sampled")
-        if options.units:
-            raise Error("--units is for files of points: a model states its own")
-        loaded = load(model, library=options.library)
-        if options.set:
-            loaded.set(dict(options.set))
-        self.title = f"{model}:{name}"
-        self.unit = loaded.length_unit[0]
-        self.made = sampled(loaded, name, options.tol)
-        self.error = self.made.error
-
-    def fair(self, options: argparse.Namespace) -> Result:
-        from moldloft.fairing import fair
-
-        made = self.made
-        if made.points.ndim == 3:
-            return _fair_grid(made.points, options.role or made.role, options)
-        if made.closed:
-            options.closed = True
-        chosen = _curve_options(options, len(made.points), options.role or made.role)
-        if not options.breaks and made.breaks:
-            chosen["breaks"] = made.breaks
-        if made.role == "fit" and not made.breaks:
-            chosen["spacing"] = "index"
-        if (options.role or made.role) == "fit" and options.mode == "optimum":
-            # The object itself is what the tolerance is about, between its points too.
-            chosen["bound"] = options.bound or "curve"
-        return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
-
-    def facts(self) -> dict[str, Any]:
-        return {"source": self.title, "fit_error": self.error}
-
-    def notes(self) -> list[str]:
-        if self.error is None:
-            return []
-        count = " x ".join(str(n) for n in self.made.points.shape[:-1])
-        return [
-            f"{count} points of the object were fitted; between them it is {self.error:.2e} off"
-        ]
-
-    def write(self, result: Any, path: Path) -> Path:
-        if self.made.points.ndim == 3:
-            if path.suffix.lower() == ".vts":
-                result.write_vtk(path)
-                return path
-            from moldloft.grids import write_plot3d
-
-            return write_plot3d(path, [result.points])
-        from moldloft.fairing.spline_files import SPLINES, encoded
-
-        _known_ending(path, None)
-        if path.suffix.lower() in SPLINES:
-            return _commit(path, encoded([result.spline], path, self.unit))
-        return _commit(path, _encode_curve(result, path, None))
-
-
 def _write_log(result: Any, path: Path) -> Path:
     log = getattr(result, "log", None)
     if log is None:
@@ -1072,4 +997,4 @@ def _write_log(result: Any, path: Path) -> Path:
     rows = ["point, x, y, z"]
     for index, to in zip(*log, strict=True):
         rows.append(", ".join([str(int(index) + 1), *(repr(float(c)) for c in to)]))
-    return _commit(path, ("\n".join(rows) + "\n").encode())
+    return commit_file(path, ("\n".join(rows) + "\n").encode())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from moldloft.fairing import Fairing, NetworkFairing, Suspect
     from moldloft.fairing.files import PointFile
-    from moldloft.fairing.sheet import SheetTable
+    from moldloft.fairing.sheet import SheetDetails, SheetTable
 
-__all__ = ["readings", "sheet_table", "source_facts", "suspects_of"]
+__all__ = ["SHEET_SUSPECTS", "readings", "suspects_of", "write_sheet_of"]
 
-#: Suspects of a page and of a sheet.
-MOST = 10
+#: Suspects of a sheet at most.
+SHEET_SUSPECTS = 10
 
 
 def suspects_of(
@@ -36,25 +35,26 @@ def suspects_of(
     most
         The length of the list at most.
     """
-    import numpy as np
-
-    from moldloft.fairing import suspects
+    from moldloft.fairing import NetworkFairing, suspects
 
     axes: Any = motion if isinstance(motion, list) else None
     if isinstance(motion, tuple) and not isinstance(motion[0], str):
         axes = "".join(a for a, c in zip("xyz", motion, strict=False) if c)
     elif isinstance(motion, tuple):
         axes = "".join(a for a, c in zip("xyz", motion[1], strict=False) if not c)
-    lists = getattr(result, "lists", None)
+    tol = 0.0 if result.tol is None else result.tol
+    cells = readings(file, rows)
+    if not isinstance(result, NetworkFairing):
+        return suspects(result.data, tol, motion=axes, most=most, readings=cells)
     return suspects(
         result.data,
-        float(np.max(result.tol)) if result.tol is not None else 0.0,
-        lists,
+        tol,
+        result.lists,
         motion=axes,
         most=most,
-        names=[result.name(k) for k in range(len(lists))] if lists else (),
-        point_names=[result.point_name(k) for k in range(len(result.data))] if lists else (),
-        readings=readings(file, rows),
+        names=[result.name(k) for k in range(len(result.lists))],
+        point_names=[result.point_name(k) for k in range(len(result.data))],
+        readings=cells,
     )
 
 
@@ -80,51 +80,63 @@ def readings(file: PointFile, rows: list[int]) -> dict[tuple[int, int], str]:
     return out
 
 
-def sheet_table(file: PointFile, texts: list[str | None]) -> SheetTable | None:
-    """The offsets of a table before and after, in its own notation; ``None`` for other files.
+def write_sheet_of(
+    file: PointFile,
+    result: Fairing | NetworkFairing,
+    path: Path,
+    written: tuple[Any, Any, float | None],
+    details: SheetDetails,
+) -> Path:
+    """Write the sheet of a file of points.
 
     Parameters
     ----------
     file
         The file read.
-    texts
-        Its cells as they are written now; ``None`` for those that did not change.
+    result
+        The result of its fairing.
+    path
+        The sheet.
+    written
+        The rows of the file as they are faired, their tolerances, and the step of the digits.
+    details
+        The rest; source, table and notation are added.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
     """
+    from moldloft.fairing.files import cell_texts
+    from moldloft.fairing.sheet import write_sheet
+    from moldloft.storage import read_bytes
+
+    if file.offsets and file.cells is not None:
+        details.table = _table(file, cell_texts(written[0], file, *written[1:]))
+    data = read_bytes(file.path)
+    digest = hashlib.sha256(data).hexdigest()
+    source = ("source", f"{file.path}, {len(data)} bytes, SHA-256 {digest}")
+    details.facts = [source, *details.facts]
+    details.eighths = file.inches
+    return write_sheet(result, path, f"Fairing of {file.path.name}", details)
+
+
+def _table(file: PointFile, texts: list[str | None]) -> SheetTable:
+    """The offsets of a table before and after, in its own notation."""
     from moldloft.fairing.sheet import SheetTable
 
-    if file.cells is None or not file.point_names:
-        return None
-    moving = {"x": 0, "y": 1, "z": 2}
+    assert file.cells is not None
     twice = {row for row, own in enumerate(file.motions or []) if len(own) > 1}
+    in_both = {file.point_names[row].partition(", ")[2] for row in twice}
     out = SheetTable([], [], {})
     for k, (row, axis) in enumerate(file.cells.owners):
         if file.motions is None and axis != file.moves:
             continue
         station, _, line = file.point_names[row].partition(", ")
-        if row in twice or line in {file.point_names[r].partition(", ")[2] for r in twice}:
-            line += ", height" if axis == moving["z"] else ", half-breadth"
+        if line in in_both:
+            line += ", height" if axis == 2 else ", half-breadth"
         for name, own in ((line, out.lines), (station, out.stations)):
             if name not in own:
                 own.append(name)
         out.cells[line, station] = (file.cells.cell(k), texts[k])
     return out
-
-
-def source_facts(path: Path, options: argparse.Namespace) -> list[tuple[str, str]]:
-    """The source with its hash, and the options that are not those by default.
-
-    Parameters
-    ----------
-    path
-        The file read.
-    options
-        The arguments of the command.
-    """
-    from moldloft.storage import read_bytes
-
-    data = read_bytes(path)
-    digest = hashlib.sha256(data).hexdigest()
-    facts = [("source", f"{path}, {len(data)} bytes, SHA-256 {digest}")]
-    shown = ("goal", "measure", "mode", "spacing", "bound", "breaks", "fixed", "ends", "shape")
-    given = [f"{name} {getattr(options, name)}" for name in shown if getattr(options, name, None)]
-    return [*facts, ("options", ", ".join(given))]

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from moldloft.errors import FairingError
 from moldloft.fairing.cells import Cells, lines_at
@@ -160,9 +161,7 @@ def _turned(rows: list[list[_Cell]]) -> _Grid:
     return grid
 
 
-def _row(
-    kind: str, label: _Cell, cells: list[_Cell | None], comma: bool, *, stated: bool
-) -> _Row:
+def _row(kind: str, label: _Cell, cells: list[_Cell | None], comma: bool, *, stated: bool) -> _Row:
     """A row of a block; a label may name another axis, as in `sheer height` or `buttock 1`."""
     text = label.text
     if not stated and kind in "yz":
@@ -310,12 +309,14 @@ class _Reading:
         if 2 * count <= own.total() or _ENDS.search(name.lower()):
             return None
         odd = next(row for row in rows if self.lines_x[row.label.lower()][k] not in (None, at))
-        cell, usual = odd.cells[k], next(
-            row.cells[k] for row in rows if self.lines_x[row.label.lower()][k] == at
+        cell, usual = (
+            odd.cells[k],
+            next(row.cells[k] for row in rows if self.lines_x[row.label.lower()][k] == at),
         )
         assert cell is not None and usual is not None
         raise FairingError(
-            f"line {cell.line}: station `{name}` is at {usual.text}, at {cell.text} for `{odd.label}`"
+            f"line {cell.line}: station `{name}` is at {usual.text}, and at {cell.text} for "
+            f"`{odd.label}`"
         )
 
     def _at(self, label: str, k: int) -> float | None:
@@ -385,7 +386,9 @@ class _Reading:
         label = next(iter(rows.values())).label
         for k in range(len(self.grid.names)):
             found = {kind: (row.cells[k], self.value(row.cells[k])) for kind, row in rows.items()}
-            have = [(kind, c, v) for kind, (c, v) in found.items() if c is not None and v is not None]
+            have = [
+                (kind, c, v) for kind, (c, v) in found.items() if c is not None and v is not None
+            ]
             if len(have) < len(rows):
                 continue
             x = self._at(label, k)
@@ -431,7 +434,7 @@ class _Reading:
     def _ordered(self) -> None:
         """Stations in order, as far as they have positions."""
         known = [(k, x) for k, x in enumerate(self.x) if x is not None]
-        rises = Counter(b > a for (_, a), (_, b) in zip(known, known[1:], strict=False))
+        rises = Counter(b > a for (_, a), (_, b) in pairwise(known))
         if len(rises) > 1:
             usual = rises.most_common(1)[0][0]
             k = next(

@@ -92,7 +92,7 @@ class PointFile:
     point_names: list[str] = field(default_factory=list)
     """Names of the rows of a table of offsets."""
     motions: list[str] | None = None
-    """Axes along which each row of a table moves, such as ``"y"`` or ``"yz"``, where these differ."""
+    """Axes in which each row of a table moves, such as ``"y"`` or ``"yz"``, where these differ."""
     encoding: str = "utf-8"
     """The encoding of the file."""
 
@@ -245,9 +245,9 @@ def _as_offsets(
             at = f"{file.path}:{file.lines[k]}"
             if (table[first] == table[k]).all():
                 raise FairingError(f"{at}: the same offset as line {file.lines[first]}")
-            names = ("buttock", "height") if file.moves == 2 else ("height", "half-breadth")
+            said = ("buttock", "height") if file.moves == 2 else ("height", "half-breadth")
             raise FairingError(
-                f"{at}: a second {names[1]} at station {row[0]:g}, {names[0]} {row[other]:g}: "
+                f"{at}: a second {said[1]} at station {row[0]:g}, {said[0]} {row[other]:g}: "
                 f"{row[file.moves]:g}, and {table[first, file.moves]:g} in line {file.lines[first]}"
             )
         seen[place] = k
@@ -267,9 +267,7 @@ def _as_offsets(
     curves = [(names[x], rows) for x, rows in by_station.items()]
     for z, rows in by_level.items():
         curves.append((level_names[z], sorted(rows, key=lambda k: table[k, 0])))
-    file.point_names = [
-        f"{names[row[0]]}, {level_names[row[other]]}" for row in table.tolist()
-    ]
+    file.point_names = [f"{names[row[0]]}, {level_names[row[other]]}" for row in table.tolist()]
     return _of_curves(file, curves)
 
 

@@ -52,13 +52,13 @@ def order_of(points: Floats, closed: bool) -> list[Finding]:
     if n < _FEWEST or not steps.any():
         return []
     if _shuffled(points, steps):
-        return [_order(0, f"points 1 to {n}: in no order? the way through them turns back and forth")]
+        return [_order(0, f"points 1 to {n}: in no order? the way through them turns back")]
     ring = not closed and (points[0] == points[-1]).all()
     if ring and _smooth_seam(points):
         return [
             _order(
                 n - 1,
-                f"point {n} is point 1, where the curve runs on: a closed curve? `closed` makes it one",
+                f"point {n} is point 1, and the curve runs on there: a closed curve?",
             )
         ]
     return [] if closed or ring else _reversed_run(points, steps)
@@ -107,7 +107,7 @@ def _reversed_run(points: Floats, steps: Floats) -> list[Finding]:
         size = np.linalg.norm(way, axis=1)
         for k in joints:
             for a in (k - 1, k):
-                if 0 <= a and a + 1 < len(way):
+                if a >= 0 and a + 1 < len(way):
                     dot = float(way[a] @ way[a + 1])
                     if dot < _RUNS_ON * float(size[a] * size[a + 1]):
                         return False

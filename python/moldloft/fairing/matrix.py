@@ -41,7 +41,7 @@ class OffsetTable:
     levels: dict[float, str] = field(default_factory=dict)
     """Names of waterlines or buttocks by their places."""
     curves: list[tuple[str, list[int]]] | None = None
-    """Lines by name with the numbers of their offsets; ``None`` where stations and levels are all."""
+    """Lines by name with their offsets; ``None`` where stations and levels are all."""
     motions: list[str] | None = None
     """Axes along which each offset moves, such as ``"y"``, ``"yz"`` or nothing."""
     point_names: list[str] = field(default_factory=list)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.patches import PatchesFairing
-    from moldloft.fairing.spline import Samples, Spline
+    from moldloft.fairing.spline import Spline
     from moldloft.fairing.surface import SplineSurface, SurfaceFairing
 
     Floats = NDArray[np.float64]

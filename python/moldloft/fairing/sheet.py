@@ -41,17 +41,25 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["SheetTable", "sheet", "write_sheet"]
+__all__ = ["SheetDetails", "SheetTable", "sheet", "write_sheet"]
 
 #: The paper, A4 landscape, and its margins, in mm.
 _PAPER, _MARGIN = (297.0, 210.0), 12.0
 _WIDE, _TALL = _PAPER[0] - 2 * _MARGIN, _PAPER[1] - 2 * _MARGIN - 16.0
 
 #: Stations side by side in one table, at most.
-_COLUMNS = 14
+_COLUMNS = 19
 
 #: A unit of length in mm.
 _MM = {"m": 1000.0, "cm": 10.0, "mm": 1.0, "ft": 304.8, "in": 25.4}
+
+_UNIT_NAMES = {
+    "m": "metres",
+    "cm": "centimetres",
+    "mm": "millimetres",
+    "ft": "feet",
+    "in": "inches",
+}
 
 #: A point is at its limit from this share on.
 _AT_LIMIT = 1 - 1e-4
@@ -64,8 +72,9 @@ _STYLE = (
     "td:first-child,th:first-child,.facts td{text-align:left}th{background:#f3f4f6}"
     "td.moved{background:#dbe8f8;font-weight:bold}td.moved small{display:block;color:#c2571a;"
     "font-weight:normal}td.limit{background:#fde3cf}p{margin:.3em 0;max-width:60em}"
-    "svg{display:block;margin:.4em 0;background:#fff;max-width:100%}.sign td{width:55mm;height:12mm}"
-    "@media print{@page{size:A4 landscape;margin:10mm}body{margin:0;max-width:none;padding:0}"
+    "svg{display:block;margin:.4em 0;background:#fff;max-width:100%}.sign td{height:12mm}"
+    "@media print{@page{size:A4 landscape;margin:10mm}body{margin:0;max-width:none;"
+    "padding:0}"
     "h2{break-after:avoid}svg,tr{break-inside:avoid}}"
 )
 
@@ -80,6 +89,26 @@ class SheetTable:
     """Names of its columns."""
     cells: dict[tuple[str, str], tuple[str, str | None]]
     """Of a row and a column the offset as it was read and as it is now; ``None`` for unmoved."""
+
+
+@dataclass
+class SheetDetails:
+    """Facts of a sheet beside the result."""
+
+    facts: Sequence[tuple[str, str]] = ()
+    """Names and values of the title block: source, date, the command that repeats it."""
+    table: SheetTable | None = None
+    """The table of offsets before and after; without it all points are listed."""
+    suspects: Sequence[Suspect] = ()
+    """See :func:`moldloft.fairing.suspects`."""
+    unit: str | None = None
+    """The unit of the points (m, cm, mm, ft, in), for the scale."""
+    eighths: bool = False
+    """Whether the table is in feet, inches and eighths."""
+    limits: Floats | None = None
+    """The tolerance of each point, where these differ."""
+    notes: Sequence[str] = ()
+    """Sentences beside those of the result."""
 
 
 @dataclass
@@ -161,6 +190,8 @@ def _lines_of(result: Fairing | NetworkFairing, limits: Floats | None) -> _Lines
         off = result.residuals
         moved = np.linalg.norm(after - data, axis=1) if off is None else np.asarray(off)
         names = [f"point {k + 1}" for k in range(count)]
+        each = each.copy()
+        each[[f.index for f in result.corrected if f.kind == "outlier"]] = np.inf
         pair = (result.original, result.spline)
         return _Lines(["curve"], [pair], [list(range(count))], data, after, moved, each, names)
     moved = np.linalg.norm(after - data, axis=1)
@@ -173,35 +204,54 @@ def _lines_of(result: Fairing | NetworkFairing, limits: Floats | None) -> _Lines
 
 def _share(off: float, limit: float) -> str:
     if not np.isfinite(limit):
-        return "no limit"
+        return "released"
     return "fixed" if limit <= 0 else f"{100 * off / limit:.0f} %"
 
 
+def _tolerance(lines: _Lines, unit: str | None) -> str:
+    """The tolerances of the points that may move."""
+    free = lines.limits[(lines.limits > 0) & np.isfinite(lines.limits)]
+    if not len(free):
+        return "none" if np.isinf(lines.limits).any() else "0: no point may move"
+    low, high = float(free.min()), float(free.max())
+    said = f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
+    fixed = int((lines.limits == 0).sum())
+    return f"{said} {unit or ''}".strip() + (f"; {fixed} points are fixed" if fixed else "")
+
+
 def _facts(
-    result: Fairing | NetworkFairing, lines: _Lines, facts: Sequence[tuple[str, str]]
+    result: Fairing | NetworkFairing,
+    lines: _Lines,
+    details: SheetDetails,
 ) -> _Table:
-    from moldloft.fairing.report import certificate_of
+    from moldloft.fairing.report import claims_optimum
 
     moved = int((lines.off > 1e-12 * max(float(np.abs(lines.data).max()), 1e-300)).sum())
     most = int(np.argmax(lines.off))
     told = f"{moved} of {len(lines.data)} points"
     if moved:
-        told += f"; the largest move is {lines.off[most]:.4g} at {lines.point_names[most]}"
+        told += f"; the largest move is {lines.off[most]:.4g} {details.unit or ''}".rstrip()
+        told += f" at {lines.point_names[most]}"
     before = sum(a.inflections() for a, _ in lines.pairs)
     after = sum(b.inflections() for _, b in lines.pairs)
-    proved = certificate_of(result.value, result.gap, result.gap_relative, moved=moved > 0)
+    proved = "no optimum is claimed"
+    if claims_optimum(result.gap, result.gap_relative):
+        proved = (
+            "no curves with these knots and parameters within the limits have a measure lower by "
+            f"more than {result.gap_relative:.1e} of it"
+        )
     far = (
         f"no point farther than {result.deviation_certified:.4g} from the one read"
         if hasattr(result, "lists")
         else f"curve to curve at most {result.deviation_certified:.4g}"
     )
     rows = [
-        *facts,
-        ("tolerance", "none" if result.tol is None else f"{result.tol:.6g}"),
-        ("method", f"{result.mode}, goal {result.goal}, measure {result.measure}"),
+        *details.facts,
+        ("tolerance", _tolerance(lines, details.unit)),
+        ("options", f"mode {result.mode}, goal {result.goal}, measure {result.measure}"),
         ("moved", told),
         ("bends", f"{before} before, {after} after, in {len(lines.pairs)} curves"),
-        ("certified", f"{far}; measure {proved}"),
+        ("certified", f"{far}; {proved}"),
         ("program", f"Moldloft {__version__}"),
     ]
     return _Table([], [[name, value] for name, value in rows], kind="facts")
@@ -268,7 +318,7 @@ def _points(lines: _Lines) -> _Table:
         numbers = [f"{float(x):.9g}" for x in (*p[:width], *q[:width])]
         share = _share(float(lines.off[k]), float(lines.limits[k]))
         rows.append([lines.point_names[k], *numbers, f"{lines.off[k]:.3g}", share])
-        if 0 < lines.limits[k] and lines.off[k] >= _AT_LIMIT * lines.limits[k]:
+        if lines.limits[k] > 0 and lines.off[k] >= _AT_LIMIT * lines.limits[k]:
             limits.add((k, len(head) - 1))
     return _Table(head, rows, limits)
 
@@ -284,6 +334,8 @@ def _suspects(found: Sequence[Suspect]) -> _Table:
 
 def _views(lines: _Lines) -> list[tuple[str, tuple[int, int]]]:
     both = np.vstack([lines.data, lines.after])
+    if not both[:, 2].any():
+        return [("To scale", (0, 1))]
     views = [("Profile", (0, 2)), ("Half-breadth plan", (0, 1)), ("Body plan", (1, 2))]
     return [v for v in views if min(float(np.ptp(both[:, c])) for c in v[1]) > 0]
 
@@ -420,9 +472,7 @@ def _strips(lines: _Lines) -> list[_Part]:
     return parts
 
 
-def _strip(
-    drawing: _Drawing, lines: _Lines, k: int, left: float, wide: float, tall: float
-) -> None:
+def _strip(drawing: _Drawing, lines: _Lines, k: int, left: float, wide: float, tall: float) -> None:
     before, after = (s.samples(12) for s in lines.pairs[k])
     drawing.text(left, tall - 1, lines.names[k], 2.8)
     box = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
@@ -444,11 +494,15 @@ def _strip(
     right = left + half + 6
     drawing.line(box * [half - 2, height] + [right, foot], QUIET, 0.15)
     limit = lines.limits[own]
-    used = np.where((limit > 0) & np.isfinite(limit), lines.off[own] / np.where(limit > 0, limit, 1), 0)
+    used = np.where(
+        (limit > 0) & np.isfinite(limit), lines.off[own] / np.where(limit > 0, limit, 1), 0
+    )
     x = right + (np.arange(len(own)) + 0.5) * (half - 2) / len(own)
     tops = foot + height / 1.08 * np.minimum(used, 1.08)
     drawing.line(
-        np.array([[right, foot + height / 1.08], [right + half - 2, foot + height / 1.08]]), WHOLE, 0.15
+        np.array([[right, foot + height / 1.08], [right + half - 2, foot + height / 1.08]]),
+        BEFORE,
+        0.15,
     )
     full = used >= _AT_LIMIT
     for mask, colour in ((~full, AFTER), (full, "#7a1f00")):
@@ -459,73 +513,70 @@ def _strip(
     drawing.text(right, 1.4, "share of the limit at each point", 2.0, "start", QUIET)
 
 
-WHOLE = "#c2571a"
+def _findings(result: Fairing | NetworkFairing) -> list[str]:
+    from moldloft.fairing.network import NetworkFairing
+
+    if isinstance(result, NetworkFairing):
+        return [f"{result.name(k)}: {result.text(f)}" for k, f in result.findings]
+    return [f.text for f in result.findings]
 
 
-def _parts(
-    result: Fairing | NetworkFairing,
-    facts: Sequence[tuple[str, str]],
-    table: SheetTable | None,
-    suspects: Sequence[Suspect],
-    unit: str | None,
-    limits: Floats | None,
-    notes: Sequence[str],
-) -> list[_Part]:
+def _parts(result: Fairing | NetworkFairing, details: SheetDetails) -> list[_Part]:
     if not hasattr(result, "data") or not (hasattr(result, "lists") or hasattr(result, "spline")):
         raise Error("a sheet is of curves and networks: surfaces have a report")
-    lines = _lines_of(result, limits)
-    parts: list[_Part] = [_facts(result, lines, facts)]
+    lines = _lines_of(result, details.limits)
+    parts: list[_Part] = [_facts(result, lines, details)]
     parts.append(
         _Table(["faired by", "checked by", "approved by", "date"], [["", "", "", ""]], kind="sign")
     )
-    parts += [_Heading("Curves"), _curves(lines)]
+    said_unit = (
+        f"Lengths are in {_UNIT_NAMES[details.unit]}."
+        if details.unit
+        else "The unit of lengths is not stated."
+    )
+    if details.eighths:
+        said_unit += (
+            " Offsets are in feet, inches and eighths: 4-5-1+ is 4 feet, 5 inches, one eighth and "
+            "a sixteenth."
+        )
+    parts += [_Heading("Curves"), _Text(said_unit), _curves(lines)]
     parts.append(
         _Text(
-            "Bends are sign changes of the curvature, pieces its monotone pieces: fewer is fairer. "
+            "Bends are sign changes of the curvature, pieces its monotone pieces. "
             "The limit of a point is its tolerance. Along the curve is the largest distance from "
             "the curve before, sampled; between points it may exceed the tolerance."
         )
     )
-    said = [*result.notes, *notes]
-    found = getattr(result, "findings", ())
-    if hasattr(result, "lists"):
-        said += [f"{result.name(k)}: {result.text(f)}" for k, f in found]
-    else:
-        said += [f.text for f in found]
+    said = [*result.notes, *details.notes]
+    said += _findings(result)
     if said:
         parts += [_Heading("Notes"), *(_Text(text) for text in said)]
-    if suspects:
-        parts += [_Heading("Suspects"), _suspects(suspects)]
+    if details.suspects:
+        parts += [_Heading("Suspects"), _suspects(details.suspects)]
         parts.append(
             _Text(
-                "Offsets that their neighbours contradict, the clearest first, with the reading that "
-                "one slip of the pen explains. None was changed for that. The gain is the share of "
-                "the unfairness beside the offset that the other reading takes away."
+                "Offsets that their neighbours contradict, the clearest first, with the reading "
+                "that one slip of the pen explains. None was changed for that. The gain is the "
+                "share of the unfairness beside the offset that the other reading takes away."
             )
         )
-    if table is not None:
+    if details.table is not None:
         parts += [
             _Heading("Offsets"),
             _Text("Offsets that moved are marked: the faired one, and below it the one read."),
-            *_offsets(table),
+            *_offsets(details.table),
         ]
     else:
         parts += [_Heading("Points"), _points(lines)]
-    parts += _plan(lines, unit)
-    parts += _combs(lines, unit)
+    parts += _plan(lines, details.unit)
+    parts += _combs(lines, details.unit)
     return parts + _strips(lines)
 
 
 def sheet(
     result: Fairing | NetworkFairing,
     title: str = "Fairing",
-    *,
-    facts: Sequence[tuple[str, str]] = (),
-    table: SheetTable | None = None,
-    suspects: Sequence[Suspect] = (),
-    unit: str | None = None,
-    limits: Floats | None = None,
-    notes: Sequence[str] = (),
+    details: SheetDetails | None = None,
 ) -> str:
     """The sheet of a faired curve or network as HTML that needs no other file.
 
@@ -535,32 +586,22 @@ def sheet(
         The result of :func:`moldloft.fair` for a curve, or of :func:`moldloft.fairing.network`.
     title
         Its heading, such as the name of the boat.
-    facts
-        Names and values of the title block: source, date, options, the command that repeats it.
-    table
-        The table of offsets before and after; by default all points are listed.
-    suspects
-        See :func:`moldloft.fairing.suspects`.
-    unit
-        The unit of the points (m, cm, mm, ft, in), for the scale.
-    limits
-        The tolerance of each point, where these differ.
-    notes
-        Sentences beside those of the result.
+    details
+        Source, table, unit and the rest that the result does not know.
 
     Returns
     -------
     str
         HTML.
     """
-    return _html(title, _parts(result, facts, table, suspects, unit, limits, notes))
+    return _html(title, _parts(result, details or SheetDetails()))
 
 
 def write_sheet(
     result: Fairing | NetworkFairing,
     path: str | PathLike[str],
     title: str = "Fairing",
-    **options: Any,
+    details: SheetDetails | None = None,
 ) -> Path:
     """Write a sheet, whole or not at all; the file's ending, ``.html`` or ``.pdf``, says how.
 
@@ -570,9 +611,7 @@ def write_sheet(
         See :func:`sheet`.
     path
         The file. PDF needs reportlab (``pip install 'moldloft[plot]'``).
-    title
-        Its heading.
-    options
+    title, details
         See :func:`sheet`.
 
     Returns
@@ -584,6 +623,16 @@ def write_sheet(
     ------
     Error
         When the ending is another one, or reportlab is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from moldloft import fair
+    >>> x = np.linspace(0, 6, 13)
+    >>> faired = fair(np.column_stack([x, np.round(np.sin(x / 3), 2)]), 0.005)
+    >>> details = SheetDetails(facts=[("source", "sin.csv")], unit="m")
+    >>> write_sheet(faired, getfixture("tmp_path") / "sheet.html", "A sine", details).name
+    'sheet.html'
     """
     from moldloft.files import Output, commit
 
@@ -592,11 +641,9 @@ def write_sheet(
     if ending not in (".html", ".htm", ".pdf"):
         raise Error(f"a sheet is an .html or .pdf file, not `{path.suffix}`")
     if ending == ".pdf":
-        asked = {"facts": (), "table": None, "suspects": (), "unit": None, "limits": None}
-        asked |= {"notes": ()} | options
-        data = _pdf(title, _parts(result, **asked))
+        data = _pdf(title, _parts(result, details or SheetDetails()))
     else:
-        data = sheet(result, title, **options).encode()
+        data = sheet(result, title, details).encode()
     return commit(path.parent, [Output(path.name, data)])[0]
 
 
@@ -676,7 +723,7 @@ def _pdf(title: str, parts: Sequence[_Part]) -> bytes:
         raise Error("a sheet as PDF needs reportlab\nhelp: pip install 'moldloft[plot]'") from error
     styles = getSampleStyleSheet()
     body = styles["BodyText"].clone("body", fontSize=8, leading=10, spaceBefore=1)
-    heading = styles["Heading2"].clone("head", fontSize=11, leading=13, spaceBefore=8, keepWithNext=1)
+    heading = styles["Heading2"].clone("head", fontSize=11, leading=13, spaceBefore=8)
     first = styles["Title"].clone("title", fontSize=15, leading=18, alignment=0, spaceAfter=4)
     story: list[Any] = [Paragraph(escape(_plain(title)), first)]
     for k, part in enumerate(parts):
@@ -722,11 +769,14 @@ def _pdf_table(table: _Table, body: Any) -> Any:
         style = small if left else number
         if isinstance(cell, tuple):
             new, old = (escape(_plain(c)) for c in cell)
-            return Paragraph(f'<b>{new}</b><br/><font size="6" color="{BEFORE}">{old}</font>', style)
+            return Paragraph(
+                f'<b>{new}</b><br/><font size="6" color="{BEFORE}">{old}</font>', style
+            )
         return Paragraph(escape(_plain(cell)), style)
 
     lead = [table.head] if table.head else []
-    every: list[list[str | tuple[str, str]]] = [*map(list, lead), *table.rows]
+    every: list[list[str | tuple[str, str]]] = [list(head) for head in lead]
+    every += table.rows
     all_left = table.kind == "facts"
     cells = [[paragraph(c, all_left or j == 0) for j, c in enumerate(row)] for row in every]
     look: list[Any] = [
@@ -743,9 +793,13 @@ def _pdf_table(table: _Table, body: Any) -> Any:
     for k, row in enumerate(table.rows):
         for j, cell in enumerate(row):
             if isinstance(cell, tuple):
-                look.append(("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#dbe8f8")))
+                look.append(
+                    ("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#dbe8f8"))
+                )
             elif (k, j) in table.limits:
-                look.append(("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#fde3cf")))
+                look.append(
+                    ("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#fde3cf"))
+                )
     columns = len(every[0]) if every else 1
     widths: list[float]
     if table.kind == "facts":
@@ -754,9 +808,9 @@ def _pdf_table(table: _Table, body: Any) -> Any:
         widths = [_WIDE / columns] * columns
     else:
         widths = _widths(every)
-    tall = [None] * len(every)
+    tall: list[float | None] = [None] * len(every)
     if table.kind == "sign":
-        tall = [None, 11 * mm]  # type: ignore[list-item]
+        tall = [None, 11 * mm]
     return Table(
         cells, colWidths=[w * mm for w in widths], rowHeights=tall, repeatRows=shift, hAlign="LEFT",
         style=TableStyle(look),
@@ -770,7 +824,7 @@ def _widths(rows: Sequence[Sequence[str | tuple[str, str]]]) -> list[float]:
     for row in rows:
         for j, cell in enumerate(row):
             texts = cell if isinstance(cell, tuple) else (cell,)
-            need[j] = max(need[j], *(min(1.45 * len(t) + 3.0, 62.0) for t in texts))
+            need[j] = max(need[j], *(min(1.36 * len(t) + 2.6, 62.0) for t in texts))
     whole = sum(need)
     return [w * _WIDE / whole for w in need] if whole > _WIDE else need
 

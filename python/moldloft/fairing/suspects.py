@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +32,7 @@ __all__ = ["Suspect", "suspects"]
 #: Neighbours on either side that predict, at most and at least.
 _SIDE, _LEAST = 3, 2
 
-#: Share of the error of a prediction's slope in that of the point: half of the places of neighbours.
+#: Share of an error along the held axis that counts, through the slope, in a prediction.
 _SLOPE = 0.5
 
 #: A point whose sides both predict it to this share of what both together miss is a knuckle.
@@ -43,10 +44,10 @@ _WITHIN = 2.5
 #: Suspects whose deviation is below so many errors are not listed.
 _WORTH = 1.5
 
-#: What a kind of slip costs beside the squared deviation, in squared errors: likelier ones less.
+#: Cost of a slip beside the squared deviation, in squared errors: less of likelier ones.
 _COSTS = {
     "an inch": 0.0,
-    "an eighth": 0.3,
+    "eighths": 0.3,
     "a digit": 0.3,
     "a foot": 0.5,
     "two inches": 1.0,
@@ -249,8 +250,12 @@ class _Search:
                 for cell, prediction in own.items():
                     each.setdefault(cell, []).append(prediction)
             combined = [(cell, *_combined(own)) for cell, own in each.items()]
-            best = max(combined, key=lambda c: (abs(c[1]) / c[2], c[0]), default=None)
-            if best is None or abs(best[1]) < _WORTH * best[2]:
+            combined = [c for c in combined if abs(c[1]) >= _WORTH * c[2]]
+            combined.sort(key=lambda c: (-abs(c[1]) / c[2], c[0]))
+            # Where the measure rises without it the point is not what spoils its lines.
+            gains = (c for c in combined if self.gain(*c[0], self.data[c[0]] - c[1]) > 0)
+            best = next(gains, None)
+            if best is None:
                 break
             (index, axis), off, error = best
             out.append((index, axis, off, error))
@@ -301,9 +306,7 @@ class _Search:
                         out[index, axis] = prediction
         return out
 
-    def _predicted(
-        self, own: list[int], at: int, axis: int, closed: bool
-    ) -> _Prediction | None:
+    def _predicted(self, own: list[int], at: int, axis: int, closed: bool) -> _Prediction | None:
         """A point from its neighbours on a line, over the coordinate that is held."""
         n = len(own)
         order = range(1, n // 2 + 1) if closed else range(1, n)
@@ -355,6 +358,8 @@ class _Search:
         for side in (low, high):
             t, v = self.data[side, held] - here, self.data[side, axis]
             # No side has its quadratic and its line on different sides of the point by more.
+            if not _monotone(t, 0.0, 0 if t[-1] * t[0] > 0 and abs(t[0]) < abs(t[-1]) else len(t)):
+                return False
             inner = np.argsort(np.abs(t))[:2]
             guesses = [_at_zero(t, v), _at_zero(t[inner], v[inner])]
             ends.append(min(abs(value - guess) for guess in guesses))
@@ -396,7 +401,7 @@ def _fitted(t: Floats, v: Floats) -> float:
 
 
 def _third(points: Floats, axis: int, at: int) -> float:
-    """The sum of the squared third divided differences of a coordinate in which a point has part."""
+    """Squared third divided differences of a coordinate in which a point has part, in sum."""
     chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
     t = np.concatenate([[0.0], np.cumsum(np.maximum(chord, 1e-300))])
     t, v = t / t[-1], points[:, axis]
@@ -422,7 +427,7 @@ def _slips(text: str, value: float) -> list[tuple[float, str]]:
         for step, slip in ((12.0, "a foot"), (1.0, "an inch"), (2.0, "two inches")):
             out += [(value - step, slip), (value + step, slip)]
         for eighths in range(1, 8):
-            out += [(value - eighths / 8, "an eighth"), (value + eighths / 8, "an eighth")]
+            out += [(value - eighths / 8, "eighths"), (value + eighths / 8, "eighths")]
     if found:
         feet, inches, eighths = (int(found[k]) for k in (1, 2, 3))
         swapped = 12 * feet + eighths + inches / 8
@@ -437,7 +442,7 @@ def _slips(text: str, value: float) -> list[tuple[float, str]]:
         for other in "0123456789":
             if other != bare[k]:
                 out.append((sign * float(bare[:k] + other + bare[k + 1 :]), "a digit"))
-    for a, b in zip(digits, digits[1:], strict=False):
+    for a, b in pairwise(digits):
         if bare[a] != bare[b]:
             own = list(bare)
             own[a], own[b] = own[b], own[a]

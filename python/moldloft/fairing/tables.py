@@ -204,8 +204,10 @@ _COORDINATES = re.compile(r"\s*(\d+)\s+NumCoords\b.*", re.IGNORECASE)
 
 
 def _openfast(lines: list[str], out: Plain) -> list[str]:
-    """Coordinates of an aerofoil for OpenFAST: comments begin with ``!``, the first point is the
-    reference and not on the section."""
+    """Coordinates of an aerofoil for OpenFAST.
+
+    Comments begin with ``!``, and the first point is the reference and not on the section.
+    """
     counted = next((k for k, s in enumerate(lines) if _COORDINATES.fullmatch(s)), None)
     if counted is None:
         return lines
