@@ -15,12 +15,21 @@ from moldloft.cli.console import Progress, assignment, print_json
 from moldloft.errors import Error, FairingError
 
 if TYPE_CHECKING:
-    from moldloft.fairing import Fairing, NetworkFairing, PatchesFairing, Spline, SurfaceFairing
+    from collections.abc import Sequence
+
+    from moldloft.fairing import (
+        Fairing,
+        NetworkFairing,
+        PatchesFairing,
+        Spline,
+        SurfaceFairing,
+        Suspect,
+    )
     from moldloft.fairing.files import GridFile, PointFile
 
     Result = Fairing | SurfaceFairing | NetworkFairing | PatchesFairing
 
-__all__ = ["add", "run"]
+__all__ = ["Source", "add", "commit_file", "curve_options", "fair_grid", "known_ending", "run"]
 
 _EPILOG = """
 FILE is rows of points (CSV, blanks or tabs; an aerofoil with its title), a Plot3D surface, or an
@@ -247,12 +256,34 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="what the numbers of a file of points are in; default: what it states. Splines are "
         "written with it",
     )
+    parser.add_argument(
+        "--round",
+        metavar="STEP",
+        type=words.step,
+        help="the step of the numbers written, as in 0.001 or 1/16; 0 for all digits; default: of "
+        "a table of offsets its own digit, all digits of other points",
+    )
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
     parser.add_argument(
         "--report",
         metavar="P.html",
         help="one page about it: pictures to scale, every point and its move, the spline",
+    )
+    parser.add_argument(
+        "--sheet",
+        metavar="P.pdf",
+        help="a sheet to sign, .pdf or .html: offsets before and after, curves, combs, lines 1 : n",
+    )
+    parser.add_argument(
+        "--suspects",
+        metavar="COUNT",
+        type=int,
+        nargs="?",
+        const=10,
+        default=0,
+        help="offsets that their neighbours contradict, the clearest first, with the reading that "
+        "probably meant; default of COUNT: 10",
     )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
@@ -338,6 +369,13 @@ def run(options: argparse.Namespace) -> int:
                 raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
+        if options.suspects:
+            progress.stage("looking for suspects")
+            found = source.suspects(result, options.suspects)
+            data["suspects"] = [s.as_dict() for s in found]
+        if options.sheet:
+            progress.stage(f"writing {options.sheet}")
+            files.append(source.sheet(result, Path(options.sheet)))
         if options.report:
             from moldloft.fairing.page import write_page
 
@@ -352,16 +390,20 @@ def run(options: argparse.Namespace) -> int:
     print(result)
     for note in source.notes():
         print(f"note: {note}")
+    for rank, suspect in enumerate(found if options.suspects else (), 1):
+        print(f"suspect {rank}: {suspect}")
     for file in files:
         print(f"wrote {file}")
     return 0
 
 
-def _source(options: argparse.Namespace) -> _Source:
+def _source(options: argparse.Namespace) -> Source:
     name = options.file
     model, colon, thing = name.rpartition(":")
     if colon and thing and Path(model).suffix.lower() in (".sdl", ".ms2", ".mul"):
-        return _Object(model, thing, options)
+        from moldloft.cli.fair_object import ObjectSource
+
+        return ObjectSource(model, thing, options)
     path = Path(name)
     if path.suffix.lower() in (".sdl", ".ms2"):
         raise Error(f"which object of `{name}` is to be faired? write `{name}:NAME`")
@@ -393,7 +435,7 @@ def _ends(options: argparse.Namespace) -> Any:
     return ends[0] if len(ends) == 1 else tuple(ends)
 
 
-class _Source(abc.ABC):
+class Source(abc.ABC):
     """Data to fair: its source, and how the result is written."""
 
     title = ""
@@ -403,9 +445,11 @@ class _Source(abc.ABC):
         """The result by these options."""
 
     def facts(self) -> dict[str, Any]:
+        """Data of the report beside those of the result."""
         return {"source": self.title}
 
     def notes(self) -> list[str]:
+        """Sentences beside those of the result."""
         return []
 
     def stated(self) -> list[tuple[str, str]]:
@@ -415,6 +459,14 @@ class _Source(abc.ABC):
         command = shlex.join(["moldloft", *sys.argv[1:]])
         today = datetime.datetime.now().astimezone().date().isoformat()
         return [("source", self.title), ("command", command), ("date", today)]
+
+    def suspects(self, result: Any, most: int) -> Sequence[Suspect]:
+        """The suspects among the points."""
+        raise Error("--suspects: for files of points and tables of offsets")
+
+    def sheet(self, result: Any, path: Path) -> Path:
+        """Writes the sheet; the path that it was written to."""
+        raise Error("--sheet: for files of points and tables of offsets; --report is for others")
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
@@ -446,7 +498,8 @@ def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
     return out
 
 
-def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
+def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
+    """The options of a curve by their names in Python."""
     for name, given in (
         ("--rims", options.rims != "corners"),
         ("--normal", options.normal),
@@ -514,20 +567,14 @@ def _original(options: argparse.Namespace, count: int) -> Any:
     return file.points
 
 
-def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:
-    from moldloft.fairing.files import points_text
-
-    delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-    return points_text(result.points, like, delimiter).encode()
-
-
-def _commit(path: Path, data: bytes) -> Path:
+def commit_file(path: Path, data: bytes) -> Path:
+    """Writes a file, all of it or nothing."""
     from moldloft.files import Output, commit
 
     return commit(path.parent, [Output(path.name, data)])[0]
 
 
-def _known_ending(path: Path, source: Path | None) -> None:
+def known_ending(path: Path, source: Path | None) -> None:
     """Refuses an ending that says nothing, before anything is written."""
     from moldloft.fairing.spline_files import POINTS, SPLINES
 
@@ -538,7 +585,7 @@ def _known_ending(path: Path, source: Path | None) -> None:
     raise Error(f"--output: `{path}`: expected an ending of {', '.join(known)}")
 
 
-class _Points(_Source):
+class _Points(Source):
     """A file of points."""
 
     def __init__(self, file: PointFile) -> None:
@@ -548,23 +595,23 @@ class _Points(_Source):
         self.unit = file.unit
 
     def fair(self, options: argparse.Namespace) -> Result:
+        import numpy as np
+
         if options.units and self.file.unit not in (None, options.units):
             raise Error(
                 f"--units {options.units}: the numbers of {self.file.path} are in {self.file.unit}"
             )
         self.unit = options.units or self.file.unit
-        if self.file.offsets and self.file.inches:
+        self.step = options.round
+        self.limits = np.asarray(np.inf if options.tol is None else options.tol, np.float64)
+        if self.file.offsets and self.file.inches and self.file.motions is None:
             self.said.append(
                 "stations and waterlines that are plain numbers are inches, too: "
                 "write their places, if they are numbers of stations"
             )
-        if self.file.offsets and _motion(options) == "ball":
-            if self.file.moves == 2:
-                self.said.append("heights move; stations and buttocks stay")
-                options.along = [0.0, 0.0, 1.0]
-            else:
-                self.said.append("half-breadths move; stations and heights stay")
-                options.along = [0.0, 1.0, 0.0]
+        if self.file.fixed_stations and _motion(options) == "ball":
+            self.said.append("offsets move; stations stay")
+            options.along = [0.0, 1.0]
         if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
             return self._network(options)
         from moldloft.fairing import fair
@@ -576,8 +623,9 @@ class _Points(_Source):
             points = points[:-1]
             self.closing = True
         role = options.role or ("fit" if options.mode == "optimum" else "control")
-        chosen = _curve_options(options, len(points), role)
+        chosen = curve_options(options, len(points), role)
         try:
+            self.rows, self.motion = list(range(len(points))), chosen["motion"]
             result = fair(points, options.tol, as_=role, **chosen)
         except FairingError as error:
             raise self._placed(error) from error
@@ -592,6 +640,8 @@ class _Points(_Source):
         return FairingError(f"{self.file.path}:{line}: {text}", index=error.index)
 
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
+        import numpy as np
+
         from moldloft.fairing import network
 
         _refuse_curves_only(options)
@@ -617,18 +667,11 @@ class _Points(_Source):
                 raise Error(
                     f"{name}: not for networks; {self.file.path} has {len(self.file.blocks)} curves"
                 )
-        places: dict[bytes, int] = {}
-        rows: list[int] = []
-        self.of_row: list[int] = []
-        for k, point in enumerate(self.file.points):
-            key = (point + 0.0).tobytes()
-            if key not in places:
-                places[key] = len(rows)
-                rows.append(k)
-            self.of_row.append(places[key])
+        rows = self._different()
         curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
-        first = [rows.index(rows[k]) for k in range(len(rows))]
-        assert first == list(range(len(rows)))
+        tolerances = self._tolerances(options, rows)
+        self.limits = np.broadcast_to(np.inf if tolerances is None else tolerances, len(rows))
+        self.rows, self.motion = rows, self._axes(options, rows)
         marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
         fixed: Any = options.ends or "corners"
         if options.fixed:
@@ -637,7 +680,7 @@ class _Points(_Source):
             result = network(
                 self.file.points[rows],
                 curves,
-                self._tolerances(options, rows),
+                tolerances,
                 degree=options.degree,
                 measure=options.measure or "third",
                 mode=options.mode,
@@ -645,7 +688,7 @@ class _Points(_Source):
                 goal=options.goal,
                 breaks=marks,
                 fixed=fixed,
-                motion=_motion(options),
+                motion=self.motion,
                 bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
@@ -655,23 +698,42 @@ class _Points(_Source):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
         if self.file.offsets:
-            result = self._named(result, rows)
+            called = tuple(self.file.point_names[self.file.places[k]] for k in rows)
+            result = replace(result, names=tuple(self.file.names), point_names=called)
             if self.file.moves == 1:
                 self._across(result, rows)
         return result
 
-    def _named(self, result: NetworkFairing, rows: list[int]) -> NetworkFairing:
-        """With the stations and waterlines of the table for names."""
-        other = 3 - self.file.moves
-        word = "waterline" if other == 2 else "buttock"
-        points = self.file.points[rows]
-        names = []
-        for own in result.lists:
-            first, second = points[own[0]], points[own[1]]
-            station = first[0] == second[0]
-            names.append(f"station {first[0]:g}" if station else f"{word} {first[other]:g}")
-        called = tuple(f"station {p[0]:g}, {word} {p[other]:g}" for p in points)
-        return replace(result, names=tuple(names), point_names=called)
+    def _different(self) -> list[int]:
+        """Of each different point its first row; of each row of the curves its point."""
+        rows: list[int] = []
+        keys: dict[Any, int] = {}
+        self.of_row: list[int] = []
+        for k, point in enumerate(self.file.points):
+            key = self.file.places[k] if self.file.offsets else (point + 0.0).tobytes()
+            if key not in keys:
+                keys[key] = len(rows)
+                rows.append(k)
+            self.of_row.append(keys[key])
+        return rows
+
+    def _axes(self, options: argparse.Namespace, rows: list[int]) -> Any:
+        """The motion of the network, or the axes of each point of a table that has several."""
+        file, motion = self.file, _motion(options)
+        if motion != "ball" or not file.offsets:
+            return motion
+        if file.motions is None:
+            self.said.append(
+                "heights move; stations and buttocks stay"
+                if file.moves == 2
+                else "half-breadths move; stations and heights stay"
+            )
+            return (0.0, 0.0, 1.0) if file.moves == 2 else (0.0, 1.0, 0.0)
+        self.said.append(
+            "half-breadths of waterlines and heights of buttocks move, both of a sheer; stations "
+            "and ends on stem and post stay"
+        )
+        return [file.motions[file.places[k]] for k in rows]
 
     def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
         """One tolerance, or that of each different point."""
@@ -695,6 +757,38 @@ class _Points(_Source):
                 "`--fixed` keeps points"
             )
 
+    def suspects(self, result: Any, most: int) -> Sequence[Suspect]:
+        from moldloft.cli.fair_sheet import suspects_of
+
+        return suspects_of(self.file, result, self.rows, self.motion, most)
+
+    def sheet(self, result: Any, path: Path) -> Path:
+        from moldloft.cli.fair_sheet import SHEET_SUSPECTS, write_sheet_of
+        from moldloft.fairing.sheet import SheetDetails
+
+        points, tol = self._rows(result)
+        details = SheetDetails(
+            facts=self.stated()[1:],
+            suspects=self.suspects(result, SHEET_SUSPECTS),
+            unit=self.unit,
+            limits=self.limits,
+            notes=self.said,
+        )
+        return write_sheet_of(self.file, result, path, (points, tol, self.step), details)
+
+    def _rows(self, result: Any) -> tuple[Any, Any]:
+        """The rows of the file as they are faired, and their tolerances."""
+        import numpy as np
+
+        if not hasattr(result, "lists"):
+            return result.points, np.broadcast_to(self.limits, len(result.points))
+        rows, tol = result.points[self.of_row], self.limits[self.of_row]
+        if self.file.table is None:
+            return rows, tol
+        table, each = self.file.table.copy(), np.zeros(len(self.file.table))
+        table[self.file.places], each[self.file.places] = rows, tol
+        return table, each
+
     def notes(self) -> list[str]:
         return self.said
 
@@ -710,28 +804,31 @@ class _Points(_Source):
         from moldloft.fairing.files import points_text
         from moldloft.fairing.spline_files import SPLINES, encoded
 
-        _known_ending(path, self.file.path)
+        known_ending(path, self.file.path)
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
             if self.unit is None and path.suffix.lower() in (".igs", ".iges"):
                 self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
-            return _commit(path, encoded(curves, path, self.unit))
+            return commit_file(path, encoded(curves, path, self.unit))
         if hasattr(result, "lists"):
-            rows = result.points[self.of_row]
             like: PointFile = self.file
+            rows, tol = self._rows(result)
             if like.table is not None:
-                # Each row of the table once, as it stood.
-                table = like.table.copy()
-                table[like.places] = rows
-                rows, like = table, replace(like, blocks=[range(len(table))])
-            return _commit(path, points_text(rows, like).encode())
+                like = replace(like, blocks=[range(len(rows))])
+            return self._text(path, points_text(rows, like, tol=tol, step=self.step))
         points = result.points
         if self.closing:
             points = np.concatenate([points, points[:1]])
         same = path.suffix.lower() == self.file.path.suffix.lower()
         form = self.file if same else None
         delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-        return _commit(path, points_text(points, form, delimiter).encode())
+        tol = self._rows(result)[1]
+        if self.closing:
+            tol = np.append(tol, tol[:1])
+        return self._text(path, points_text(points, form, delimiter, tol=tol, step=self.step))
+
+    def _text(self, path: Path, text: str) -> Path:
+        return commit_file(path, text.encode(self.file.encoding))
 
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
@@ -759,7 +856,8 @@ def _grid_weights(path: str | None, shape: tuple[int, int]) -> Any:
     return np.reshape(numbers, shape)
 
 
-def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
+def fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
+    """Fairs a grid of points as a surface."""
     from moldloft.fairing import fair
 
     _refuse_curves_only(options)
@@ -810,7 +908,7 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
     return fair(grid, tol, **chosen)  # type: ignore[return-value]
 
 
-class _Grids(_Source):
+class _Grids(Source):
     """A Plot3D file."""
 
     def __init__(self, file: GridFile, options: argparse.Namespace) -> None:
@@ -834,7 +932,7 @@ class _Grids(_Source):
     def fair(self, options: argparse.Namespace) -> Result:
         if self.all:
             return self._patches(options)
-        return _fair_grid(self.file.grids[self.at], options.role or "control", options)
+        return fair_grid(self.file.grids[self.at], options.role or "control", options)
 
     def _patches(self, options: argparse.Namespace) -> PatchesFairing:
         from moldloft.fairing import patches
@@ -892,70 +990,6 @@ class _Grids(_Source):
         return self.file.write(path, grids)
 
 
-class _Object(_Source):
-    """An object of a model: a curve, a surface, or rows of points."""
-
-    def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
-        from moldloft.fairing.objects import sampled
-        from moldloft.loading import load
-
-        if isinstance(options.tol, list):
-            raise Error("--tol FILE is for points: those of an object are sampled")
-        if options.units:
-            raise Error("--units is for files of points: a model states its own")
-        loaded = load(model, library=options.library)
-        if options.set:
-            loaded.set(dict(options.set))
-        self.title = f"{model}:{name}"
-        self.unit = loaded.length_unit[0]
-        self.made = sampled(loaded, name, options.tol)
-        self.error = self.made.error
-
-    def fair(self, options: argparse.Namespace) -> Result:
-        from moldloft.fairing import fair
-
-        made = self.made
-        if made.points.ndim == 3:
-            return _fair_grid(made.points, options.role or made.role, options)
-        if made.closed:
-            options.closed = True
-        chosen = _curve_options(options, len(made.points), options.role or made.role)
-        if not options.breaks and made.breaks:
-            chosen["breaks"] = made.breaks
-        if made.role == "fit" and not made.breaks:
-            chosen["spacing"] = "index"
-        if (options.role or made.role) == "fit" and options.mode == "optimum":
-            # The object itself is what the tolerance is about, between its points too.
-            chosen["bound"] = options.bound or "curve"
-        return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
-
-    def facts(self) -> dict[str, Any]:
-        return {"source": self.title, "fit_error": self.error}
-
-    def notes(self) -> list[str]:
-        if self.error is None:
-            return []
-        count = " x ".join(str(n) for n in self.made.points.shape[:-1])
-        return [
-            f"{count} points of the object were fitted; between them it is {self.error:.2e} off"
-        ]
-
-    def write(self, result: Any, path: Path) -> Path:
-        if self.made.points.ndim == 3:
-            if path.suffix.lower() == ".vts":
-                result.write_vtk(path)
-                return path
-            from moldloft.grids import write_plot3d
-
-            return write_plot3d(path, [result.points])
-        from moldloft.fairing.spline_files import SPLINES, encoded
-
-        _known_ending(path, None)
-        if path.suffix.lower() in SPLINES:
-            return _commit(path, encoded([result.spline], path, self.unit))
-        return _commit(path, _encode_curve(result, path, None))
-
-
 def _write_log(result: Any, path: Path) -> Path:
     log = getattr(result, "log", None)
     if log is None:
@@ -963,4 +997,4 @@ def _write_log(result: Any, path: Path) -> Path:
     rows = ["point, x, y, z"]
     for index, to in zip(*log, strict=True):
         rows.append(", ".join([str(int(index) + 1), *(repr(float(c)) for c in to)]))
-    return _commit(path, ("\n".join(rows) + "\n").encode())
+    return commit_file(path, ("\n".join(rows) + "\n").encode())

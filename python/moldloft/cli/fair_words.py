@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-__all__ = ["condition", "degrees", "goal", "spacing", "stop", "tolerance", "vector"]
+__all__ = ["condition", "degrees", "goal", "spacing", "step", "stop", "tolerance", "vector"]
 
 
 def tolerance(text: str) -> float | str | None:
@@ -14,13 +16,28 @@ def tolerance(text: str) -> float | str | None:
     if text.lower() == "none":
         return None
     try:
-        return float(text)
+        # A decimal comma, as tables have.
+        return float(_COMMA.sub(r"\1.\2", text))
     except ValueError:
         if Path(text).is_file():
             return text
         raise argparse.ArgumentTypeError(
             f"`{text}` is neither a length, nor `none`, nor a file of lengths"
         ) from None
+
+
+_COMMA = re.compile(r"^(\d*),(\d+)$")
+
+
+def step(text: str) -> float:
+    """A step of written numbers, as a number or a fraction."""
+    try:
+        value = float(Fraction(_COMMA.sub(r"\1.\2", text)))
+    except (ValueError, ZeroDivisionError):
+        value = -1.0
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"`{text}` is no step, such as 0.001 or 1/16")
+    return value
 
 
 STOPS = {"move": "least_move", "drop": "least_drop", "gap": "stop_gap", "pieces": "stop_pieces"}

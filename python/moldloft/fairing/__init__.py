@@ -41,6 +41,7 @@ from moldloft.fairing.spline import (
     monotone_runs,
 )
 from moldloft.fairing.surface import SplineSurface, SurfaceFairing, fair_surface
+from moldloft.fairing.suspects import Suspect, suspects
 
 __all__ = [
     "Arc",
@@ -54,6 +55,7 @@ __all__ = [
     "Spline",
     "SplineSurface",
     "SurfaceFairing",
+    "Suspect",
     "divided_differences",
     "fair",
     "grid_metric",
@@ -61,6 +63,7 @@ __all__ = [
     "network",
     "page",
     "patches",
+    "suspects",
     "write_page",
 ]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["direction", "narrowed", "points_of", "radii", "refuse_repeats"]
+__all__ = ["direction", "motions_of", "narrowed", "points_of", "radii", "refuse_repeats"]
 
 
 def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
@@ -80,6 +80,35 @@ def direction(motion: Any) -> tuple[str, tuple[float, float, float]]:
     if vector.size != 3 or not np.isfinite(vector).all() or not vector.any():
         raise FairingError(f"expected a direction of some length, found {motion!r}")
     return word, (float(vector[0]), float(vector[1]), float(vector[2]))
+
+
+def motions_of(
+    motion: Any, count: int
+) -> tuple[Any, list[tuple[int, tuple[float, float, float]]], list[bool]]:
+    """The motion of all points, the points held across an axis, and which of them stay.
+
+    Axes for each point, such as ``["y", "z", "yz", ""]``, become the motion that has them all.
+    """
+    if not isinstance(motion, list) or not all(isinstance(axes, str) for axes in motion):
+        return motion, [], [False] * count
+    if len(motion) != count:
+        raise FairingError(f"expected the axes of {count} points, found {len(motion)}")
+    if odd := next((axes for axes in motion if set(axes) - set("xyz")), None):
+        raise FairingError(f"expected axes of x, y and z, found `{odd}`")
+    every = {axis for axes in motion for axis in axes} or {"y"}
+    unit = {axis: tuple(float(axis == a) for a in "xyz") for axis in "xyz"}
+    whole: Any = "box"
+    if len(every) == 1:
+        whole = unit[min(every)]
+    elif len(every) == 2:
+        whole = "across", unit[min(set("xyz") - every)]
+    held = [
+        (k, unit[axis])
+        for k, axes in enumerate(motion)
+        if axes
+        for axis in sorted(every - set(axes))
+    ]
+    return whole, held, [not axes for axes in motion]  # type: ignore[return-value]
 
 
 def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:

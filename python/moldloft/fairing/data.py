@@ -16,6 +16,7 @@ from moldloft.fairing.arrays import direction, narrowed, points_of, radii
 from moldloft.fairing.asked import ends_of, goal_of, index_of, spacing_of
 from moldloft.fairing.conditions import join_conditions, linear_conditions
 from moldloft.fairing.faired import Arc, Fairing
+from moldloft.fairing.findings import order_of
 from moldloft.fairing.report import Finding, Numbers
 from moldloft.fairing.spline import Spline
 
@@ -70,6 +71,7 @@ def fair_data(asked: Data, started: float) -> Fairing:
     if n < least:
         raise FairingError(f"expected at least {least} points for degree {asked.degree}, found {n}")
     found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
+    found += order_of(data, asked.closed)
     breaks = chosen(asked.breaks, found, "corner", n)
     release = chosen(asked.release, found, "outlier", n)
     # Neighbours in one place have one parameter.

@@ -19,9 +19,11 @@ __all__ = [
     "MOVE",
     "QUIET",
     "WRONG",
+    "by_length",
     "even_turns",
     "exaggeration",
     "round_below",
+    "teeth",
 ]
 
 BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
@@ -85,3 +87,37 @@ def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
     keep = np.linspace(0.0, run[-1], count + 1)
     t = np.interp(keep, run, fine.t)
     return spline.at(np.clip(t, 0, 1))
+
+
+def by_length(samples: Samples) -> Floats:
+    """The size of the curvature at places even in length.
+
+    Parameters
+    ----------
+    samples
+        Samples of a curve.
+    """
+    bend = np.interp(np.linspace(0, 1, 1001), samples.arc, np.abs(samples.curvature))
+    return np.asarray(bend)
+
+
+def teeth(samples: Samples, ij: list[int], cut: float, scale: float) -> tuple[Floats, Floats]:
+    """Feet and tips of a comb; teeth of more than `cut` are cut there.
+
+    Parameters
+    ----------
+    samples
+        Samples of a curve.
+    ij
+        The two axes of the view.
+    cut, scale
+        The largest curvature that is drawn, and the length of a tooth of curvature 1.
+    """
+    tangent = samples.first[:, ij]
+    size = np.linalg.norm(tangent, axis=1, keepdims=True)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.where(size > 0, size, 1)
+    feet = samples.points[:, ij]
+    # Outside of the bend, from whichever side of its plane a curve is seen.
+    facing = np.cross(np.eye(3)[ij[0]], np.eye(3)[ij[1]])
+    sign = -1.0 if samples.plane is not None and np.dot(samples.plane, facing) < 0 else 1.0
+    return feet, feet - np.clip(samples.curvature, -cut, cut)[:, None] * (sign * scale) * normal

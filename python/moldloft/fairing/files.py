@@ -15,8 +15,10 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError, FileError, FormatError
-from moldloft.fairing.matrix import matrix
-from moldloft.fairing.tables import Cells, plain, spans
+from moldloft.fairing.blocks import blocks
+from moldloft.fairing.cells import Cells, lines_at, rounded, step_of, written_as
+from moldloft.fairing.matrix import OffsetTable, matrix
+from moldloft.fairing.tables import plain, spans
 from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
 from moldloft.storage import read_bytes
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = [
     "GridFile",
     "PointFile",
+    "cell_texts",
     "is_grid",
     "points_text",
     "read_grids",
@@ -38,6 +41,10 @@ __all__ = [
     "read_points",
     "write_vts",
 ]
+
+
+#: The fewest points of a curve that is faired.
+FEWEST = 5
 
 
 @dataclass
@@ -76,10 +83,18 @@ class PointFile:
     """The rows of a table of offsets as they were."""
     places: list[int] = field(default_factory=list)
     """Of each row of the curves the row of the table."""
-    matrix: Cells | None = None
-    """Where the offsets stand in a table with a row for each waterline or station."""
-    named: Cells | None = None
-    """Where x, y and z of each row stand in a table whose columns have names."""
+    cells: Cells | None = None
+    """The cells that hold the coordinates of rows, in a table of offsets or of named columns."""
+    fixed_stations: bool = False
+    """Whether the rows of a single curve are stations with one offset each."""
+    names: list[str] = field(default_factory=list)
+    """Names of the curves of a table of offsets."""
+    point_names: list[str] = field(default_factory=list)
+    """Names of the rows of a table of offsets."""
+    motions: list[str] | None = None
+    """Axes in which each row of a table moves, such as ``"y"`` or ``"yz"``, where these differ."""
+    encoding: str = "utf-8"
+    """The encoding of the file."""
 
     @property
     def width(self) -> int:
@@ -109,33 +124,19 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
     """
     path = Path(path)
     data = _bytes(path)
+    _refuse_binary(path, data)
+    encoding = "utf-8"
     try:
-        text = data.decode("utf-8")
+        text = data.decode(encoding)
     except UnicodeDecodeError:
-        text = data.decode("latin-1")
+        encoding = "latin-1"
+        text = data.decode(encoding)
     try:
-        table = matrix(text)
+        table = blocks(text) or matrix(text)
     except FairingError as error:
         raise FairingError(f"{path}: {error}") from error
-    if table is not None:
-        offsets, lines, where, inches = table
-        if len({s for s, *_ in offsets}) > 1:
-            said = ["lengths in feet, inches and eighths are read as inches"] if inches else []
-            rows = np.array(offsets)
-            comma = any("," in where.lines[k][a:b] for k, a, b in where.places)
-            file = PointFile(
-                path,
-                rows,
-                lines,
-                [range(len(rows))],
-                [],
-                notes=said,
-                inches=inches,
-                unit="in" if inches else where.unit,
-                comma=comma,
-            )
-            file.moves = 2 if where.heights else 1
-            return replace(_as_offsets(file), matrix=where)
+    if table is not None and len({s for s, *_ in table.points}) > 1:
+        return _of_table(path, table, encoding)
     try:
         made = plain(text)
         rows, found = _core.read_points(made.text.encode())
@@ -157,26 +158,75 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         made.inches,
         "in" if made.inches else made.unit,
         made.comma,
+        encoding=encoding,
     )
     file.moves = 2 if made.heights else 1
     if made.axes is not None:
-        file.named = _named_cells(text, file.lines, made.axes)
-    return _as_offsets(file) if made.stations and file.width == 3 else file
+        file.cells = _named_cells(text, file.lines, made.axes)
+    if made.stations and file.width == 3:
+        return _as_offsets(file)
+    file.fixed_stations = made.stations
+    return file
+
+
+_WORKBOOKS = (".xlsx", ".xlsm", ".xls", ".ods")
+
+
+def _refuse_binary(path: Path, data: bytes) -> None:
+    """Workbooks and other files that are no text are refused by name."""
+    zipped = data.startswith(b"PK\x03\x04")
+    compound = data.startswith(b"\xd0\xcf\x11\xe0")
+    if path.suffix.lower() in _WORKBOOKS:
+        if zipped or compound:
+            raise FairingError(f"`{path}` is a workbook: save its sheet as CSV")
+        raise FairingError(f"`{path}` is text and no workbook: give it the ending .csv")
+    if zipped or compound or b"\0" in data[:4096]:
+        raise FairingError(f"`{path}` is no text: expected rows of points")
+
+
+def _of_table(path: Path, table: OffsetTable, encoding: str) -> PointFile:
+    """A table of offsets with its names and cells."""
+    said = ["lengths in feet, inches and eighths are read as inches"] if table.inches else []
+    file = PointFile(
+        path,
+        np.array(table.points),
+        table.lines,
+        [range(len(table.points))],
+        [],
+        notes=table.notes or said,
+        inches=table.inches,
+        unit="in" if table.inches else table.unit,
+        comma=table.comma,
+        cells=table.cells,
+        encoding=encoding,
+    )
+    file.moves = 2 if table.heights else 1
+    if table.curves is not None:
+        file.point_names, file.motions = table.point_names, table.motions
+        return _of_curves(file, table.curves)
+    return _as_offsets(file, table.stations, table.levels)
 
 
 def _named_cells(text: str, lines: list[int], axes: list[int]) -> Cells | None:
-    """Where the coordinates of rows stand in a text."""
-    whole = text.lstrip("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    places = []
-    for line in lines:
+    """The cells of the coordinates of rows in a text."""
+    whole, starts = lines_at(text)
+    cells = Cells(text)
+    for row, line in enumerate(lines):
         found = spans(whole[line - 1])
         if len(found) <= max(axes):
             return None
-        places += [(line - 1, *found[at]) for at in axes]
-    return Cells(whole, places)
+        for axis, at in enumerate(axes):
+            a, b = found[at]
+            cells.places.append((starts[line - 1] + a, starts[line - 1] + b))
+            cells.owners.append((row, axis))
+    return cells
 
 
-def _as_offsets(file: PointFile) -> PointFile:
+def _as_offsets(
+    file: PointFile,
+    stations: dict[float, str] | None = None,
+    levels: dict[float, str] | None = None,
+) -> PointFile:
     """A table of offsets as the curves of its stations and waterlines, or buttocks."""
     table = file.points
     other = 3 - file.moves
@@ -195,39 +245,71 @@ def _as_offsets(file: PointFile) -> PointFile:
             at = f"{file.path}:{file.lines[k]}"
             if (table[first] == table[k]).all():
                 raise FairingError(f"{at}: the same offset as line {file.lines[first]}")
-            names = ("buttock", "height") if file.moves == 2 else ("height", "half-breadth")
+            said = ("buttock", "height") if file.moves == 2 else ("height", "half-breadth")
             raise FairingError(
-                f"{at}: a second {names[1]} at station {row[0]:g}, {names[0]} {row[other]:g}: "
+                f"{at}: a second {said[1]} at station {row[0]:g}, {said[0]} {row[other]:g}: "
                 f"{row[file.moves]:g}, and {table[first, file.moves]:g} in line {file.lines[first]}"
             )
         seen[place] = k
-    stations = list(by_station)
-    rises = [b > a for a, b in itertools.pairwise(stations)]
+    order = list(by_station)
+    rises = [b > a for a, b in itertools.pairwise(order)]
     if not (all(rises) or not any(rises)):
         k = next(k for k in range(1, len(rises)) if rises[k] != rises[0]) + 1
-        line = file.lines[by_station[stations[k]][0]]
+        line = file.lines[by_station[order[k]][0]]
         raise FairingError(
-            f"{file.path}:{line}: station {stations[k]:g} is out of order after {stations[k - 1]:g}"
+            f"{file.path}:{line}: station {order[k]:g} is out of order after {order[k - 1]:g}"
         )
-    lists = list(by_station.values())
-    for rows in by_level.values():
-        lists.append(sorted(rows, key=lambda k: table[k, 0]))
-    long = [rows for rows in lists if len(rows) >= 5]
-    short = len(lists) - len(long)
+    word = "buttock" if file.moves == 2 else "waterline"
+    stations = _written(file, 0, by_station) if stations is None else stations
+    levels = _written(file, other, by_level) if levels is None else levels
+    names = {x: _name("station", stations.get(x, f"{x:g}")) for x in by_station}
+    level_names = {z: _name(word, levels.get(z, f"{z:g}")) for z in by_level}
+    curves = [(names[x], rows) for x, rows in by_station.items()]
+    for z, rows in by_level.items():
+        curves.append((level_names[z], sorted(rows, key=lambda k: table[k, 0])))
+    file.point_names = [f"{names[row[0]]}, {level_names[row[other]]}" for row in table.tolist()]
+    return _of_curves(file, curves)
+
+
+def _written(file: PointFile, axis: int, groups: dict[float, list[int]]) -> dict[float, str]:
+    """The places along an axis as they are written in the table."""
+    if file.cells is None:
+        return {}
+    at = {owner: k for k, owner in enumerate(file.cells.owners)}
+    return {
+        place: file.cells.cell(at[rows[0], axis]).strip('"')
+        for place, rows in groups.items()
+        if (rows[0], axis) in at
+    }
+
+
+def _name(word: str, label: str) -> str:
+    """The name of a line: its label, with a word before a mere number."""
+    return label if label[:1].isalpha() else f"{word} {label}"
+
+
+def _of_curves(file: PointFile, curves: list[tuple[str, list[int]]]) -> PointFile:
+    """A table of offsets as the curves through its rows."""
+    table = file.points
+    long = [(name, rows) for name, rows in curves if len(rows) >= FEWEST]
     if not long:
-        raise FairingError(f"{file.path}: none of the curves has 5 points")
+        raise FairingError(f"{file.path}: none of the curves has {FEWEST} points")
     notes = list(file.notes)
+    short = [name for name, rows in curves if 0 < len(rows) < FEWEST]
     if short:
+        listed = ", ".join(short[:4]) + (" ..." if len(short) > 4 else "")
         notes.append(
-            f"{short} {'curve' if short == 1 else 'curves'} with fewer than 5 points: not faired"
+            f"{len(short)} {'curve' if len(short) == 1 else 'curves'} with fewer than {FEWEST} "
+            f"points: not faired ({listed})"
         )
-    places = [k for rows in long for k in rows]
-    ends = list(itertools.accumulate(map(len, long)))
+    places = [k for _, rows in long for k in rows]
+    ends = list(itertools.accumulate(len(rows) for _, rows in long))
     return replace(
         file,
         points=np.ascontiguousarray(table[places]),
         lines=[file.lines[k] for k in places],
-        blocks=[range(end - len(rows), end) for end, rows in zip(ends, long, strict=True)],
+        blocks=[range(end - len(own), end) for end, (_, own) in zip(ends, long, strict=True)],
+        names=[name for name, _ in long],
         notes=notes,
         offsets=True,
         table=table,
@@ -243,23 +325,42 @@ def _at(path: Path, error: FormatError) -> FairingError:
     return FairingError(f"`{path}` is no {error.format} grid: {error.place} {error.number}: {what}")
 
 
-def points_text(points: Floats, like: PointFile | None = None, delimiter: str = ",") -> str:
-    """Rows of points as text that reads back to the bit, in the form of a file read."""
+def points_text(
+    points: Floats,
+    like: PointFile | None = None,
+    delimiter: str = ",",
+    *,
+    tol: Floats | float | None = None,
+    step: float | None = None,
+) -> str:
+    """Rows of points as text, in the form of a file read.
+
+    A table of offsets is written to its own digit (see :func:`~moldloft.fairing.cells.step_of`),
+    and stays within the tolerance. Other numbers read back to the bit.
+
+    Parameters
+    ----------
+    points
+        ``(n, 2)`` or ``(n, 3)``: the rows of the curve, or of the table.
+    like
+        The file read. Cells whose number did not change stay as they were written.
+    delimiter
+        Separator of columns without a file.
+    tol
+        The tolerance, or that of each row.
+    step
+        The step to which numbers are rounded; 0 for all digits.
+    """
     given = None if like is None else like.points if like.table is None else like.table
-    if like is not None and like.matrix is not None and given is not None:
-        still = [0, 3 - like.moves]
-        if (points[:, still] != given[:, still]).any():
-            raise FairingError(
-                "the stations and levels of such a table stay: without --along and --box, or an "
-                "ending of another form"
-            )
-        pairs = zip(points[:, like.moves], given[:, like.moves], strict=True)
-        return like.matrix.written([None if y == old else _cell(y, like) for y, old in pairs])
     alike = given is not None and np.shape(points) == np.shape(given)
-    if like is not None and like.named is not None and given is not None and alike:
-        # Cells whose number did not change stay as they were written.
-        each = zip(np.ravel(points), np.ravel(given), strict=True)
-        return like.named.written([None if x == old else _cell(x, like) for x, old in each])
+    if like is not None and like.cells is not None and given is not None and alike:
+        return like.cells.written(cell_texts(points, like, tol, step))
+    if like is not None and like.table is not None:
+        raise FairingError("the rows of a table of offsets are as many as were read")
+    if step and given is not None and alike:
+        most = np.broadcast_to(np.inf if tol is None else tol, len(points))
+        pairs = zip(points, given, most, strict=True)
+        points = np.array([_rounded_point(p, q, step, float(t)) for p, q, t in pairs])
     if like is not None and (like.inches or like.comma):
         return _own_form(points, like)
     own = delimiter if like is None else (like.delimiter or " ")
@@ -271,26 +372,60 @@ def points_text(points: Floats, like: PointFile | None = None, delimiter: str = 
     return _core.points_text(rows, separator, head, blocks, halves)
 
 
-def _cell(x: float, like: PointFile) -> str:
-    if like.inches:
-        return sixteenths(x)
-    text = repr(float(x) + 0.0)
-    return text.replace(".", ",") if like.comma else text
+def _rounded_point(point: Floats, given: Floats, step: float, tol: float) -> Floats:
+    """A point rounded in each coordinate, within the tolerance of its distance."""
+    pairs = list(zip(point.tolist(), given.tolist(), strict=True))
+    near = np.array([b if a == b else rounded(a, b, step, np.inf) for a, b in pairs])
+    if np.linalg.norm(near - given) <= tol * (1 + 1e-12):
+        return near
+    # Each coordinate towards the one read: then no distance grows.
+    return np.array([b if a == b else rounded(a, b, step, abs(a - b)) for a, b in pairs])
 
 
-def sixteenths(inches: float) -> str:
-    """A length in feet, inches and eighths, to the nearest sixteenth.
+def cell_texts(
+    points: Floats, like: PointFile, tol: Floats | float | None = None, step: float | None = None
+) -> list[str | None]:
+    """The numbers of the cells of a table that changed, as they are written; ``None`` for others.
 
-    Examples
-    --------
-    >>> sixteenths(53.125), sixteenths(54.0625), sixteenths(-0.26)
-    ('4-5-1', '4-6-0+', '-0-0-2')
+    Parameters
+    ----------
+    points
+        The rows of the table, as many as were read.
+    like
+        The file read, with cells.
+    tol, step
+        See :func:`points_text`.
+
+    Raises
+    ------
+    FairingError
+        When a coordinate changed that has no cell.
     """
-    count = round(16 * abs(inches))
-    feet, rest = divmod(count, 192)
-    whole, parts = divmod(rest, 16)
-    sign = "-" if inches < 0 and count else ""
-    return f"{sign}{feet}-{whole}-{parts // 2}{'+' if parts % 2 else ''}"
+    cells, given = like.cells, like.points if like.table is None else like.table
+    if cells is None:
+        raise FairingError(f"`{like.path}` is no table with cells")
+    changed = {(int(k), int(axis)) for k, axis in np.argwhere(points != given)}
+    if beyond := changed - set(cells.owners):
+        row, axis = min(beyond)
+        name = like.point_names[row] if like.point_names else f"row {row + 1}"
+        raise FairingError(
+            f"{name}: {'xyz'[axis]} moved, and the table has no cell for it: stations and levels "
+            "stay without --along, --across and --box"
+        )
+    most = np.broadcast_to(np.inf if tol is None else tol, len(points))
+    moving = [cells.cell(k) for k, owner in enumerate(cells.owners) if owner in changed]
+    if step is None:
+        positive = [float(t) for t in most if t > 0]
+        step = step_of(moving, min(positive, default=np.inf)) if like.offsets else 0.0
+    at_step = points.copy()
+    for row in {row for row, _ in changed} if step else ():
+        at_step[row] = _rounded_point(points[row], given[row], step, float(most[row]))
+    texts: list[str | None] = []
+    for k, (row, axis) in enumerate(cells.owners):
+        new = float(at_step[row, axis])
+        same = new == given[row, axis]
+        texts.append(None if same else written_as(new, cells.cell(k), step))
+    return texts
 
 
 def _own_form(points: Floats, like: PointFile) -> str:
@@ -298,10 +433,11 @@ def _own_form(points: Floats, like: PointFile) -> str:
     separator = {"\t": "\t", None: " "}.get(like.delimiter, "; " if like.comma else ", ")
     lines = [line.removeprefix("# ") if like.inches else line for line in like.head]
     starts = {block.start for block in like.blocks} - {0}
+    form = "0-0-0" if like.inches else "0,0" if like.comma else "0"
     for k, row in enumerate(points):
         if k in starts and not like.offsets:
             lines.append("")
-        lines.append(separator.join(_cell(x, like) for x in row))
+        lines.append(separator.join(written_as(x, form, 0.0) for x in row))
     return "\n".join(lines) + "\n"
 
 

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, field
 
 from moldloft.errors import FairingError
-from moldloft.fairing.tables import (
-    MISSING,
-    SEPARATORS,
-    Cells,
-    length,
-    names_axes,
-    spans,
-    unit_named,
-)
+from moldloft.fairing.cells import SEPARATORS, Cells, lines_at
+from moldloft.fairing.tables import MISSING, length, names_axes, spans, unit_named
 
-__all__ = ["matrix"]
+__all__ = ["OffsetTable", "decimal_commas", "matrix", "number_at", "place_at", "rows_are_stations"]
 
 _LABEL = re.compile(r"(?:[A-Za-z.]+\s*)?(\S.*)")
 _STATION = re.compile(r"\b(stations?|st|sta|frames?|ordinates?)\b")
@@ -24,13 +18,62 @@ _BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 _BUTTOCK = re.compile(r"\bbuttocks?\b")
 
 
-def _number(cell: str, comma: bool) -> float | None:
+@dataclass
+class OffsetTable:
+    """A table of offsets as it was read."""
+
+    points: list[tuple[float, float, float]]
+    """Station, half-breadth and height of each offset."""
+    lines: list[int]
+    """The line of each offset, from 1."""
+    cells: Cells
+    """Its cells, whose owners are the offsets."""
+    heights: bool = False
+    """Whether all offsets are heights at buttocks, not half-breadths at waterlines."""
+    unit: str | None = None
+    """The unit that it states."""
+    inches: bool = False
+    """Whether lengths are in feet, inches and eighths."""
+    comma: bool = False
+    """Whether numbers have decimal commas."""
+    stations: dict[float, str] = field(default_factory=dict)
+    """Names of stations by their places."""
+    levels: dict[float, str] = field(default_factory=dict)
+    """Names of waterlines or buttocks by their places."""
+    curves: list[tuple[str, list[int]]] | None = None
+    """Lines by name with their offsets; ``None`` where stations and levels are all."""
+    motions: list[str] | None = None
+    """Axes along which each offset moves, such as ``"y"``, ``"yz"`` or nothing."""
+    point_names: list[str] = field(default_factory=list)
+    """Names of the offsets."""
+    notes: list[str] = field(default_factory=list)
+    """Facts about the table that a user should know."""
+
+
+def number_at(cell: str, comma: bool) -> float | None:
+    """The length of a cell; ``None`` where it is none.
+
+    Parameters
+    ----------
+    cell
+        The cell without blanks round it.
+    comma
+        Whether numbers have decimal commas.
+    """
     return length(cell.replace(",", ".") if comma else cell)
 
 
-def _place(cell: str, comma: bool) -> float | None:
-    """The place that a head of a column or the label of a row says: `0.5`, `WL 0.5`, `0.5 m`."""
-    value = _number(cell, comma)
+def place_at(cell: str, comma: bool) -> float | None:
+    """The place in a head of a column or the label of a row: `0.5`, `WL 0.5`, `0.5 m`.
+
+    Parameters
+    ----------
+    cell
+        The cell without blanks round it.
+    comma
+        Whether numbers have decimal commas.
+    """
+    value = number_at(cell, comma)
     if value is not None:
         return value
     found = _LABEL.fullmatch(cell)
@@ -38,8 +81,8 @@ def _place(cell: str, comma: bool) -> float | None:
     for text in (bare, cell):
         number, _, word = text.rpartition(" ")
         if number and unit_named(word) is not None:
-            return _place(number, comma)
-    return _number(bare, comma)
+            return place_at(number, comma)
+    return number_at(bare, comma)
 
 
 def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
@@ -52,14 +95,14 @@ def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
     """
     cells = [line[a:b].strip('"').strip() for a, b in spans(line)]
     if any(sign in line for sign in SEPARATORS):
-        corner, values = cells[0], [_place(c, comma) for c in cells[1:]]
-        if _place(corner, comma) is not None:
+        corner, values = cells[0], [place_at(c, comma) for c in cells[1:]]
+        if place_at(corner, comma) is not None:
             return None
         known = [v for v in values if v is not None]
         if len(known) < 4:
             return None
         if len(known) < len(values):
-            if _rows_are_stations(corner, "") is None:
+            if rows_are_stations(corner, "") is None:
                 return None
             odd = cells[1 + values.index(None)]
             raise FairingError(
@@ -67,22 +110,28 @@ def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
                 "a sheer or a profile is a curve of its own"
             )
         return corner, known
-    values = [_number(c, comma) for c in cells[1:]]
+    values = [number_at(c, comma) for c in cells[1:]]
     if len(values) < 4 or any(v is None for v in values):
         # Blanks separate the words of a corner, too.
-        numbers = [k for k, c in enumerate(cells) if _number(c, comma) is None]
+        numbers = [k for k, c in enumerate(cells) if number_at(c, comma) is None]
         last = numbers[-1] if numbers else -1
-        values = [_number(c, comma) for c in cells[last + 1 :]]
+        values = [number_at(c, comma) for c in cells[last + 1 :]]
         if last < 0 or len(values) < 4:
             return None
         return " ".join(cells[: last + 1]), [v for v in values if v is not None]
-    if _number(cells[0], comma) is not None:
+    if number_at(cells[0], comma) is not None:
         return None
     return cells[0], [v for v in values if v is not None]
 
 
-def _rows_are_stations(corner: str, above: str) -> bool | None:
-    """Whether rows are stations, by the word of the corner, or by what precedes the table."""
+def rows_are_stations(corner: str, above: str) -> bool | None:
+    """Whether rows are stations, by the word of the corner, or by what precedes the table.
+
+    Parameters
+    ----------
+    corner, above
+        The first cell of the head line; the text before it.
+    """
     for text in (corner.lower(), above.lower()):
         station, level = _STATION.search(text), _LEVEL.search(text)
         if station and level:
@@ -93,13 +142,22 @@ def _rows_are_stations(corner: str, above: str) -> bool | None:
     return None
 
 
-def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Cells, bool] | None:
+def decimal_commas(text: str) -> bool:
+    """Whether the numbers of a table have decimal commas.
+
+    Parameters
+    ----------
+    text
+        The table.
+    """
+    return ";" in text and not re.search(r"\d\.\d", text) and bool(re.search(r"\d,\d", text))
+
+
+def matrix(text: str) -> OffsetTable | None:
     r"""The offsets of a table with a row for each waterline or station, if the text is one.
 
-    Returned are rows of station, half-breadth and height; their lines, from 1; where they stand in
-    the text; whether lengths were in feet, inches and eighths. The first cell of the head line says
-    what the rows are: ``waterline``, ``buttock`` (its cells are heights) or ``station``; cells
-    ``x``, ``-`` or nothing are missing.
+    The first cell of the head line says what the rows are: ``waterline``, ``buttock`` (its cells
+    are heights) or ``station``; cells ``x``, ``-`` or nothing are missing.
 
     Raises
     ------
@@ -108,13 +166,13 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Cell
 
     Examples
     --------
-    >>> rows, *_ = matrix("waterline; 0; 1; 2; 3\n0.5; 0; 1; 1.5; x\n1; 0.1; 1.2; 1.6; 1.7\n")
-    >>> rows[2], len(rows)
+    >>> table = matrix("waterline; 0; 1; 2; 3\n0.5; 0; 1; 1.5; x\n1; 0.1; 1.2; 1.6; 1.7\n")
+    >>> table.points[2], len(table.points)
     ((1.0, 1.0, 0.5), 7)
     """
-    lines = text.lstrip("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines, starts = lines_at(text)
     used = [k for k, s in enumerate(lines) if s.strip() and not s.startswith("#")]
-    comma = ";" in text and not re.search(r"\d\.\d", text) and bool(re.search(r"\d,\d", text))
+    comma = decimal_commas(text)
     head = None
     for k in used[:12]:
         try:
@@ -137,7 +195,7 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Cell
     if len(first) < 4 or len(first) > len(across) + 2:
         return None
     above = " ".join(lines[k] for k in used if k < head)
-    stations = _rows_are_stations(corner, above)
+    stations = rows_are_stations(corner, above)
     if stations is None:
         raise FairingError(
             f"line {head + 1}: a matrix of offsets? its first cell says what the rows are: "
@@ -145,53 +203,68 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Cell
         )
     title = f"{above} {corner}".lower()
     heights = _BUTTOCK.search(title) is not None and not re.search(r"\b(waterlines?|wl)\b", title)
-    inches = any("-" in lines[head][a:b] for a, b in spans(lines[head])[1:])
+    heads = [lines[head][a:b].strip('"').strip() for a, b in spans(lines[head])][-len(across) :]
+    out = OffsetTable([], [], Cells(text), heights=heights)
+    out.inches = any("-" in cell.lstrip("-") for cell in heads if number_at(cell, comma))
     try:
-        unit = _unit(lines[head], above)
+        out.unit = _unit(lines[head], above)
     except FairingError as error:
         raise FairingError(f"line {head + 1}: {error}") from error
-    rows: list[tuple[float, float, float]] = []
-    where: list[int] = []
-    places: list[tuple[int, int, int]] = []
-    seen: set[float] = set()
+    of_heads, of_rows = (out.levels, out.stations) if stations else (out.stations, out.levels)
+    of_heads.update(zip(across, heads, strict=True))
     for k in below:
         found_at = spans(lines[k])
         cells = [lines[k][a:b].strip('"').strip() for a, b in found_at]
         # Words before the value of a row, as in `WL 0.5`.
         words = 1
-        if _number(cells[0], comma) is None and len(cells) > 1 and " " not in cells[0]:
+        if number_at(cells[0], comma) is None and len(cells) > 1 and " " not in cells[0]:
             words = 2 if len(cells) == len(across) + 2 else 1
-        label = cells[words - 1]
-        value = _place(label, comma)
+        value = place_at(cells[words - 1], comma)
         if value is None:
             raise FairingError(f"line {k + 1}: expected the value of a row, found `{cells[0]}`")
-        if value in seen:
+        if value in of_rows:
             raise FairingError(f"line {k + 1}: a second row of {value:g}")
-        seen.add(value)
+        of_rows[value] = " ".join(cells[:words])
         own = found_at[words:]
         if len(own) > len(across):
             raise FairingError(
                 f"line {k + 1}: expected {len(across)} offsets at most, found {len(own)}"
             )
         for at, (a, b) in zip(across, own, strict=False):
-            cell = lines[k][a:b].strip('"').strip()
+            a, b = _unquoted(lines[k], a, b)
+            cell = lines[k][a:b]
             if cell in MISSING:
                 continue
-            breadth = _number(cell, comma)
-            if breadth is None:
+            offset = number_at(cell, comma)
+            if offset is None:
                 raise FairingError(f"line {k + 1}: expected an offset, found `{cell}`")
-            inches |= bool(re.fullmatch(r"-?\d+-\d+-\d+.?", cell))
+            out.inches |= bool(re.fullmatch(r"-?\d+-\d+-\d+.?", cell))
+            out.comma |= "," in cell
             station, level = (value, at) if stations else (at, value)
-            rows.append((station, level, breadth) if heights else (station, breadth, level))
-            where.append(k + 1)
-            places.append((k, a, b))
-    order = sorted(range(len(rows)), key=lambda i: _order(rows, i, across, stations))
-    return (
-        [rows[i] for i in order],
-        [where[i] for i in order],
-        Cells(lines, [places[i] for i in order], heights, unit),
-        inches,
-    )
+            point = (station, level, offset) if heights else (station, offset, level)
+            out.cells.places.append((starts[k] + a, starts[k] + b))
+            out.points.append(point)
+            out.lines.append(k + 1)
+    if not stations:
+        # Station after station, in the order of the table.
+        column = {x: at for at, x in enumerate(across)}
+        order = sorted(range(len(out.points)), key=lambda i: (column[out.points[i][0]], i))
+        out.points = [out.points[i] for i in order]
+        out.lines = [out.lines[i] for i in order]
+        out.cells.places = [out.cells.places[i] for i in order]
+    axis = 2 if heights else 1
+    out.cells.owners = [(row, axis) for row in range(len(out.points))]
+    return out
+
+
+def _unquoted(line: str, start: int, end: int) -> tuple[int, int]:
+    """The span of a cell within its quotes."""
+    cell = line[start:end]
+    if len(cell) > 1 and cell[0] == cell[-1] == '"':
+        inner = cell[1:-1]
+        start += 1 + len(inner) - len(inner.lstrip())
+        return start, start + len(inner.strip())
+    return start, end
 
 
 def _unit(head: str, above: str) -> str | None:
@@ -203,12 +276,3 @@ def _unit(head: str, above: str) -> str | None:
     if len(units) > 1:
         raise FairingError(f"places in {' and '.join(sorted(units))}: expected one unit")
     return units.pop() if units else None
-
-
-def _order(
-    rows: list[tuple[float, float, float]], i: int, across: list[float], stations: bool
-) -> tuple[int, int]:
-    """Station after station, in the order of the table."""
-    if stations:
-        return (0, i)
-    return (across.index(rows[i][0]), i)

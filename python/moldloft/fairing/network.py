@@ -12,7 +12,14 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
-from moldloft.fairing.arrays import direction, narrowed, points_of, radii, too_large
+from moldloft.fairing.arrays import (
+    direction,
+    motions_of,
+    narrowed,
+    points_of,
+    radii,
+    too_large,
+)
 from moldloft.fairing.asked import EXACT, goal_of, only_data, spacing_of
 from moldloft.fairing.findings import along_lines
 from moldloft.fairing.report import Finding, certificate_of, claims_optimum, lines_of
@@ -260,7 +267,8 @@ def network(
         Points that do not move: ``"corners"`` (at which every curve that has them ends),
         ``"ends"``, ``"none"``, or numbers.
     motion
-        As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone.
+        As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone. Or a
+        list with the axes of each point, such as ``"y"``, ``"yz"`` or ``""`` for one that stays.
     bound
         ``"points"``: the tolerance is that of the points, between which a curve may swing farther;
         ``"curve"``: no curve is farther from its original than the smaller tolerance of the two
@@ -350,10 +358,16 @@ def network(
     stay = index and tol is not None and goal_of(goal)[0] == "near"
     stay = stay and _core.are_exact(data, lists, sorted(marked))
     web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
+    motion, held, steady = motions_of(motion, count)
     word, way = direction(motion)
+    allowed = [0.0 if still else r for r, still in zip(radii(tol, count), steady, strict=True)]
+    allowed = [0.0] * count if stay else allowed
+    moving = {k for k, r in enumerate(allowed) if r > 0} - {*still, *marked}
+    held = [(k, across) for k, across in held if k in moving]
     faired, pairs, reported = web.fair(
         {
-            "tolerance": [0.0] * count if stay else radii(tol, count),
+            "tolerance": allowed,
+            "held": held,
             "motion": word,
             "direction": way,
             "fixed": still,
@@ -373,6 +387,10 @@ def network(
         # Which network is the fairest was not asked.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
     seconds = time.perf_counter() - started
+    for k, across in held:
+        # Conditions hold to rounding.
+        axis = int(np.argmax(across))
+        faired[k, axis] = data[k, axis]
     return NetworkFairing(
         points=narrowed(faired, width),
         curves=tuple(Spline._of(p[1]) for p in pairs),

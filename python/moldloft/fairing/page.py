@@ -18,9 +18,11 @@ from moldloft.fairing.drawing import (
     MOVE,
     QUIET,
     WRONG,
+    by_length,
     even_turns,
     exaggeration,
     round_below,
+    teeth,
 )
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.patches import PatchesFairing
-    from moldloft.fairing.spline import Samples, Spline
+    from moldloft.fairing.spline import Spline
     from moldloft.fairing.surface import SplineSurface, SurfaceFairing
 
     Floats = NDArray[np.float64]
@@ -196,24 +198,6 @@ def _moved(
     return _figure(picture, f"To scale: before orange, after blue. {moves}")
 
 
-def _by_length(samples: Samples) -> Floats:
-    """The size of the curvature at places even in length."""
-    bend = np.interp(np.linspace(0, 1, 1001), samples.arc, np.abs(samples.curvature))
-    return np.asarray(bend)
-
-
-def _teeth(samples: Samples, ij: list[int], cut: float, scale: float) -> tuple[Floats, Floats]:
-    """Feet and tips of a comb; teeth of more than `cut` are cut there."""
-    tangent = samples.first[:, ij]
-    size = np.linalg.norm(tangent, axis=1, keepdims=True)
-    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.where(size > 0, size, 1)
-    feet = samples.points[:, ij]
-    # Outside of the bend, from whichever side of its plane a curve is seen.
-    facing = np.cross(np.eye(3)[ij[0]], np.eye(3)[ij[1]])
-    sign = -1.0 if samples.plane is not None and np.dot(samples.plane, facing) < 0 else 1.0
-    return feet, feet - np.clip(samples.curvature, -cut, cut)[:, None] * (sign * scale) * normal
-
-
 def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
     ij = list(axes)
     after = even_turns(fairing.spline)
@@ -222,11 +206,11 @@ def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
     if largest * extent <= 1e-9:
         return "<p>The curve is straight: it has no comb.</p>"
     # A nose would leave the rest without teeth: these are cut where they are.
-    usual = float(np.percentile(_by_length(after), 80))
+    usual = float(np.percentile(by_length(after), 80))
     cut = largest if largest <= 8 * usual else max(3 * usual, 1e-3 * largest)
     scale = 0.22 * extent / cut
-    feet, tips = _teeth(after, ij, cut, scale)
-    _, rough = _teeth(fairing.original.samples(12), ij, cut, scale)
+    feet, tips = teeth(after, ij, cut, scale)
+    _, rough = teeth(fairing.original.samples(12), ij, cut, scale)
     picture = _Picture(np.vstack([feet, tips, rough]))
     picture.line(rough, BEFORE, 0.5)
     picture.segments(feet, tips, AFTER, 0.5)
@@ -251,14 +235,14 @@ def _combs(pairs: Sequence[tuple[Spline, Spline]], axes: tuple[int, int]) -> str
         points = after.control_points
         if np.ptp(points[:, across]) <= 1e-9 * np.ptp(points, axis=0).max():
             shown.append((even_turns(before, 0.05, 160), even_turns(after, 0.05, 160)))
-    bends = [_by_length(after) for _, after in shown]
+    bends = [by_length(after) for _, after in shown]
     extent = max((float(np.ptp(a.points[:, ij], axis=0).max()) for _, a in shown), default=0.0)
     if not shown or float(np.max(bends)) * extent <= 1e-9:
         return ""
     cut = 3 * float(np.percentile(np.concatenate(bends), 80))
     cut = min(cut, float(np.max(bends))) or float(np.max(bends))
     scale = 0.1 * extent / cut
-    both = [[_teeth(s[k], ij, cut, scale) for s in shown] for k in (0, 1)]
+    both = [[teeth(s[k], ij, cut, scale) for s in shown] for k in (0, 1)]
     corners = np.vstack([p for combs in both for feet_tips in combs for p in feet_tips])
     parts = []
     for combs, colour, word in zip(both, (BEFORE, AFTER), ("before", "after"), strict=True):
@@ -292,7 +276,7 @@ def _bends(fairing: Fairing) -> str:
     """Curvature along the length, before and after; logarithmic where it spans decades."""
     before, after = fairing.original.samples(12), fairing.spline.samples(12)
     bend = np.abs(after.curvature)
-    largest, usual = float(bend.max()), float(np.median(_by_length(after)))
+    largest, usual = float(bend.max()), float(np.median(by_length(after)))
     swamped = usual > 0 and largest > 30 * usual
 
     def shown(values: Floats) -> Floats:

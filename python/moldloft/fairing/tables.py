@@ -6,17 +6,15 @@ Aerofoils with prose, decimal commas, named columns, lengths in feet, inches and
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
+from moldloft.fairing.cells import SEPARATORS
 
 __all__ = [
     "MISSING",
-    "SEPARATORS",
-    "Cells",
     "Plain",
     "eighths",
     "length",
@@ -46,9 +44,6 @@ _PARTS = {
     "\u215e": (7, 8),
 }
 _FRACTION = re.compile(rf"([-\u2212]?)(\d*)(?:\s*([{''.join(_PARTS)}])|\s+([1-9]\d*)/([1-9]\d*))")
-SEPARATORS = ";\t,|"
-"""What separates cells, the first of these that a line has."""
-
 MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
 
 _AXES = {
@@ -150,36 +145,6 @@ class Plain:
     """Of x, y and z the columns, where names say which and others are beside them or between."""
 
 
-@dataclass
-class Cells:
-    """Where the numbers of a table stand in its text."""
-
-    lines: list[str]
-    """The lines as they were read."""
-    places: list[tuple[int, int, int]]
-    """Of each number its line, from 0, and where it begins and ends there."""
-    heights: bool = False
-    """Whether the numbers are heights at buttocks, not half-breadths at waterlines."""
-    unit: str | None = None
-    """The unit that the corner of a matrix or a line before it states."""
-
-    def written(self, texts: Sequence[str | None]) -> str:
-        """The text with other numbers in its cells, as wide as before where they fit.
-
-        Parameters
-        ----------
-        texts
-            The number of each cell; ``None`` leaves it as it is.
-        """
-        out = list(self.lines)
-        # From the last on, so that places before stay where they are.
-        for (line, start, end), new in sorted(zip(self.places, texts, strict=True), reverse=True):
-            if new is not None:
-                old = out[line]
-                out[line] = old[:start] + new.rjust(end - start) + old[end:]
-        return "\n".join(out).rstrip("\n") + "\n"
-
-
 def spans(line: str) -> list[tuple[int, int]]:
     """Where the cells of a line begin and end: between :data:`SEPARATORS`, else blanks.
 
@@ -226,12 +191,40 @@ def plain(text: str) -> Plain:
     """
     out = Plain(text.lstrip("\ufeff"))
     lines = out.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = _openfast(lines, out)
     lines = _decimal_commas(lines, out)
     lines = _lengths(lines, out)
     lines = _named(lines, out)
     lines = _prose(lines, out)
     out.text = "\n".join(lines)
     return out
+
+
+_COORDINATES = re.compile(r"\s*(\d+)\s+NumCoords\b.*", re.IGNORECASE)
+
+
+def _openfast(lines: list[str], out: Plain) -> list[str]:
+    """Coordinates of an aerofoil for OpenFAST.
+
+    Comments begin with ``!``, and the first point is the reference and not on the section.
+    """
+    counted = next((k for k, s in enumerate(lines) if _COORDINATES.fullmatch(s)), None)
+    if counted is None:
+        return lines
+    made = [f"# {s}" if k == counted or s.lstrip().startswith("!") else s
+            for k, s in enumerate(lines)]  # fmt: skip
+    rows = [k for k, s in enumerate(made) if s.strip() and not s.startswith("#")]
+    found = _COORDINATES.fullmatch(lines[counted])
+    assert found is not None
+    if len(rows) != int(found[1]):
+        raise FairingError(
+            f"line {counted + 1}: expected {found[1]} coordinates (NumCoords), found {len(rows)}"
+        )
+    if rows:
+        made[rows[0]] = f"# {made[rows[0]]}"
+        out.notes.append(f"line {rows[0] + 1}: the reference of the aerofoil is no point of it")
+    out.axes = [0, 1]
+    return made
 
 
 def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
@@ -371,7 +364,7 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         return lines
     order = sorted((a, k) for k, a in enumerate(axes) if a)
     of_x = plain_names[order[0][1]]
-    out.stations = of_x.startswith("station") and len(known) == 3
+    out.stations = of_x.startswith("station") and "x" in known
     if not out.stations and set(known) == {"x", "y", "z"}:
         out.stations = _in_levels(lines[first + 1 :], [k for _, k in order], len(names))
         if out.stations:

@@ -69,7 +69,8 @@ pub struct Network {
     weights: Option<Vec<f64>>,
     /// The nets of joined surfaces.
     pub(crate) patches: Vec<PlacedNet>,
-    /// What holds across their seams, and how it hangs on the points given.
+    /// What holds across their seams and of points that move in planes of their own, and how that of
+    /// seams hangs on the points given.
     pub(crate) seams: Vec<Condition>,
     pub(crate) across: Vec<SeamCondition>,
 }
@@ -87,6 +88,19 @@ impl Network {
         let network = Self::of(points, limit, strands);
         network.check()?;
         Ok(network)
+    }
+
+    /// Keeps a point in the plane through it across a direction: an offset moves along its own axis
+    /// alone, whatever its neighbours may do.
+    ///
+    /// # Errors
+    /// [`FairError::Mark`] when there is no such point.
+    pub fn hold(&mut self, point: usize, across: Vec3<f64>) -> Result<(), FairError> {
+        let count = self.points.len();
+        let place = self.points.get(point).ok_or(FairError::Mark { index: point, count })?;
+        let value = across.dot(*place);
+        self.seams.push(Condition { entries: vec![(point, across)], value });
+        Ok(())
     }
 
     fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {

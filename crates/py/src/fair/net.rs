@@ -348,6 +348,9 @@ impl Web {
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
         network.kept = get(&options, "fixed")?;
+        for (point, across) in get::<Vec<(usize, [f64; 3])>>(&options, "held")? {
+            network.hold(point, Vec3::from(across)).map_err(fair_error)?;
+        }
         network.bound = bound(&get::<String>(&options, "bound")?)?;
         let (reported, points) = solved(py, network.clone(), &options)?;
         let pair = |k: usize| -> PyResult<PairOfCurves> {

@@ -1,0 +1,480 @@
+"""Suspects: cells of a table that their neighbours contradict, and the readings that were meant.
+
+Each offset is predicted by the neighbours on each of its lines: by polynomials of different degree
+and width, whose disagreement is the error of the prediction. The predictions of its lines are
+weighed by their errors. The clearest suspect is put aside before the next is looked for, so that it
+hides no other and accuses no neighbour. The list is ranked; it is no test of significance.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.arguments import explain
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import points_of
+from moldloft.fairing.cells import notation, sixteenths
+from moldloft.fairing.tables import length
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Suspect", "suspects"]
+
+#: Neighbours on either side that predict, at most and at least.
+_SIDE, _LEAST = 3, 2
+
+#: Share of an error along the held axis that counts, through the slope, in a prediction.
+_SLOPE = 0.5
+
+#: A point whose sides both predict it to this share of what both together miss is a knuckle.
+_KNUCKLE = 0.35
+
+#: Errors of the prediction within which a reading is one that was meant.
+_WITHIN = 2.5
+
+#: Suspects whose deviation is below so many errors are not listed.
+_WORTH = 1.5
+
+#: Cost of a slip beside the squared deviation, in squared errors: less of likelier ones.
+_COSTS = {
+    "an inch": 0.0,
+    "eighths": 0.3,
+    "a digit": 0.3,
+    "a foot": 0.5,
+    "two inches": 1.0,
+    "two digits swapped": 1.0,
+    "inches and eighths swapped": 1.0,
+    "the sign": 1.0,
+    "swapped with its neighbour": 0.5,
+    "the decimal point": 1.5,
+}
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A coordinate of a point that its neighbours contradict."""
+
+    index: int
+    """The point, from 0."""
+    axis: int
+    """The coordinate: 0, 1 or 2."""
+    name: str
+    """The name of the point, such as ``station 8, sheer``."""
+    value: float
+    """The coordinate as it was read."""
+    expected: float
+    """The coordinate that the neighbours predict."""
+    error: float
+    """The error of that prediction."""
+    score: float
+    """The deviation as a multiple of its error: the rank."""
+    meant: float | None
+    """The reading that was probably meant; ``None`` where no slip of the pen explains it."""
+    reading: str
+    """The coordinate as it is written in the table."""
+    meant_reading: str
+    """The reading that was probably meant, in the notation of the table; nothing for none."""
+    slip: str
+    """The kind of slip, such as ``an inch`` or ``a digit``; nothing where none explains it."""
+    gain: float
+    """Share of the squared third differences beside it, on all its lines, that is gone with the
+    reading meant, or with the expected one."""
+    lines: tuple[str, ...]
+    """The names of its lines."""
+
+    def __str__(self) -> str:
+        said = f"{self.name}: {self.reading}"
+        if self.slip:
+            said += f", meant {self.meant_reading}? ({self.slip})"
+        else:
+            said += ", no slip of the pen explains it"
+        shown = sixteenths(self.expected) if notation(self.reading) == "eighths" else ""
+        expected = shown or f"{self.expected:.6g}"
+        return (
+            f"{said}; its neighbours have it at {expected}, {self.score:.1f} times their error; "
+            f"gain {100 * self.gain:.0f} %"
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """The suspect as plain data; points count from 1.
+
+        Returns
+        -------
+        dict
+            Numbers, texts and lists.
+        """
+        return {
+            "point": self.index + 1,
+            "axis": "xyz"[self.axis],
+            "name": self.name,
+            "reading": self.reading,
+            "meant": self.meant_reading or None,
+            "slip": self.slip or None,
+            "value": self.value,
+            "expected": self.expected,
+            "score": self.score,
+            "gain": self.gain,
+            "lines": list(self.lines),
+        }
+
+
+@dataclass(frozen=True)
+class _Prediction:
+    off: float
+    error: float
+
+
+def suspects(
+    points: ArrayLike,
+    tol: float,
+    curves: Sequence[Sequence[int]] | None = None,
+    *,
+    motion: Sequence[str] | str | None = None,
+    most: int = 10,
+    names: Sequence[str] = (),
+    point_names: Sequence[str] = (),
+    readings: dict[tuple[int, int], str] | None = None,
+) -> tuple[Suspect, ...]:
+    """Ranked list of coordinates that are probably wrong, with the readings that were meant.
+
+    Parameters
+    ----------
+    points
+        ``(n, 2)`` or ``(n, 3)``.
+    tol
+        The noise of the data, such as half of their last digit: a length.
+    curves
+        Of each line its points, from 0, as of :func:`~moldloft.fairing.network`; by default one
+        line through all.
+    motion
+        Axes in which a point may be wrong, such as ``"y"``; or a list with those of each point. By
+        default all in which the points differ.
+    most
+        The length of the list at most.
+    names, point_names
+        Names of lines and points.
+    readings
+        The text of the cell of a point and an axis.
+
+    Returns
+    -------
+    tuple of Suspect
+        The clearest first.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x = np.arange(15.0)
+    >>> y = np.round(40 + 12 * np.sin(x / 5), 1)
+    >>> y[6] += 1                                          # 51.2 written as 52.2
+    >>> first = suspects(np.column_stack([x, y]), 0.05, motion="y")[0]
+    >>> first.index, first.reading, first.meant_reading, first.slip
+    (6, '52.2', '51.2', 'a digit')
+    """
+    data, _ = points_of(points)
+    count = len(data)
+    lines = [list(range(count))] if curves is None else [list(own) for own in curves]
+    if bad := next((i for own in lines for i in own if not 0 <= i < count), None):
+        raise FairingError(f"expected points from 0 to {count - 1}, found {bad}")
+    axes = _axes(data, motion)
+    floor = max(float(tol), 1e-12 * float(np.ptp(data, axis=0).max(initial=0.0)))
+    search = _Search(data, lines, axes, floor)
+    texts = readings or {}
+    out = []
+    for index, axis, off, error in search.ranked(most):
+        value = float(data[index, axis])
+        text = texts.get((index, axis), f"{value:.12g}")
+        beside = [
+            (float(data[i, axis]), texts.get((i, axis), f"{data[i, axis]:.12g}"), i)
+            for i in search.neighbours(index, axis)
+        ]
+        meant, slip = _meant(text, value, value - off, error, beside, search, axis)
+        shown = "" if meant is None else _shown(meant, text)
+        own = [k for k, line in enumerate(lines) if index in line]
+        out.append(
+            Suspect(
+                index=index,
+                axis=axis,
+                name=point_names[index] if point_names else f"point {index + 1}",
+                value=value,
+                expected=value - off,
+                error=error,
+                score=abs(off) / error,
+                meant=meant,
+                reading=text,
+                meant_reading=shown,
+                slip=slip,
+                gain=search.gain(index, axis, value - off if meant is None else meant),
+                lines=tuple(names[k] if names else f"curve {k + 1}" for k in own),
+            )
+        )
+    return tuple(out)
+
+
+def _axes(data: Floats, motion: Sequence[str] | str | None) -> list[str]:
+    if motion is None:
+        motion = "".join("xyz"[a] for a in range(3) if np.ptp(data[:, a]) > 0)
+    each = [motion] * len(data) if isinstance(motion, str) else list(motion)
+    if len(each) != len(data):
+        raise FairingError(f"expected the axes of {len(data)} points, found {len(each)}")
+    if odd := next((own for own in each if set(own) - set("xyz")), None):
+        raise FairingError(f"expected axes of x, y and z, found `{odd}`")
+    return each
+
+
+class _Search:
+    """The search for suspects, one after the other."""
+
+    def __init__(self, data: Floats, lines: list[list[int]], axes: list[str], floor: float) -> None:
+        self.data, self.lines, self.axes, self.floor = data, lines, axes, floor
+        self.gone: set[int] = set()
+        self.found: dict[int, dict[tuple[int, int], _Prediction]] = {}
+        for k in range(len(lines)):
+            self.found[k] = self._line(k)
+
+    def ranked(self, most: int) -> list[tuple[int, int, float, float]]:
+        """Point, axis, deviation and its error, the clearest first."""
+        out: list[tuple[int, int, float, float]] = []
+        while len(out) < most:
+            each: dict[tuple[int, int], list[_Prediction]] = {}
+            for own in self.found.values():
+                for cell, prediction in own.items():
+                    each.setdefault(cell, []).append(prediction)
+            combined = [(cell, *_combined(own)) for cell, own in each.items()]
+            combined = [c for c in combined if abs(c[1]) >= _WORTH * c[2]]
+            combined.sort(key=lambda c: (-abs(c[1]) / c[2], c[0]))
+            # Where the measure rises without it the point is not what spoils its lines.
+            gains = (c for c in combined if self.gain(*c[0], self.data[c[0]] - c[1]) > 0)
+            best = next(gains, None)
+            if best is None:
+                break
+            (index, axis), off, error = best
+            out.append((index, axis, off, error))
+            self.gone.add(index)
+            for k, line in enumerate(self.lines):
+                if index in line:
+                    self.found[k] = self._line(k)
+        return out
+
+    def neighbours(self, index: int, axis: int) -> list[int]:
+        """The points beside one, on lines along which the coordinate changes."""
+        out = []
+        for line in self.lines:
+            if index in line and np.ptp(self.data[line, axis]) > 0:
+                k = line.index(index)
+                out += [line[j] for j in (k - 1, k + 1) if 0 <= j < len(line)]
+        return out
+
+    def expected(self, index: int, axis: int) -> float | None:
+        """The prediction for a point that is not put aside."""
+        own = [found[index, axis] for found in self.found.values() if (index, axis) in found]
+        return float(self.data[index, axis]) - _combined(own)[0] if own else None
+
+    def gain(self, index: int, axis: int, value: float) -> float:
+        """Share of the squared third differences beside a point that is gone with another value."""
+        before = after = 0.0
+        moved = self.data.copy()
+        moved[index, axis] = value
+        for line in self.lines:
+            if index in line and len(line) > _SIDE:
+                at = line.index(index)
+                before += _third(self.data[line], axis, at)
+                after += _third(moved[line], axis, at)
+        return 1 - after / before if before > 0 else 0.0
+
+    def _line(self, k: int) -> dict[tuple[int, int], _Prediction]:
+        own = self.lines[k]
+        closed = len(own) > 1 and own[0] == own[-1]
+        ring = own[:-1] if closed else own
+        out: dict[tuple[int, int], _Prediction] = {}
+        for at, index in enumerate(ring):
+            if index in self.gone:
+                continue
+            for axis in range(3):
+                if "xyz"[axis] in self.axes[index] and np.ptp(self.data[ring, axis]) > 0:
+                    prediction = self._predicted(ring, at, axis, closed)
+                    if prediction is not None:
+                        out[index, axis] = prediction
+        return out
+
+    def _predicted(self, own: list[int], at: int, axis: int, closed: bool) -> _Prediction | None:
+        """A point from its neighbours on a line, over the coordinate that is held."""
+        n = len(own)
+        order = range(1, n // 2 + 1) if closed else range(1, n)
+
+        def side(way: int) -> list[int]:
+            places = (at + way * k for k in order)
+            kept = (own[p % n] for p in places if closed or 0 <= p < n)
+            return [i for i in kept if i not in self.gone][:_SIDE]
+
+        low, high = side(-1)[::-1], side(1)
+        if len(low) < _LEAST or len(high) < _LEAST:
+            return None
+        near = low[-_LEAST:] + high[:_LEAST]
+        others = [a for a in range(3) if a != axis]
+        held = max(others, key=lambda a: float(np.ptp(self.data[near, a])))
+        here = float(self.data[own[at], held])
+        wide = low + high
+        if not _monotone(self.data[near, held], here, _LEAST):
+            return None
+        t, v = self.data[near, held] - here, self.data[near, axis]
+        size = float(np.abs(t).max())
+        t = t / size
+        guesses = [_at_zero(t, v), 0.5 * (_at_zero(t[:3], v[:3]) + _at_zero(t[1:], v[1:]))]
+        if len(wide) > 4 and _monotone(self.data[wide, held], here, len(low)):
+            s, w = (self.data[wide, held] - here) / size, self.data[wide, axis]
+            guesses += [_at_zero(s, w), _fitted(s, w)]
+        middle = float(np.median(guesses))
+        value = float(self.data[own[at], axis])
+        if self._is_knuckle(low, high, held, axis, here, value, middle):
+            return None
+        slope = abs(np.polyfit(t, v, 2)[1]) / size
+        noise = self.floor * float(np.hypot(1.0, _SLOPE * slope))
+        return _Prediction(value - middle, float(np.hypot(np.ptp(guesses), noise)))
+
+    def _is_knuckle(
+        self,
+        low: list[int],
+        high: list[int],
+        held: int,
+        axis: int,
+        here: float,
+        value: float,
+        middle: float,
+    ) -> bool:
+        """Whether each side alone leads to the point, and both together past it."""
+        if len(low) < _SIDE or len(high) < _SIDE:
+            return False
+        ends = []
+        for side in (low, high):
+            t, v = self.data[side, held] - here, self.data[side, axis]
+            # No side has its quadratic and its line on different sides of the point by more.
+            if not _monotone(t, 0.0, 0 if t[-1] * t[0] > 0 and abs(t[0]) < abs(t[-1]) else len(t)):
+                return False
+            inner = np.argsort(np.abs(t))[:2]
+            guesses = [_at_zero(t, v), _at_zero(t[inner], v[inner])]
+            ends.append(min(abs(value - guess) for guess in guesses))
+        return max(ends) < _KNUCKLE * abs(value - middle)
+
+
+def _combined(own: list[_Prediction]) -> tuple[float, float]:
+    """Predictions of several lines as one: weighed by their errors, less sure where they differ."""
+    weights = np.array([1 / p.error**2 for p in own])
+    off = np.array([p.off for p in own])
+    mean = float((weights * off).sum() / weights.sum())
+    differ = 1.0
+    if len(own) > 1:
+        differ = max(1.0, float((weights * (off - mean) ** 2).sum()) / (len(own) - 1))
+    return mean, float(np.sqrt(differ / weights.sum()))
+
+
+def _monotone(t: Floats, here: float, before: int) -> bool:
+    """Whether places rise or fall along a line, past the point's own."""
+    whole = np.insert(t, before, here)
+    steps = np.diff(whole)
+    return bool((steps > 0).all() or (steps < 0).all())
+
+
+def _at_zero(t: Floats, v: Floats) -> float:
+    """The polynomial through all points at 0, by Lagrange's formula."""
+    total = 0.0
+    for i in range(len(t)):
+        rest = np.delete(t, i)
+        total += float(v[i]) * float(np.prod(-rest / (t[i] - rest)))
+    return total
+
+
+def _fitted(t: Floats, v: Floats) -> float:
+    """The cubic of least squares at 0, nearer points weighed more."""
+    weight = 1 / (1 + np.abs(t))
+    columns = np.vander(t, 4) * weight[:, None]
+    return float(np.linalg.lstsq(columns, v * weight, rcond=None)[0][-1])
+
+
+def _third(points: Floats, axis: int, at: int) -> float:
+    """Squared third divided differences of a coordinate in which a point has part, in sum."""
+    chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    t = np.concatenate([[0.0], np.cumsum(np.maximum(chord, 1e-300))])
+    t, v = t / t[-1], points[:, axis]
+    for order in range(1, 4):
+        v = np.diff(v) / np.maximum(t[order:] - t[:-order], 1e-300)
+    return float((v[max(at - _SIDE, 0) : at + 1] ** 2).sum())
+
+
+def _shown(value: float, like: str) -> str:
+    """A reading in the notation of the cell."""
+    if notation(like) == "eighths":
+        return sixteenths(value)
+    digits = len(like.replace(",", ".").partition(".")[2])
+    text = f"{value:.{digits}f}" if re.fullmatch(r"[+-]?[\d.,]+", like) else f"{value:.9g}"
+    return text.replace(".", ",") if "," in like else text
+
+
+def _slips(text: str, value: float) -> list[tuple[float, str]]:
+    """Readings that one slip of the pen turns into this one."""
+    out: list[tuple[float, str]] = [(-value, "the sign")]
+    found = re.fullmatch(r"[-\u2212]?(\d+)-(\d+)-(\d+)([+\u00bd-]?)", text)
+    if found or notation(text) == "feet":
+        for step, slip in ((12.0, "a foot"), (1.0, "an inch"), (2.0, "two inches")):
+            out += [(value - step, slip), (value + step, slip)]
+        for eighths in range(1, 8):
+            out += [(value - eighths / 8, "eighths"), (value + eighths / 8, "eighths")]
+    if found:
+        feet, inches, eighths = (int(found[k]) for k in (1, 2, 3))
+        swapped = 12 * feet + eighths + inches / 8
+        out.append((swapped, "inches and eighths swapped"))
+        return out
+    bare = text.replace(",", ".").lstrip("+-")
+    if not re.fullmatch(r"\d*\.?\d*", bare) or not any(c.isdigit() for c in bare):
+        return out
+    sign = -1.0 if value < 0 else 1.0
+    digits = [k for k, c in enumerate(bare) if c.isdigit()]
+    for k in digits:
+        for other in "0123456789":
+            if other != bare[k]:
+                out.append((sign * float(bare[:k] + other + bare[k + 1 :]), "a digit"))
+    for a, b in pairwise(digits):
+        if bare[a] != bare[b]:
+            own = list(bare)
+            own[a], own[b] = own[b], own[a]
+            out.append((sign * float("".join(own)), "two digits swapped"))
+    out += [(value / 10, "the decimal point"), (value * 10, "the decimal point")]
+    return out
+
+
+def _meant(
+    text: str,
+    value: float,
+    expected: float,
+    error: float,
+    beside: list[tuple[float, str, int]],
+    search: _Search,
+    axis: int,
+) -> tuple[float | None, str]:
+    """The likeliest reading that one slip turns into this one, and the slip."""
+    options = _slips(text, value)
+    for other, _, index in beside:
+        mutual = search.expected(index, axis)
+        both = mutual is not None and abs(mutual - value) < abs(mutual - other)
+        if both and length(text) is not None:
+            options.append((other, "swapped with its neighbour"))
+    best: tuple[float, float | None, str] = (_WITHIN**2, None, "")
+    for reading, slip in options:
+        if reading == value:
+            continue
+        cost = ((reading - expected) / error) ** 2 + _COSTS[slip]
+        if cost < best[0] and abs(reading - expected) < 0.5 * abs(value - expected):
+            best = (cost, reading, slip)
+    return best[1], best[2]
+
+
+explain(globals())
