@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from moldloft.arguments import explain
 from moldloft.fairing.curve import fair_curve
+from moldloft.fairing.desk import Desk
 from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.look import Look
 from moldloft.fairing.network import NetworkFairing, network
@@ -44,6 +45,7 @@ from moldloft.fairing.surface import SplineSurface, SurfaceFairing, fair_surface
 
 __all__ = [
     "Arc",
+    "Desk",
     "Fairing",
     "Finding",
     "Look",
