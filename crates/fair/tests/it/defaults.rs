@@ -266,8 +266,9 @@ fn waterlines_of_a_hull_keep_no_waves_of_the_noise() {
     }
 }
 
-/// A draft is the curve of its goal before bends are counted: within the tolerances, under the same budget, and as near
-/// to the finished one with bends as they come as one bound on the squares is to the search for their weight.
+/// A draft is the curve of its goal before bends are counted: within the tolerances and under the same budget. What it
+/// measures more than the finished one with bends as they come is within its certified gap, which is wide only where
+/// the measure is next to nothing.
 #[test]
 fn a_draft_is_the_curve_before_bends_are_counted() {
     let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
@@ -295,7 +296,11 @@ fn a_draft_is_the_curve_before_bends_are_counted() {
                     let apart =
                         ends[0].iter().zip(&ends[1]).map(|(p, q)| (p.point - q.point).norm());
                     let apart = apart.fold(0.0, f64::max) / most;
-                    assert!(apart < 0.02, "{here}: {apart} tolerances apart");
+                    let (value, gap) = (draft.fit.certificate.value, draft.fit.certificate.gap);
+                    let same = done.data.layout.at == draft.data.layout.at;
+                    assert!(!same || value - done.fit.certificate.value <= gap * 1.01, "{here}");
+                    let most = if form.0 == "line" { 0.3 } else { 0.02 };
+                    assert!(apart < most, "{here}: {apart} tolerances apart");
                 }
             }
         }
