@@ -32,7 +32,7 @@ def main() -> None:
     """Answers the parent until the connection closes.
 
     The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``, or the same for
-    ``board``, which draws.
+    ``board``, which draws, and ``desk``, which fairs.
     """
     work, *arguments = sys.argv[1:]
     if work == "language":
@@ -41,6 +41,11 @@ def main() -> None:
         from moldloft.workbench.board import serve
 
         serve(int(arguments[0]), arguments[2] or None)
+        return
+    if work == "desk":
+        from moldloft.workbench.desk import serve as serve_desk
+
+        serve_desk(int(arguments[0]), arguments[1], arguments[2] or None)
         return
     memory, name, folder, *library = arguments
     _core.engine(int(memory), name, folder or None, library)

@@ -6,6 +6,7 @@ import { BlockPlanes } from './blocks'
 import { drawAxes } from './axes'
 import { Analysis } from './analysis'
 import { Board } from './board'
+import { Desk } from './desk'
 import { h, store, stored } from './dom'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
@@ -312,7 +313,8 @@ const hands = new Hands(view, link, viewHost, {
   open: (name) => void locate(name, true),
 })
 const board = new Board(link, editor, say)
-viewHost.parentElement!.append(board.element)
+const desk = new Desk(link, editor, say, give)
+viewHost.parentElement!.append(board.element, desk.element)
 const sheets = new Sheets(sheetHost, link, actions)
 parametersPanel(params, actions)
 treePanel(tree, actions)
@@ -484,6 +486,7 @@ async function begin(hello: any): Promise<void> {
     model.watched = hello.watched
     changed('watched')
   }
+  if (!link.local && !tabs.querySelector('[data-sheet=desk]')) tabs.append(tab('desk', 'Fairing desk'))
   if (!link.local && /\.skt$/i.test(hello.name) && !tabs.querySelector('[data-sheet=board]')) {
     tabs.append(tab('board', 'Drawing board'))
     if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
@@ -564,9 +567,10 @@ function give(blob: Blob, name: string): void {
 }
 
 const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['areas', 'Section areas'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
-function sheet(name: SheetName | 'board'): void {
-  sheets.show(name === 'board' ? 'model' : name)
+function sheet(name: SheetName | 'board' | 'desk'): void {
+  sheets.show(name === 'board' || name === 'desk' ? 'model' : name)
   board.show(name === 'board')
+  desk.show(name === 'desk')
   toolbar.hidden = name !== 'model'
   for (const t of tabs.querySelectorAll('[role=tab]')) t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
 }
@@ -608,6 +612,7 @@ function commands(): Command[] {
     { name: 'Curvature comb of the selected curve', keys: 'K', run: () => analysis.toggleComb(selected) },
     ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => analysis.cut(view.clip?.axis === k ? null : k) })),
     { name: 'Plane of a volume block, folded cells', keys: 'B', run: () => planes.toggle() },
+    ...(link.local ? [] : [{ name: 'Fairing desk', run: () => sheet('desk') }, { name: 'Fair the selected curve or surface', run: () => (sheet('desk'), selected && void desk.open({ object: selected })) }]),
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
     { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
     { name: 'Go to the model', keys: 'Ctrl+2', run: () => canvas.focus() },
@@ -655,7 +660,7 @@ function buildToolbar(): void {
   )
   if (focus) toolbar.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focus)}"]`)?.focus()
 }
-function tab(name: SheetName | 'board', words: string): HTMLElement {
+function tab(name: SheetName | 'board' | 'desk', words: string): HTMLElement {
   return $('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words)
 }
 for (const [name, words] of SHEETS) tabs.append(tab(name, words))
@@ -727,6 +732,7 @@ Object.assign(window, {
     positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
     board,
+    desk,
     settled: async () => {
       await hands.settled()
       await editor.synced()

@@ -1,12 +1,13 @@
 //! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`; of
 //! data under tolerances alone with `data` before the size; of the default of points on known shapes,
-//! report and all, with `near` (and of one of them with its name after the size).
+//! report and all, with `near` (and of one of them with its name after the size); at each tolerance of
+//! a slider with `slide`.
 
 use moldloft_fair::{
-    Bound, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job, KnotRemovalOptions,
-    Limit, Measure, Motion, Network, OptimumOptions, ParameterSpacing, Space, certified,
-    curvature_parameters, data_report, fair_data, knot_removal, near_budget, optimum, parameters,
-    shape, sweeps, thinned,
+    Bound, CurveRequest, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job,
+    KnotRemovalOptions, Limit, Measure, Motion, Network, OptimumOptions, ParameterSpacing, Space,
+    certified, curvature_parameters, data_report, fair_data, knot_removal, near_budget, optimum,
+    parameters, shape, sweeps, thinned,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -272,12 +273,64 @@ fn near(n: usize) {
     }
 }
 
+/// Runs of which the mean is taken: the clock is coarse.
+const REPEATS: u32 = 4;
+
+/// Points of a slider: every tolerance from 0.3 to 3 noises, of the default and of the fairest, finished and as
+/// drafts, the report apart; and how many inflections there are.
+fn slide(n: usize) {
+    for (name, shape) in SHAPES {
+        let mut unit = random();
+        let exact: Vec<Vec3<f64>> =
+            (0..n).map(|i| Vec3::from(shape(i as f64 / (n - 1) as f64))).collect();
+        let noise = 0.2 * exact.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>() / n as f64;
+        let plane = exact.iter().all(|p| p.z == 0.0);
+        let mut off = || noise * 1.4 * unit();
+        let noisy = |p: &Vec3<f64>| *p + Vec3::of(off(), off(), if plane { 0.0 } else { off() });
+        let points: Vec<_> = exact.iter().map(noisy).collect();
+        for (word, goal, draft) in [
+            ("near", None, false),
+            ("near, draft", None, true),
+            ("fairest", Some(Goal::Fairest), false),
+            ("fairest, draft", Some(Goal::Fairest), true),
+        ] {
+            let times = [0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0].map(|share| {
+                let mut request = CurveRequest::of(&points, share * noise);
+                request.goal = goal.unwrap_or(request.goal);
+                request.draft = draft;
+                let start = Clock::start();
+                for _ in 1..REPEATS {
+                    request.curve(&points).expect("the points are good");
+                }
+                let made = request.curve(&points).expect("the points are good");
+                let fair = start.elapsed();
+                for _ in 1..REPEATS {
+                    made.report().expect("the curve is good");
+                }
+                let told = made.report().expect("the curve is good");
+                let of = |time: Duration| 1e3 * time.as_secs_f64() / f64::from(REPEATS);
+                let report = start.elapsed() - fair;
+                format!(
+                    "{share}: {:.1} + {:.1} ms, {}",
+                    of(fair),
+                    of(report),
+                    told.after.inflections
+                )
+            });
+            println!("{n} {name}, {word}: {}", times.join("; "));
+        }
+    }
+}
+
 fn main() {
     let word = std::env::args().nth(1);
     let sizes = || {
         let one = std::env::args().nth(2).and_then(|a| a.parse().ok());
         one.map_or(vec![1_000, 10_000, 30_000, 100_000], |n| vec![n])
     };
+    if word.as_deref() == Some("slide") {
+        return slide(std::env::args().nth(2).and_then(|a| a.parse().ok()).unwrap_or(200));
+    }
     if word.as_deref() == Some("near") {
         return sizes().into_iter().for_each(near);
     }

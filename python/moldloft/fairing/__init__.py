@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from moldloft.arguments import explain
 from moldloft.fairing.curve import fair_curve
+from moldloft.fairing.desk import Desk
 from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.look import Look
 from moldloft.fairing.network import NetworkFairing, network
@@ -45,6 +46,7 @@ from moldloft.fairing.suspects import Suspect, suspects
 
 __all__ = [
     "Arc",
+    "Desk",
     "Fairing",
     "Finding",
     "Look",

@@ -69,6 +69,7 @@ def fair_curve(
     stop_gap: float = 0.0,
     stop_pieces: bool = False,
     accuracy: float | None = None,
+    draft: bool = False,
     log: bool = False,
 ) -> Fairing:
     """Fair a curve within a tolerance.
@@ -185,6 +186,9 @@ def fair_curve(
     accuracy
         The certified gap of an optimum, as a share of the measure; by default as small as rounding
         allows.
+    draft
+        Whether a draft of an optimum of data is enough, as while a tolerance slides: within the
+        tolerances and under the goal's budget, but with bends as they come.
     log
         Whether local steps are written down.
 
@@ -244,6 +248,7 @@ def fair_curve(
                 tangents,
                 keep,
                 joins,
+                draft,
             )
             return fair_data(asked, started)
     if shape:
@@ -253,6 +258,8 @@ def fair_curve(
         raise FairingError('bound `data` is for optima of data, `as_="fit"`')
     if len(release):
         raise FairingError('release is for optima of data, `as_="fit"`')
+    if draft:
+        raise FairingError('drafts are of optima of data, `as_="fit"`')
     if at is not None:
         raise FairingError('parameters of your own are for optima of data, `as_="fit"`')
     measure = measure or "second"

@@ -60,6 +60,7 @@ class Data:
     tangents: list[tuple[float, ArrayLike]]
     keep: Sequence[str]
     joins: Sequence[Spline]
+    draft: bool = False
 
 
 def fair_data(asked: Data, started: float) -> Fairing:
@@ -120,6 +121,7 @@ def fair_data(asked: Data, started: float) -> Fairing:
             "shape": asked.shape,
             "bends": asked.bends,
             "accuracy": asked.accuracy,
+            "draft": asked.draft,
         },
     )
     for k in release:

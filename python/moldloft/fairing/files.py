@@ -106,14 +106,14 @@ def _bytes(path: Path) -> bytes:
     return read_bytes(path)
 
 
-def read_points(path: str | os.PathLike[str]) -> PointFile:
+def read_points(path: str | os.PathLike[str], data: bytes | None = None) -> PointFile:
     """Read rows of points.
 
     CSV with or without names of columns, blanks or tabs, aerofoils with a title (in one run, or in
     two halves with their counts) and prose after the points, decimal commas, lengths in feet,
     inches and eighths (``4-5-1``). Columns named x, y and z, or station, half-breadth and height,
     are taken by name; the rows of the latter are a table of offsets. ``#`` begins a comment, blank
-    lines separate curves.
+    lines separate curves. Of ``data``, the bytes of a file, the path is only its name.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         When the file cannot be read.
     """
     path = Path(path)
-    data = _bytes(path)
+    data = _bytes(path) if data is None else data
     _refuse_binary(path, data)
     encoding = "utf-8"
     try:

@@ -10,8 +10,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import struct
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,6 +18,7 @@ from moldloft import _core
 from moldloft.errors import Error
 from moldloft.sketch_values import Reply
 from moldloft.workbench.outlines import outlines
+from moldloft.workbench.room import answer_frames
 from moldloft.workbench.snaps import Axes, snapped
 from moldloft.workbench.statements import (
     Statement,
@@ -32,8 +31,6 @@ from moldloft.workbench.statements import (
 
 __all__ = ["Board", "serve"]
 
-#: Cancelled work has no answer of its own.
-_SILENT = "cancel"
 _DEFAULT_AXES = "345 40 90"
 #: What may stand after a value of DIMENSION and GIVE.
 _AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
@@ -528,25 +525,6 @@ def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def serve(memory: int, folder: str | None) -> None:
-    """Answer the parent until it goes: frames of a length in four bytes and JSON."""
-    if sys.platform != "win32":
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-        if sys.platform == "linux":
-            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-    given, taken = sys.stdin.buffer, sys.stdout.buffer
+    """Answer the parent until it goes."""
     board = Board(str(Path(folder)) if folder else None)
-    first = True
-    while len(head := given.read(4)) == 4:
-        message = given.read(struct.unpack("<I", head)[0])
-        if first:
-            board.sync(message.decode())
-            first = False
-            continue
-        request = json.loads(message)
-        if request.get("kind") == _SILENT:
-            continue
-        reply = json.dumps(answered(board, request)).encode()
-        taken.write(struct.pack("<I", len(reply)) + reply)
-        taken.flush()
+    answer_frames(memory, board.sync, lambda request: answered(board, request))

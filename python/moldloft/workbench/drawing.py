@@ -1,7 +1,7 @@
-"""The drawing board's process beside the engine, and what waits for it.
+"""The processes of the drawing board and the fairing desk, and what waits for them.
 
-It is started by the first request, so that models other than sketches have none. It is asked one
-thing at a time, the newest of its kind: a pointer that has moved on is not answered.
+Each is started by the first request, so that models without a sketch or a desk have none. It is
+asked one thing at a time, the newest of its kind: a pointer that has moved on is not answered.
 """
 
 from __future__ import annotations
@@ -9,30 +9,65 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from moldloft.workbench.engine import Engine, EngineLostError
 
-__all__ = ["DRAWN", "Drawing"]
+__all__ = ["BOARD", "DESK", "Drawing", "Room"]
 
-#: Requests of which only the newest of a page counts.
-_NEWEST = {"board_pointer", "board_drag", "board_solid", "board_check", "board_open"}
-
-#: What a page may ask of the board.
-DRAWN = _NEWEST | {"board_edit", "board_place"}
-
-#: What waits while there is anything else: bodies and checks take longest.
-_LAST = {"board_solid", "board_check"}
 _MOST_WAITING = 64
+
+
+@dataclass(frozen=True)
+class Room:
+    """What a process beside the engine is for."""
+
+    work: str
+    """As for :class:`~moldloft.workbench.engine.Engine`."""
+    title: str
+    """What messages call it."""
+    newest: frozenset[str]
+    """Requests of which only the newest of a page counts."""
+    others: frozenset[str]
+    """What else a page may ask."""
+    last: frozenset[str]
+    """What waits while there is anything else."""
+    stop: str = ""
+    """The request that ends the work under way."""
+
+    def takes(self, kind: Any) -> bool:
+        """Whether a request is one of this room's."""
+        return isinstance(kind, str) and kind in self.newest | self.others | {self.stop} - {""}
+
+
+#: Bodies and checks take longest.
+BOARD = Room(
+    "board",
+    "the drawing board",
+    frozenset({"board_pointer", "board_drag", "board_solid", "board_check", "board_open"}),
+    frozenset({"board_edit", "board_place"}),
+    frozenset({"board_solid", "board_check"}),
+)
+DESK = Room(
+    "desk",
+    "the fairing desk",
+    frozenset({"desk_slide", "desk_show"}),
+    frozenset({"desk_open", "desk_run", "desk_line", "desk_apply", "desk_save"}),
+    frozenset(),
+    "desk_stop",
+)
 
 Say = Callable[[str], None]
 
 
 class Drawing:
-    """The drawing board of a model's text.
+    """A room of a model's text.
 
     Parameters
     ----------
+    room
+        Which one.
     text
         Gives the version of the text and the text.
     name, folder, memory, budget
@@ -41,22 +76,32 @@ class Drawing:
 
     def __init__(
         self,
+        room: Room,
         text: Callable[[], tuple[int, str]],
         name: str,
         folder: str,
         memory: int,
         budget: float,
     ) -> None:
+        self.room = room
         self._text = text
-        self._engine = Engine(name, folder, memory=memory, budget=budget, work="board")
+        self._engine = Engine(name, folder, memory=memory, budget=budget, work=room.work)
+        self._stopped = False
         self._known = -1
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []
         self._task: asyncio.Task[None] | None = None
+        self._ending: asyncio.Task[None] | None = None
 
     def ask(self, tab: int, request: dict[str, Any], say: Say) -> None:
         """Have a request answered, unless the page asks the same of a newer state first."""
         kind = request["kind"]
-        if kind in _NEWEST:
+        if kind == self.room.stop:
+            self.leave(tab)
+            self._stopped = True
+            self._ending = asyncio.ensure_future(self._engine.end())
+            say(json.dumps({"kind": self.room.work, "id": request.get("id", 0)}))
+            return
+        if kind in self.room.newest:
             for k, (other, old, _) in enumerate(self._waiting):
                 if other == tab and old["kind"] == kind:
                     say(json.dumps({"kind": "superseded", "id": old.get("id", 0)}))
@@ -82,16 +127,19 @@ class Drawing:
 
     async def _work(self) -> None:
         while self._waiting:
-            first = next((k for k, w in enumerate(self._waiting) if w[1]["kind"] not in _LAST), 0)
+            first = next(
+                (k for k, w in enumerate(self._waiting) if w[1]["kind"] not in self.room.last), 0
+            )
             _, request, say = self._waiting.pop(first)
             try:
                 say((await self._answer(request)).decode())
             except EngineLostError as lost:
-                say(json.dumps(_refused(request, f"the drawing board was stopped: {lost}")))
+                say(json.dumps(_refused(request, f"{self.room.title} was stopped: {lost}")))
             except ValueError as error:
                 say(json.dumps(_refused(request, f"not a request: {error}")))
 
     async def _answer(self, request: dict[str, Any]) -> bytes:
+        self._stopped = False
         version, text = self._text()
         sent = {**request, "version": version}
         known = self._engine.pid is not None
@@ -102,7 +150,8 @@ class Drawing:
             try:
                 return await self._engine.ask(_data(sent))
             except EngineLostError:
-                if self._engine.pid is not None or request["kind"] in _LAST:
+                late = self._engine.pid is not None or request["kind"] in self.room.last
+                if late or self._stopped:
                     raise
         # A new process has everything in the text, so the request is sent once more.
         await self._engine.start(text)

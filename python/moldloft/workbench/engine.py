@@ -53,7 +53,8 @@ class Engine:
     budget
         Seconds for one request; then the work is stopped, and a little later the process ended.
     work
-        What the process does: ``"model"``, or ``"board"`` for the drawing board of a sketch.
+        What the process does: ``"model"``, ``"board"`` for the drawing board of a sketch, or
+        ``"desk"`` for the fairing desk.
     """
 
     def __init__(

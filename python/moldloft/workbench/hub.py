@@ -22,7 +22,7 @@ from moldloft.errors import Error, FileError
 from moldloft.language import check_language
 from moldloft.storage import ChangedError, digest, put, utf8_path
 from moldloft.workbench.draft import Draft
-from moldloft.workbench.drawing import DRAWN, Drawing
+from moldloft.workbench.drawing import BOARD, DESK, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
@@ -112,9 +112,13 @@ class Hub:
         self.engine = Engine(
             self.path.name, folder, self.library, memory=self.memory, budget=self.budget
         )
-        self.drawing = Drawing(
-            lambda: (self.version, self.text), self.path.name, folder, self.memory, self.budget
-        )
+        self.rooms = [
+            Drawing(
+                room, lambda: (self.version, self.text), self.path.name, folder, self.memory,
+                self.budget,
+            )
+            for room in (BOARD, DESK)
+        ]  # fmt: skip
         self._jobs: list[_Job] = []
         self._wake = asyncio.Event()
         self._count = 0
@@ -151,7 +155,8 @@ class Hub:
         for tab in list(self.tabs.values()):
             tab.outbox.close()
         await self.engine.end()
-        await self.drawing.end()
+        for room in self.rooms:
+            await room.end()
         self.draft.close(keep=self.dirty)
 
     # Tabs.
@@ -191,7 +196,8 @@ class Hub:
         if self.tabs.pop(tab.number, None) is None:
             return
         self._jobs = [job for job in self._jobs if job.tab != tab.number]
-        self.drawing.leave(tab.number)
+        for room in self.rooms:
+            room.leave(tab.number)
         self._queue(_Job("close", tab.number, {"kind": "close", "tab": tab.number}))
 
     def hello(self, tab: Tab) -> dict[str, Any]:
@@ -252,8 +258,8 @@ class Hub:
             await self._revert(tab, number)
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
-        elif isinstance(kind, str) and kind in DRAWN:
-            self.drawing.ask(tab.number, message, tab.outbox.put)
+        elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
+            room.ask(tab.number, message, tab.outbox.put)
         else:
             self.refuse(tab, number, "no such request")
 

@@ -9,6 +9,7 @@ pub(crate) mod condition;
 pub(crate) mod corners;
 pub(crate) mod data;
 pub(crate) mod demand;
+mod draft;
 pub(crate) mod exact;
 pub(crate) mod fit;
 pub(crate) mod job;

@@ -8,7 +8,7 @@ use crate::curve::fit::{ParameterSpacing, parameters_across};
 use crate::curve::job::EndContinuity;
 use crate::curve::near::{TurnedFrom, fair_turned};
 use crate::curve::thinning::thinned;
-use crate::curve::turning::{curvature_parameters, near_budget};
+use crate::curve::turning::{curvature_parameters, drafted_parameters, near_budget};
 use crate::interrogate::report::{FairingReport, report_of};
 use crate::optimum::goal::Goal;
 use crate::{FairError, InterpolationSpace, Limit, Measure, Motion, ShapeCondition};
@@ -62,6 +62,9 @@ pub struct CurveRequest<T> {
     pub bends: bool,
     /// Certified gap, relative to the measure; `None`: rounding, the smallest possible.
     pub accuracy: Option<f64>,
+    /// Whether a draft is enough, as while a tolerance slides: within the tolerances and under the goal's
+    /// budget, but with bends as they come, and without derivatives.
+    pub draft: bool,
 }
 
 /// A curve near its points.
@@ -139,6 +142,7 @@ impl<T: Real> CurveRequest<T> {
             conditions: Vec::new(),
             bends: false,
             accuracy: None,
+            draft: false,
         }
     }
 
@@ -284,7 +288,11 @@ impl<T: Real> CurveRequest<T> {
         let reals = |at: &[T]| at.iter().map(|t| t.re()).collect::<Vec<f64>>();
         let by_length = reals(&at);
         if turning {
-            at = curvature_parameters(&data, points, tolerances, &at)?;
+            at = if self.draft && still {
+                drafted_parameters(&data, &by_length)?.into_iter().map(T::from).collect()
+            } else {
+                curvature_parameters(&data, points, tolerances, &at)?
+            };
             data.layout = laid(&at)?;
         }
         let (data, shape) = data.shaped(&self.shape)?;
@@ -312,6 +320,11 @@ impl<T: Real> CurveRequest<T> {
             }
             other => other,
         };
+        if self.draft && still {
+            let fit = data.drafted(&options).map_err(own)?;
+            let made = MovingFit::still(&data.layout, &fit);
+            return Ok(NearCurve { data, of, made, fit, measure });
+        }
         if !options.bends {
             let own_at = reals(&at);
             let turned = lengths.as_ref();

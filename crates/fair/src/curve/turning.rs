@@ -96,16 +96,33 @@ pub fn curvature_parameters<T: Real>(
     tolerances: &[T],
     at: &[T],
 ) -> Result<Vec<T>, FairError> {
+    let Some(options) = turns_of(data) else { return Ok(at.to_vec()) };
+    let (made, _) = fair_data_with(data, &options, points, tolerances, at)?;
+    Ok(turned(data, &made, at))
+}
+
+/// What the curve is whose turns are taken; none where the parameters stay.
+fn turns_of(data: &Data) -> Option<DataOptions> {
     let degree = data.layout.space.degree();
     if degree < 2 || data.exact_parts() || data.limit.radii.iter().all(|&r| r == 0.0) {
-        return Ok(at.to_vec());
+        return None;
     }
     let measure = if degree > 2 { Measure::Variation } else { Measure::Bending };
-    let options = DataOptions::of(measure, Goal::Budget(TURNS_BUDGET));
-    let (made, _) = fair_data_with(data, &options, points, tolerances, at)?;
-    let steps = steps(data, &made, &data.layout.moving(at).0);
+    Some(DataOptions::of(measure, Goal::Budget(TURNS_BUDGET)))
+}
+
+/// [`curvature_parameters`] by the turns of a draft.
+pub(super) fn drafted_parameters(data: &Data, at: &[f64]) -> Result<Vec<f64>, FairError> {
+    let Some(options) = turns_of(data) else { return Ok(at.to_vec()) };
+    let fit = data.drafted(&options)?;
+    Ok(turned(data, &MovingFit::still(&data.layout, &fit), at))
+}
+
+/// The parameters by the turns of a curve.
+fn turned<T: Real>(data: &Data, made: &MovingFit<T>, at: &[T]) -> Vec<T> {
+    let steps = steps(data, made, &data.layout.moving(at).0);
     // If a part of the curve has zero length the parameters are unchanged.
-    Ok(steps.map_or_else(|| at.to_vec(), |steps| numbered(data, &steps, at.len())))
+    steps.map_or_else(|| at.to_vec(), |steps| numbered(data, &steps, at.len()))
 }
 
 /// The steps of the parameter from site to site: lengths, longer where the curve turns.

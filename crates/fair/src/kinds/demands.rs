@@ -80,6 +80,7 @@ impl<T: Real> Intent<T> {
             conditions: demands.conditions,
             bends: demands.bends,
             accuracy: None,
+            draft: false,
         };
         let made = request.curve(points)?;
         let curve = made.curve().ok_or(FairError::Singular)?;

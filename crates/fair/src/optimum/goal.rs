@@ -45,7 +45,7 @@ const STAYS: f64 = 1.5;
 const MOVES: f64 = 3.0;
 
 /// How far a gain is worth to move: a smooth step.
-fn worth<T: Real>(gain: T) -> T {
+pub(crate) fn worth<T: Real>(gain: T) -> T {
     worth_beside(gain, 0.0)
 }
 

@@ -209,6 +209,7 @@ fn request(points: &[Vec3], options: Options) -> PyResult<CurveRequest<f64>> {
         conditions: conditions.iter().map(demand).collect::<PyResult<_>>()?,
         bends: get(options, "bends")?,
         accuracy: get(options, "accuracy")?,
+        draft: get(options, "draft")?,
     })
 }
 

@@ -1,0 +1,50 @@
+"""The process of a room beside the engine: frames of a length in four bytes and JSON."""
+
+from __future__ import annotations
+
+import json
+import struct
+import sys
+from collections.abc import Callable
+from typing import Any
+
+__all__ = ["answer_frames"]
+
+#: Cancelled work has no answer of its own.
+_SILENT = "cancel"
+
+
+def answer_frames(
+    memory: int, begin: Callable[[str], None], answer: Callable[[dict[str, Any]], dict[str, Any]]
+) -> None:
+    """Answer the parent until it goes.
+
+    Parameters
+    ----------
+    memory
+        The most bytes of the process, which cannot write files.
+    begin
+        Is given the model's text, the first frame.
+    answer
+        The answer to a request.
+    """
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        if sys.platform == "linux":
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    given, taken = sys.stdin.buffer, sys.stdout.buffer
+    first = True
+    while len(head := given.read(4)) == 4:
+        message = given.read(struct.unpack("<I", head)[0])
+        if first:
+            begin(message.decode())
+            first = False
+            continue
+        request = json.loads(message)
+        if request.get("kind") == _SILENT:
+            continue
+        reply = json.dumps(answer(request)).encode()
+        taken.write(struct.pack("<I", len(reply)) + reply)
+        taken.flush()

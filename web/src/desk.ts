@@ -1,0 +1,645 @@
+// The fairing desk: a curve, a surface, a network or a table of offsets, faired by hand; every act is a command in its log.
+
+import { redo, undo } from '@codemirror/commands'
+import './desk.css'
+import { DeskPainter, Sheet, strips, views, type Chosen, type DeskFacts } from './desk_paint'
+import { h, s, shown } from './dom'
+import type { Editor } from './editor'
+import type { Facts } from './frame'
+import { Newest, Refused, type Link } from './link'
+import { model } from './state'
+
+type Place = [number, number]
+
+/** Marks on one point and on a stretch between two: tool, its key, its command, words. */
+const POINTS: [string, string, string][] = [['knuckle', 'k', 'Knuckle'], ['fix', 'f', 'Fixed'], ['free', 'e', 'Free']]
+const SPANS: [string, string, string][] = [['straight', 's', 'Straight'], ['flat', 'l', 'Flat'], ['arc', 'a', 'Arc'], ['one-way', 'i', 'No inflection'], ['range', 'r', 'Range']]
+const TOOLS = [...POINTS, ...SPANS, ['side', 'o', 'One-sided'] as [string, string, string]]
+/** Pixels: what a pointer reaches, and what is a click. */
+const [REACH, CLICK] = [12, 4]
+/** How long a hand rests on a slider before the curve is finished, ms. */
+const REST = 140
+/** The slider goes so many decades each way from the first tolerance. */
+const DECADES = 1.5
+const LARGEST = 8 << 20
+
+interface Session {
+  source: Facts
+  tolerance: number
+  key?: string
+}
+
+export class Desk {
+  readonly element = h('div', { class: 'desk', hidden: true })
+  /** Times of requests, for tests: kind and milliseconds. */
+  readonly times: { kind: string; ms: number }[] = []
+  private readonly svg = s('svg', { class: 'desk-shape', tabindex: 0, role: 'application', 'aria-label': 'fairing desk', 'aria-describedby': 'desk-help' })
+  private readonly sheet = new Sheet()
+  private readonly painter = new DeskPainter(this.svg, this.sheet)
+  private readonly bar = h('div', { class: 'desk-bar', role: 'toolbar', 'aria-label': 'fairing' })
+  private readonly lines = h('div', { class: 'desk-lines', role: 'listbox', tabindex: 0, 'aria-label': 'lines' })
+  private readonly suspects = h('div', { class: 'desk-suspects', role: 'log', 'aria-label': 'suspects' })
+  private readonly marks = h('div', { class: 'desk-marks', 'aria-label': 'marks' })
+  private readonly top = h('div', { class: 'desk-views' })
+  private readonly below = h('div', { class: 'desk-strips' })
+  private readonly start = h('div', { class: 'desk-start' })
+  private readonly progress = h('div', { class: 'desk-progress', role: 'status', hidden: true })
+  private readonly line = h('input', { type: 'text', class: 'desk-line', 'aria-label': 'fairing command', placeholder: 'a command of the desk: tolerance 0.02, knuckle 12, straight 1-9, range 5-20, lock 3, cut z 1.5 …', spellcheck: 'false', autocomplete: 'off' })
+  private readonly slider = h('input', { type: 'range', min: -DECADES, max: DECADES, step: 0.01, 'aria-label': 'tolerance' })
+  private readonly value = h('input', { type: 'text', 'aria-label': 'tolerance as a number', inputmode: 'decimal' })
+  private session: Session | null = null
+  private facts: DeskFacts | null = null
+  private log: string[] = []
+  /** What can be done again, the next one last, and what was done: a command of the log, or a change of the text. */
+  private done: ('log' | 'text')[] = []
+  private undone: { kind: 'log' | 'text'; command: string; applied: string }[] = []
+  private applied = ''
+  private shownLine = 0
+  private tool = 'select'
+  private chosen: Chosen = { point: 0, anchor: -1 }
+  private pressed: { at: Place; kind: 'point' | 'pan'; point: number; moved: boolean; to?: number[] } | null = null
+  private queue: Promise<unknown> = Promise.resolve()
+  private timer = 0
+  private stopping = false
+  private readonly sliding = new Newest<{ command: string; final: boolean }>(async ({ command, final }) => {
+    try {
+      const found = await this.ask('desk_slide', { command, final })
+      this.draw({ ...this.facts!, ...found } as DeskFacts)
+    } catch (error) {
+      if (!(error instanceof Refused && error.message === 'superseded')) this.say((error as Error).message)
+    }
+  })
+
+  constructor(private readonly link: Link, private readonly editor: Editor, private readonly say: (words: string) => void, private readonly give: (blob: Blob, name: string) => void) {
+    const help = h('p', { class: 'sr', id: 'desk-help' }, 'Arrow keys go through points, Shift extends a stretch. K marks a knuckle, F a fixed point, S straight, L flat, A arc, I no inflection, R range, E frees. Alt and arrows move a point. Brackets change the tolerance, G the goal, N the line. Enter accepts a suspect.')
+    this.value.addEventListener('keydown', (e) => {
+      e.stopPropagation()
+      if (e.key === 'Enter') void this.run(`tolerance ${this.value.value.trim().replace(/^(\d+),(\d+)$/, '$1.$2')}`)
+    })
+    this.slider.addEventListener('input', () => this.slide())
+    this.slider.addEventListener('change', () => void this.settleTolerance())
+    const side = h('div', { class: 'desk-side' }, h('h3', {}, 'Lines'), this.lines, h('h3', {}, 'Suspects'), this.suspects, h('h3', {}, 'Marks'), this.marks)
+    this.element.append(this.bar, h('div', { class: 'desk-body' }, side, h('div', { class: 'desk-main' }, this.top, this.svg as unknown as HTMLElement, this.below, this.progress)), this.line, this.start, help)
+    this.lines.addEventListener('keydown', (e) => {
+      const by = { ArrowDown: 1, ArrowUp: -1 }[e.key]
+      if (!by || !this.facts) return
+      e.preventDefault()
+      e.stopPropagation()
+      this.showLine(this.shownLine + by)
+    })
+    this.line.addEventListener('keydown', (e) => {
+      e.stopPropagation()
+      if (e.key === 'Escape') this.svg.focus()
+      if (e.key !== 'Enter' || !this.line.value.trim()) return
+      void this.run(this.line.value).then((fine) => fine && (this.line.value = ''))
+    })
+    const on = (name: string, run: (e: any) => void) => this.svg.addEventListener(name, run)
+    on('pointerdown', (e) => this.down(e))
+    on('pointermove', (e) => this.move(e))
+    on('pointerup', (e) => this.up(e))
+    on('pointercancel', () => this.release())
+    on('contextmenu', (e) => e.preventDefault())
+    on('wheel', (e: WheelEvent) => {
+      e.preventDefault()
+      this.sheet.zoom(Math.exp(-e.deltaY * 0.0015), this.at(e))
+      this.paint()
+    })
+    this.element.addEventListener('keydown', (e) => this.history(e))
+    on('keydown', (e) => this.key(e))
+    for (const name of ['dragover', 'drop'])
+      this.element.addEventListener(name, (e) => {
+        e.preventDefault()
+        const file = (e as DragEvent).dataTransfer?.files?.[0]
+        if (name === 'drop' && file) void this.openFile(file)
+      })
+    new ResizeObserver(() => this.paint()).observe(this.element)
+  }
+
+  show(on: boolean): void {
+    this.element.hidden = !on
+    if (!on) return
+    this.starting()
+    this.buttons()
+    this.paint()
+    ;(this.session ? (this.svg as unknown as HTMLElement) : (this.start.querySelector('button') as HTMLElement))?.focus({ preventScroll: true })
+  }
+
+  async settled(): Promise<void> {
+    await this.queue
+    while (this.timer) await new Promise((r) => setTimeout(r, 5))
+    await this.sliding.settled()
+    await this.queue
+  }
+
+  // Requests.
+
+  private async ask(kind: string, fields: Facts = {}): Promise<Facts> {
+    const from = performance.now()
+    const session = this.session
+    const own = session ? { log: this.log, line: this.shownLine, key: session.key } : {}
+    let found = await this.link.tell({ kind, ...own, ...fields })
+    // A process that was lost knows nothing: it is told the whole.
+    if (found.unknown && session) found = await this.link.tell({ kind, ...own, source: session.source, tolerance: session.tolerance, ...fields })
+    this.times.push({ kind, ms: performance.now() - from })
+    if (session && found.key) session.key = found.key
+    return found
+  }
+
+  private later<T>(run: () => Promise<T>): Promise<T | undefined> {
+    const done = this.queue.then(run).catch((error) => {
+      if (!(error instanceof Refused && error.message === 'superseded')) this.say((error as Error).message)
+      return undefined
+    })
+    this.queue = done
+    return done
+  }
+
+  async openFile(file: File): Promise<void> {
+    if (file.size > LARGEST) return this.say(`${file.name} is larger than ${LARGEST >> 20} MiB`)
+    const text = await file.text()
+    await this.open({ table: [file.name, text] })
+  }
+
+  /** Open a table or an object of the model; the log begins. */
+  open(what: Facts): Promise<unknown> {
+    return this.later(async () => {
+      await this.editor.synced()
+      this.session = null
+      const found = await this.ask('desk_open', { ...what, line: 0 })
+      this.session = { source: found.source, tolerance: found.tolerance, key: found.key }
+      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [[], [], [], '', 0]
+      this.chosen = { point: found.detail.points[0], anchor: -1 }
+      this.slider.value = '0'
+      this.start.hidden = true
+      await this.lineByLine()
+      this.take(found as DeskFacts, true)
+      this.svg.focus()
+      this.say(`${found.title}: ${found.list.length === 1 ? `${found.detail.points.length} points` : `${found.list.length} lines`}, tolerance ${shown(found.tolerance)} by the scatter of the points`)
+    })
+  }
+
+  /** A command, as one step of the desk's history. */
+  run(command: string): Promise<boolean> {
+    return this.later(async () => {
+      if (!this.session) throw new Error('open a table or an object first')
+      await this.lineByLine(command)
+      const found = await this.ask('desk_run', { command })
+      this.log = found.log
+      this.done.push('log')
+      this.undone = []
+      this.say('')
+      this.take(found as DeskFacts)
+      return true
+    }).then((x) => x === true)
+  }
+
+  /** Many lines that are faired one by one: how far they are, and a way to stop. */
+  private async lineByLine(command = ''): Promise<void> {
+    const many = this.facts?.list.length ?? 0
+    if (this.facts?.kind !== 'curves' || many < 2 || !/^(tolerance|goal)/.test(command)) return
+    this.stopping = false
+    const stop = h('button', { onclick: () => this.stop() }, 'Stop')
+    const words = h('span', {})
+    this.progress.replaceChildren(words, stop)
+    this.progress.hidden = false
+    try {
+      for (let k = 0; k < many; k++) {
+        words.textContent = `${this.facts.list[k].name}: ${k} of ${many}`
+        await this.ask('desk_line', { only: k, command })
+        if (this.stopping) throw new Error(`stopped after ${k + 1} of ${many} lines: nothing has changed`)
+      }
+    } finally {
+      this.progress.hidden = true
+    }
+  }
+
+  private stop(): void {
+    this.stopping = true
+    void this.link.tell({ kind: 'desk_stop' }).catch(() => undefined)
+  }
+
+  private async undoOne(): Promise<void> {
+    const kind = this.done.pop()
+    if (!kind) return this.say('nothing to undo at the desk')
+    if (kind === 'text') {
+      this.undone.push({ kind, command: '', applied: this.applied })
+      this.applied = ''
+      undo(this.editor.view)
+      await this.editor.synced()
+      return
+    }
+    this.undone.push({ kind, command: this.log.at(-1)!, applied: '' })
+    this.log = this.log.slice(0, -1)
+    this.take((await this.ask('desk_show')) as DeskFacts)
+  }
+
+  private async redoOne(): Promise<void> {
+    const next = this.undone.pop()
+    if (!next) return this.say('nothing to redo at the desk')
+    this.done.push(next.kind)
+    if (next.kind === 'text') {
+      redo(this.editor.view)
+      this.applied = next.applied
+      await this.editor.synced()
+      return
+    }
+    this.log = [...this.log, next.command]
+    this.take((await this.ask('desk_show')) as DeskFacts)
+  }
+
+  private async apply(): Promise<void> {
+    await this.later(async () => {
+      if (!this.session) return
+      await this.editor.synced()
+      const stem = String(this.facts!.title).replace(/\.\w+$/, '').replace(/\W+/g, '_').replace(/^(\d|_)/, 'f$1')
+      const taken = (name: string) => !this.applied && model.objects.some((o) => o.name === name)
+      let name = taken(stem) ? `${stem}_faired` : stem
+      for (let k = 2; taken(name); k++) name = `${stem}_faired_${k}`
+      const answer = await this.ask('desk_apply', { name: this.appliedName ?? name, applied: this.applied })
+      this.appliedName ??= name
+      this.editor.apply(answer.edits, answer.version)
+      this.applied = answer.applied
+      this.done.push('text')
+      this.undone = []
+      await this.editor.synced()
+      this.say(`${name} is in the text`)
+    })
+  }
+  private appliedName: string | null = null
+
+  private async save(name: string): Promise<void> {
+    await this.later(async () => {
+      const answer = await this.ask('desk_save', { name })
+      const bytes = Uint8Array.from(atob(answer.data), (c) => c.charCodeAt(0))
+      this.give(new Blob([bytes]), name)
+    })
+  }
+
+  // What is shown.
+
+  private take(facts: DeskFacts, fit = false): void {
+    this.facts = facts
+    this.shownLine = facts.line
+    if (!facts.detail.points.includes(this.chosen.point)) this.chosen = { point: facts.detail.points[0], anchor: -1 }
+    if (!facts.detail.points.includes(this.chosen.anchor)) this.chosen.anchor = -1
+    this.setSlider(facts.limit)
+    this.listLines()
+    this.listSuspects()
+    this.listMarks()
+    this.buttons()
+    this.paint()
+    if (fit) this.fit()
+  }
+
+  /** A picture of what is not decided: the lists of marks stay. */
+  private draw(facts: DeskFacts): void {
+    this.facts = facts
+    this.listLines()
+    this.badge()
+    this.paint()
+  }
+
+  private setSlider(limit: number): void {
+    if (!this.session) return
+    this.value.value = shown(limit).replace('−', '-')
+    if (limit > 0) this.slider.value = String(Math.log10(limit / this.session.tolerance))
+    this.slider.setAttribute('aria-valuetext', `${shown(limit)} ${this.session.source.unit ?? ''}`.trim())
+  }
+
+  private measure(): void {
+    const { width, height } = this.svg.getBoundingClientRect()
+    if (width) this.sheet.size = [width, height]
+  }
+
+  private paint(): void {
+    if (!this.facts || this.element.hidden) return
+    this.measure()
+    this.painter.draw(this.facts, this.chosen, this.tool)
+    const wide = (this.svg.parentElement as HTMLElement).clientWidth || 600
+    this.below.replaceChildren(...(strips(this.facts, wide) as unknown as HTMLElement[]))
+    this.top.replaceChildren(...(views(this.facts, Math.floor(wide / 3) - 1, 190) as unknown as HTMLElement[]))
+    for (const line of this.top.querySelectorAll<SVGElement>('[data-line]')) line.addEventListener('click', () => this.showLine(Number(line.dataset.line)))
+  }
+
+  fit(): void {
+    this.measure()
+    if (this.facts) this.sheet.fit(this.facts.detail.data)
+    this.paint()
+  }
+
+  private showLine(k: number): void {
+    const many = this.facts?.list.length ?? 0
+    if (!many) return
+    const next = Math.max(0, Math.min(many - 1, k))
+    void this.later(async () => {
+      this.shownLine = next
+      this.take((await this.ask('desk_show')) as DeskFacts, true)
+      const f = this.facts!.list[next]
+      this.say(`${f.name}, ${f.inflections[1]} inflections, ${f.pieces[1]} pieces, moved ${shown(f.moved, 3)}`)
+    })
+  }
+
+  private listLines(): void {
+    const f = this.facts!
+    this.lines.replaceChildren(...f.list.map((o, k) => {
+      const lock = h('button', { title: o.locked ? 'Unlock the line' : 'Lock the line as it is', 'aria-label': `${o.locked ? 'unlock' : 'lock'} ${o.name}`, onclick: (e: Event) => (e.stopPropagation(), void this.run(`${o.locked ? 'unlock' : 'lock'} ${k + 1}`)) }, o.locked ? 'Locked' : 'Lock')
+      const compared = f.compared?.[k]
+      return h('div', { role: 'option', 'aria-selected': k === f.line, 'data-line': k, onclick: () => this.showLine(k) },
+        h('span', {}, o.name), lock,
+        h('span', { class: 'facts' }, `bends ${o.inflections[0]} → ${o.inflections[1]}, pieces ${o.pieces[0]} → ${o.pieces[1]}, moved ${shown(o.moved, 3)} (${Math.round(100 * o.share)} %)${compared ? `, ${shown(compared, 2)} by the last step` : ''}`))
+    }))
+  }
+
+  private listSuspects(): void {
+    const f = this.facts!
+    this.suspects.replaceChildren(...(f.suspects.length ? f.suspects.map((x) => h('div', { 'data-point': x.point }, x.text, x.reading ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
+      h('button', { 'aria-pressed': x.accepted, onclick: () => void this.run(`accept ${x.point + 1}`) }, x.accepted ? 'Accepted' : 'Accept'),
+      h('button', { onclick: () => this.showPoint(x.line, x.point) }, 'Show'))) : [h('p', { class: 'quiet' }, 'none')]))
+  }
+
+  private showPoint(line: number, point: number): void {
+    this.chosen = { point, anchor: -1 }
+    this.showLine(line)
+    this.svg.focus()
+  }
+
+  private listMarks(): void {
+    const f = this.facts!
+    const button = (words: string, command: string) => h('button', { title: `take away: ${words}`, onclick: () => void this.run(command) }, `${words} ×`)
+    const { knuckles, fixed, released } = f.detail
+    this.marks.replaceChildren(
+      ...knuckles.map((p) => button(`knuckle ${p + 1}`, `knuckle ${p + 1}`)), ...fixed.map((p) => button(`fixed ${p + 1}`, `free ${p + 1}`)), ...released.map((p) => button(`released ${p + 1}`, `accept ${p + 1}`)),
+      ...f.shapes.filter((x) => x.line === f.line).map((x) => (x.ends ? button(x.text, `${x.text.split('=')[0]} ${x.ends.map((p) => p + 1).join('-')}${x.text.includes(':') && !x.text.startsWith('within') ? ` ${x.text.split(':')[1]}` : ''}`) : button(x.text, x.text.replace('=', ' ') + ` line ${x.line + 1}`))),
+      ...(f.span ? [button(`range ${f.span[1] + 1}-${f.span[2] + 1}`, 'range off')] : []))
+  }
+
+  private badge(): void {
+    const badge = this.bar.querySelector('.badge')
+    if (!badge || !this.facts) return
+    const { state, words } = this.facts.detail.certificate
+    badge.className = `badge ${state}`
+    badge.textContent = state === 'certified' ? 'certified' : state === 'kept' ? 'within limits' : state === 'draft' ? 'draft' : 'limit not kept'
+    badge.setAttribute('title', words)
+    badge.setAttribute('aria-label', words)
+  }
+
+  private starting(): void {
+    this.start.hidden = this.session !== null
+    if (this.session) return
+    const choose = h('input', { type: 'file', accept: '.csv,.tsv,.txt,.dat,.xyz,.pts', 'aria-label': 'a table of offsets' })
+    choose.addEventListener('change', () => choose.files?.[0] && void this.openFile(choose.files[0]))
+    const picks = model.objects.filter((o) => ['curve', 'snake', 'surface'].includes(o.class) && o.state === 'ok').slice(0, 60)
+    this.start.replaceChildren(h('h3', {}, 'What is to be faired?'), h('p', { class: 'quiet' }, 'Drop a table of offsets or points here, choose a file, or pick a curve or a surface of the model.'), choose,
+      h('div', { class: 'picks' }, ...picks.map((o) => h('button', { onclick: () => void this.open({ object: o.name }) }, o.name))))
+  }
+
+  private buttons(): void {
+    const f = this.facts
+    const button = (words: string, key: string, run: () => void, more: Facts = {}) => h('button', { title: key ? `${words} (${key})` : words, onclick: run, ...more }, words, key ? h('kbd', {}, key) : '')
+    const tool = ([name, key, words]: [string, string, string]) => button(words, key.toUpperCase(), () => this.use(name), { 'aria-pressed': this.tool === name, class: this.tool === name ? 'on' : '' })
+    const save = h('select', { 'aria-label': 'save', title: 'save' }, ...[['', 'Save…'], ['csv', 'Table'], ['igs', 'Splines, IGES'], ['dxf', 'Splines, DXF'], ['json', 'Splines, JSON'], ['html', 'Sheet']].map(([v, words]) => h('option', { value: v }, words)))
+    save.addEventListener('change', () => {
+      const stem = String(f?.title ?? 'faired').replace(/\.\w+$/, '')
+      const own = String(f?.title ?? '').match(/\.\w+$/)?.[0] ?? '.csv'
+      if (save.value) void this.save(`${stem}-faired${save.value === 'csv' ? own : `.${save.value}`}`)
+      save.value = ''
+    })
+    const focus = (this.element.ownerDocument.activeElement as HTMLElement | null)?.getAttribute('title')
+    this.bar.replaceChildren(
+      button('Open', '', () => this.reopen()),
+      h('span', { class: 'tol' }, 'Tolerance', this.slider, this.value),
+      button(f?.goal === 'fairest' ? 'Fairest' : 'Nearest', 'G', () => this.switchGoal(), { 'aria-pressed': f?.goal === 'fairest', 'aria-label': 'goal: nearest or fairest' }),
+      tool(['select', 'v', 'Select']), ...TOOLS.map(tool),
+      h('span', { class: 'grow' }), h('span', { class: 'badge', role: 'status' }),
+      button('Undo', '', () => void this.later(() => this.undoOne()), { disabled: !this.done.length }), button('Redo', '', () => void this.later(() => this.redoOne()), { disabled: !this.undone.length }),
+      button('Fit', '0', () => this.fit()), save, button('Apply', '', () => void this.apply(), { class: 'primary' }))
+    this.badge()
+    if (focus) this.bar.querySelector<HTMLElement>(`[title="${CSS.escape(focus)}"]`)?.focus()
+  }
+
+  private reopen(): void {
+    this.session = null
+    this.facts = null
+    this.appliedName = null
+    this.starting()
+  }
+
+  private switchGoal(): void {
+    void this.run(`goal ${this.facts?.goal === 'fairest' ? 'near' : 'fairest'}`)
+  }
+
+  private use(tool: string): void {
+    const span = SPANS.find((t) => t[0] === tool)
+    const { point, anchor } = this.chosen
+    const both = span && anchor >= 0 && anchor !== point
+    // A stretch that is chosen is marked at once.
+    if (both) {
+      this.chosen.anchor = -1
+      return this.mark(tool, [anchor, point])
+    }
+    this.tool = this.tool === tool ? 'select' : tool
+    this.chosen.anchor = -1
+    this.buttons()
+    this.paint()
+  }
+
+  private mark(tool: string, [a, b]: [number, number]): void {
+    const order = this.facts!.detail.points
+    const [p, q] = [a, b].sort((x, y) => order.indexOf(x) - order.indexOf(y))
+    void this.run(`${tool} ${p + 1}-${q + 1}`)
+  }
+
+  // The tolerance.
+
+  private tolerance(): number {
+    return Number((this.session!.tolerance * 10 ** Number(this.slider.value)).toPrecision(3))
+  }
+
+  private command(value: number): string {
+    return `tolerance ${value}`
+  }
+
+  private slide(): void {
+    if (!this.session) return
+    const value = this.tolerance()
+    this.value.value = String(value)
+    this.sliding.push({ command: this.command(value), final: false })
+    clearTimeout(this.timer)
+    this.timer = window.setTimeout(() => {
+      this.timer = 0
+      this.sliding.push({ command: this.command(value), final: true })
+    }, REST)
+  }
+
+  private async settleTolerance(): Promise<void> {
+    if (!this.session) return
+    clearTimeout(this.timer)
+    this.timer = 0
+    await this.run(this.command(this.tolerance()))
+  }
+
+  // The pointer.
+
+  private at(e: { clientX: number; clientY: number }): Place {
+    const box = this.svg.getBoundingClientRect()
+    return [e.clientX - box.left, e.clientY - box.top]
+  }
+
+  private down(e: PointerEvent): void {
+    if (!this.facts) return
+    this.svg.focus({ preventScroll: true })
+    this.svg.setPointerCapture(e.pointerId)
+    const at = this.at(e)
+    const k = e.button === 0 ? this.painter.hit(at, REACH) : -1
+    this.pressed = { at, kind: k >= 0 ? 'point' : 'pan', point: k >= 0 ? this.facts.detail.points[k] : -1, moved: false }
+  }
+
+  private move(e: PointerEvent): void {
+    const p = this.pressed
+    if (!p || !this.facts) return
+    const at = this.at(e)
+    if (!p.moved && Math.hypot(at[0] - p.at[0], at[1] - p.at[1]) < CLICK) return
+    if (!p.moved && p.kind === 'point' && this.tool !== 'select') return
+    p.moved = true
+    if (p.kind === 'pan') {
+      this.sheet.pan(at[0] - p.at[0], at[1] - p.at[1])
+      p.at = at
+      return this.paint()
+    }
+    p.to = this.placed(p.point, this.sheet.from(at))
+    this.sliding.push({ command: `move ${p.point + 1} ${p.to.join(' ')}`, final: false })
+  }
+
+  /** The place in space of a point that is seen there, rounded to what a pixel is worth. */
+  private placed(point: number, [u, v]: Place): number[] {
+    const { detail } = this.facts!
+    const place = [...detail.place[detail.points.indexOf(point)]]
+    const digits = Math.max(0, Math.min(12, Math.ceil(Math.log10(this.sheet.scale)) + 1))
+    ;[place[detail.axes[0]], place[detail.axes[1]]] = [u, v].map((x) => Number(x.toFixed(digits)))
+    return place
+  }
+
+  private release(): void {
+    this.pressed = null
+    void this.later(async () => {
+      await this.sliding.settled()
+      if (this.session) this.take((await this.ask('desk_show')) as DeskFacts)
+    })
+  }
+
+  private up(e: PointerEvent): void {
+    const p = this.pressed
+    this.pressed = null
+    if (!p || !this.facts) return
+    if (p.moved) {
+      if (p.kind === 'point' && p.to) void this.sliding.settled().then(() => this.run(`move ${p.point + 1} ${p.to!.join(' ')}`))
+      return
+    }
+    if (p.kind === 'pan') {
+      if (this.tool === 'side') return this.sideAt(this.at(e))
+      this.chosen.anchor = -1
+      return this.paint()
+    }
+    const point = p.point
+    if (POINTS.some((t) => t[0] === this.tool)) {
+      this.chosen = { point, anchor: -1 }
+      return void this.run(`${this.tool} ${point + 1}`)
+    }
+    if (SPANS.some((t) => t[0] === this.tool)) {
+      const { anchor } = this.chosen
+      if (anchor < 0) this.chosen = { point, anchor: point }
+      else {
+        this.chosen = { point, anchor: -1 }
+        if (anchor !== point) return this.mark(this.tool, [anchor, point])
+      }
+      return this.paint()
+    }
+    this.choose(point, e.shiftKey)
+  }
+
+  /** The curve stays on the other side of its points than where the click was. */
+  private sideAt(at: Place): void {
+    const { detail } = this.facts!
+    const near = this.painter.places.reduce((m, p, k, all) => (Math.hypot(p[0] - at[0], p[1] - at[1]) < Math.hypot(all[m][0] - at[0], all[m][1] - at[1]) ? k : m), 0)
+    const [x, y] = this.painter.places[near]
+    const way = [0, 0, 0]
+    if (Math.abs(at[0] - x) > Math.abs(at[1] - y)) way[detail.axes[0]] = Math.sign(at[0] - x)
+    else way[detail.axes[1]] = Math.sign(y - at[1])
+    void this.run(`side ${way.join(',')} line ${this.shownLine + 1}`)
+  }
+
+  private choose(point: number, extend: boolean): void {
+    if (extend && this.chosen.anchor < 0) this.chosen.anchor = this.chosen.point
+    if (!extend) this.chosen.anchor = -1
+    this.chosen.point = point
+    this.paint()
+    const dot = this.svg.querySelector(`[data-point="${point}"]`)
+    this.say(dot?.getAttribute('aria-label') ?? '')
+  }
+
+  // Keys.
+
+  private history(e: KeyboardEvent): void {
+    const key = e.key.toLowerCase()
+    if (!(e.ctrlKey || e.metaKey) || e.altKey || (key !== 'z' && key !== 'y')) return
+    if ((e.target as HTMLElement).matches('input[type=text]') && !(e.target as HTMLInputElement).readOnly) return
+    e.preventDefault()
+    e.stopPropagation()
+    void this.later(() => (key === 'y' || e.shiftKey ? this.redoOne() : this.undoOne()))
+  }
+
+  private key(e: KeyboardEvent): void {
+    if (!this.facts || e.ctrlKey || e.metaKey || e.defaultPrevented) return
+    const key = e.key.toLowerCase()
+    const done = () => {
+      e.preventDefault()
+      e.stopPropagation()
+    }
+    const { points } = this.facts.detail
+    const { point, anchor } = this.chosen
+    const arrow = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] }[key]
+    if (arrow && e.altKey) {
+      done()
+      const [u, v] = this.facts.detail.data[points.indexOf(point)]
+      const by = (e.shiftKey ? 10 : 1) / this.sheet.scale
+      void this.run(`move ${point + 1} ${this.placed(point, [u + arrow[0] * by, v + arrow[1] * by]).join(' ')}`)
+      return
+    }
+    if (e.altKey || /^f\d/.test(key)) return
+    if (arrow) {
+      const at = points.indexOf(point) + (arrow[0] || arrow[1])
+      if (at >= 0 && at < points.length) this.choose(points[at], e.shiftKey)
+      return done()
+    }
+    const single = POINTS.find((t) => t[1] === key)
+    const span = SPANS.find((t) => t[1] === key)
+    if (single) void this.run(`${single[0]} ${point + 1}`)
+    else if (span && anchor >= 0 && anchor !== point) {
+      this.chosen.anchor = -1
+      this.mark(span[0], [anchor, point])
+    } else if (span) this.say(`${span[2]}: choose a stretch with Shift and the arrow keys, or click its ends`), this.use(span[0])
+    else if (key === 'o') this.use('side')
+    else if (key === '[' || key === ']') void this.run(this.command(Number((this.facts.limit * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))))
+    else if (key === 'g') this.switchGoal()
+    else if (key === 'n') this.showLine(this.shownLine + (e.shiftKey ? -1 : 1))
+    else if (key === 'v') this.use('select')
+    else if (key === '0') this.fit()
+    else if (key === 'delete' || key === 'backspace') void this.run(`free ${point + 1}`)
+    else if (key === 'enter') void this.run(`accept ${point + 1}`)
+    else if (key === 'escape') {
+      if (this.pressed) this.release()
+      this.tool = 'select'
+      this.chosen.anchor = -1
+      this.buttons()
+      this.paint()
+    } else return
+    done()
+  }
+
+  /** For tests: what is known, and where points are on the screen. */
+  look(): Facts {
+    const box = this.svg.getBoundingClientRect()
+    const places = Object.fromEntries((this.facts?.detail.points ?? []).map((p, k) => [p, [box.left + (this.painter.places[k]?.[0] ?? 0), box.top + (this.painter.places[k]?.[1] ?? 0)]]))
+    return { facts: this.facts, log: this.log, undone: this.undone.length, done: this.done.length, places, chosen: this.chosen, tool: this.tool, session: this.session, scale: this.sheet.scale }
+  }
+}
