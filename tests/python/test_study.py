@@ -457,7 +457,7 @@ def test_the_command(tmp_path):
         ("[outputs]", "[plan]\nmethod = 'sobl'\n[outputs]", "did you mean `sobol`"),
         ("[outputs]", "[plan]\nmethod = 'table'\n[outputs]", "`plan.file` is missing"),
         ("[outputs]", "[optimize]\nminimize = 'x'\n[outputs]", "is no output"),
-        ("[outputs]", "[optimize]\nmethod = 'slsqp'\n[outputs]", "either `minimize`"),
+        ("[outputs]", "[optimize]\nmethod = 'slsqp'\n[outputs]", "needs `minimize` or `maximize`"),
         ("[outputs]", "[analysis.x]\n[outputs]", "either `python` or `command`"),
         ("[outputs]", "[constraints]\nx = {value = 'a'}\n[outputs]", "needs `low`"),
         ("[inputs]", "[inputs", "not TOML"),

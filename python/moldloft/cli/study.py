@@ -30,7 +30,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     sweep = verbs.add_parser("sweep", help="evaluate the plan; a stopped one is continued")
-    best = verbs.add_parser("optimize", help="find the best inputs by the derivatives of the model")
+    best = verbs.add_parser("optimize", help="find the best inputs")
     resume = verbs.add_parser("resume", help="continue the plan in the store")
     show = verbs.add_parser("show", help="print and draw the results")
     collect = verbs.add_parser("collect", help="join the stores of the parts of a plan")
@@ -44,10 +44,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         verb.add_argument("--html", metavar="FILE", help="write the report as one page")
         verb.add_argument("--json", action="store_true", help="the summary as data")
         verb.add_argument("-q", "--quiet", action="store_true", help="only errors")
-    for verb in (sweep, resume):
+    for verb in (sweep, best, resume):
         verb.add_argument(
             "--processes", metavar="N", type=_whole, default=2, help="cases at a time; default: 2"
         )
+    for verb in (sweep, resume):
         verb.add_argument(
             "--cluster",
             metavar="ADDRESS",
@@ -137,10 +138,9 @@ class _Cluster:
     def __enter__(self) -> Executor | None:
         if self.address is None:
             return None
-        try:
-            import distributed
-        except ImportError as error:
-            raise Error(f"this needs Dask: pip install 'moldloft[cluster]' ({error})") from None
+        from moldloft.study.extras import needed
+
+        distributed = needed("distributed", "cluster", "a Dask cluster")
         try:
             make: Any = distributed.Client
             if self.address == "local":
@@ -183,15 +183,22 @@ def _optimize(study: Study, options: argparse.Namespace) -> int:
         found = optimize(
             study,
             options.store,
+            processes=options.processes,
             progress=lambda n, best: progress.stage(
                 "optimising", f"{n} evaluations, best {best:.8g}"
             ),
         )
     if options.json:
-        print_json(vars(found))
+        front = [{**o.inputs, **o.outputs} for o in found.front]
+        print_json({**vars(found), "front": front})
     else:
         rows = [[name, f"{value:.9g}"] for name, value in {**found.inputs, **found.outputs}.items()]
-        say(options, table(["", "optimum"], rows))
+        head = "least of the first objective" if found.front else "optimum"
+        say(options, table(["", head], rows))
+        if found.front:
+            names = [*found.inputs, *found.outputs]
+            front = [{**o.inputs, **o.outputs} for o in found.front]
+            say(options, table(names, [[f"{row[n]:.6g}" for n in names] for row in front]))
         state = "converged" if found.converged else "not converged"
         held = "constraints hold" if found.feasible else "constraints do not hold"
         say(options, f"{state}, {held}, {found.evaluations} evaluations: {found.message}")

@@ -18,7 +18,18 @@ from moldloft.errors import Error
 from moldloft.spelling import nearest
 from moldloft.storage import read_text
 
-__all__ = ["Analysis", "Bound", "Goal", "Input", "Pattern", "Plan", "Study", "StudyError", "read"]
+__all__ = [
+    "Analysis",
+    "Bound",
+    "Goal",
+    "Input",
+    "Objective",
+    "Pattern",
+    "Plan",
+    "Study",
+    "StudyError",
+    "read",
+]
 
 #: Times and memory of one case unless the study says otherwise.
 DEFAULT_SECONDS = 600.0
@@ -34,8 +45,22 @@ METHODS = {
 }
 """The plans by name, with a line about each."""
 
-OPTIMISERS = ("slsqp", "trust-constr", "cobyqa", "differential-evolution")
-"""The optimisers of SciPy that a study may name."""
+OPTIMISERS = {
+    "slsqp": "sequential quadratic programming of SciPy, by derivatives",
+    "trust-constr": "interior point within a trust region of SciPy, by derivatives",
+    "ipopt": "interior point of Ipopt (cyipopt), by derivatives",
+    "cobyqa": "quadratic models within a trust region of SciPy, by values",
+    "differential-evolution": "a population, of SciPy, by values",
+    "nsga2": "a population for several objectives, of pymoo, by values",
+    "tpe": "a tree of Parzen estimators of Optuna, by values, for one objective or several",
+}
+"""The optimisers that a study may name, with a line about each."""
+
+BY_GRADIENTS = ("slsqp", "trust-constr", "ipopt")
+"""The optimisers that use derivatives."""
+
+FOR_SEVERAL = ("nsga2", "tpe")
+"""The optimisers that take several objectives."""
 
 
 class StudyError(Error):
@@ -130,16 +155,40 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Goal:
-    """What is optimised, and by which method of SciPy."""
+class Objective:
+    """An output that is to be small or great."""
 
     output: str
     maximise: bool = False
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Objectives and the optimiser, of :data:`OPTIMISERS`."""
+
+    objectives: tuple[Objective, ...]
+    """One; several for ``nsga2`` and ``tpe``."""
     method: str = "slsqp"
     evaluations: int = 200
+    """The greatest number of points."""
     tolerance: float = 1e-8
+    """Of the objective relative to its size at the start, for methods that converge."""
     seed: int = 0
+    population: int = 0
+    """Points of a generation; by default 15 for each input, 40 with several objectives."""
     start: Mapping[str, float] = field(default_factory=dict)
+    """The start; by default the model's values."""
+    warm: bool = False
+    """Whether the best points of the store take the place of the start."""
+
+    def __post_init__(self) -> None:
+        if self.method not in OPTIMISERS:
+            raise StudyError(f"`optimize.method`: `{self.method}` is unknown")
+        if len(self.objectives) > 1 and self.method not in FOR_SEVERAL:
+            raise StudyError(
+                f"`optimize.method`: `{self.method}` takes one objective, found "
+                f"{len(self.objectives)}; {' and '.join(FOR_SEVERAL)} take several"
+            )
 
 
 @dataclass(frozen=True)
@@ -202,9 +251,13 @@ class Study:
                 raise StudyError(
                     f"`inputs.{each.name}`: the range runs from {each.low:g} down to {each.high:g}"
                 )
-        if self.goal and self.goal.output not in self.names:
-            known = ", ".join(self.names)
-            raise StudyError(f"`optimize`: `{self.goal.output}` is no output; outputs: {known}")
+        for objective in self.goal.objectives if self.goal else ():
+            if objective.output not in self.names:
+                known = ", ".join(self.names)
+                raise StudyError(f"`optimize`: `{objective.output}` is no output; outputs: {known}")
+        for name in self.goal.start if self.goal else ():
+            if name not in {i.name for i in self.inputs}:
+                raise StudyError(f"`optimize.start.{name}` is no input")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -430,20 +483,26 @@ def _plan(table: Table, folder: Path) -> Plan:
 
 
 def _goal(table: Table) -> Goal:
-    least, most = table.take("minimize", "text"), table.take("maximize", "text")
-    if (least is None) == (most is None):
-        raise StudyError("`optimize` needs either `minimize` or `maximize`, an output's name")
-    method = _choice(table.take("method", "text", "slsqp"), OPTIMISERS, table.at("method"))
+    least, most = table.take("minimize", "texts", ()), table.take("maximize", "texts", ())
+    objectives = [Objective(n) for n in least] + [Objective(n, True) for n in most]
+    if not objectives:
+        raise StudyError("`optimize` needs `minimize` or `maximize`, names of outputs")
+    if len({o.output for o in objectives}) < len(objectives):
+        raise StudyError("`optimize` has an objective twice")
+    several = len(objectives) > 1
+    default = FOR_SEVERAL[0] if several else "slsqp"
+    method = _choice(table.take("method", "text", default), tuple(OPTIMISERS), table.at("method"))
     start = table.table("start")
     values = {name: _number(value, start.at(name)) for name, value in start.data.items()}
     found = Goal(
-        least if most is None else most,
-        most is not None,
+        tuple(objectives),
         method,
         max(table.take("evaluations", "count", 200), 1),
         _positive(table.take("tolerance", "number", 1e-8), table.at("tolerance")),
         table.take("seed", "count", 0),
+        table.take("population", "count", 0),
         values,
+        table.take("warm", "flag", False),
     )
     table.end()
     return found

@@ -9,6 +9,7 @@ import numpy as np
 
 from moldloft.arguments import explain
 from moldloft.errors import Error, UnknownNameError
+from moldloft.study.extras import needed
 from moldloft.study.functions import function
 
 if TYPE_CHECKING:
@@ -49,10 +50,9 @@ def component(
     openmdao.api.ExplicitComponent
         With the inputs and outputs named.
     """
-    try:
-        import openmdao.api as om
-    except ImportError as error:
-        raise Error(f"this needs openmdao: pip install 'moldloft[study]' ({error})") from error
+    needed("openmdao", "study", "a component")
+    import openmdao.api as om
+
     of = function(model, inputs, outputs)
     ins = [_plain(name) for name in of.inputs]
     outs = [_plain(name) for name in of.outputs]

@@ -1,18 +1,20 @@
-"""Optimisation of a study's objective by SciPy, each point one case of the store."""
+"""Optimisation of a study: each point is one case of the store, values and derivatives together."""
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from moldloft.errors import Error
 from moldloft.study.cases import DONE
-from moldloft.study.definition import Bound, Study, StudyError
+from moldloft.study.definition import BY_GRADIENTS, OPTIMISERS, Bound, Study, StudyError
+from moldloft.study.fronts import front
 from moldloft.study.plans import ranges
 from moldloft.study.running import Cases, outcome
 from moldloft.study.store import Outcome, Store
@@ -23,13 +25,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Optimum", "optimize"]
-
-#: The methods that use derivatives.
-BY_GRADIENTS = ("slsqp", "trust-constr")
+__all__ = ["Optimum", "Points", "Search", "optimize"]
 
 #: An optimum's constraints hold within this fraction of their limits' sizes.
 FEASIBLE = 1e-6
+
+#: Objective and constraints where the model has no numbers: no method takes such a point.
+FAILED = 1e10
 
 
 @dataclass(frozen=True)
@@ -39,53 +41,102 @@ class Optimum:
     inputs: dict[str, float]
     outputs: dict[str, float]
     converged: bool
-    """Whether the optimiser met its tolerance."""
+    """Whether the optimiser ended by its own criterion, not by a failure or a limit."""
     feasible: bool
     """Whether all constraints hold to 1e-6 of their limits."""
     message: str
     evaluations: int
     """The number of points evaluated, derivatives included."""
+    front: tuple[Outcome, ...] = field(default=(), repr=False)
+    """The feasible points that no other one betters in all objectives, in the order of the first
+    objective; for several objectives."""
 
 
 class NoNumbersError(Exception):
     """A point at which the model has no numbers."""
 
 
-class _Points:
-    """The points of an optimisation: values and derivatives from one evaluation."""
+class LimitError(Exception):
+    """As many points as the study allows have been evaluated."""
 
-    def __init__(self, cases: Cases, store: Store, scale: Floats, low: Floats) -> None:
+
+class Points:
+    """The one source of an optimiser's numbers: values and derivatives from one evaluation.
+
+    Points are given in the unit cube of the ranges.
+    """
+
+    def __init__(
+        self, cases: Cases, store: Store, box: Floats, limit: int, processes: int = 1
+    ) -> None:
         self.cases = cases
         self.store = store
-        self.scale = scale
-        self.low = low
+        self.low = box[:, 0]
+        self.scale = np.where(box[:, 1] > box[:, 0], box[:, 1] - box[:, 0], 1.0)
+        self.most = (box[:, 1] > box[:, 0]).astype(float)
+        """The greatest coordinates in the unit cube: 0 for an input without room."""
         self.evaluated = 0
-        self._last: tuple[bytes, Outcome] | None = None
+        self.seen: Callable[[Outcome], None] = lambda _: None
+        self._limit = limit
+        self._processes = processes
+        self._known: dict[str, Outcome] = {}
+        known = cases.model.params
+        self._whole = np.array([n in known and known[n].whole for n in cases.names])
+
+    def unit(self, point: Floats) -> Floats:
+        """A point of the ranges in the unit cube."""
+        found: Floats = np.clip((point - self.low) / self.scale, 0.0, self.most)
+        return found
+
+    def _point(self, unit: Floats) -> Floats:
+        point = self.low + self.scale * np.clip(unit, 0.0, self.most)
+        found: Floats = np.where(self._whole, np.round(point), point)
+        return found
+
+    def batch(self, units: Floats) -> list[Outcome]:
+        """The outcomes at points, ``(points, inputs)``, in their order; new ones in parallel."""
+        points = [self._point(unit) for unit in units]
+        keys = [self.cases.key(point) for point in points]
+        new = {k: p for k, p in zip(keys, points, strict=True) if k not in self._known}
+        room = self._limit - len(self._known)
+        stored = {key: self.store.find(key) for key in list(new)[:room]}
+        requests = [self.cases.request(k, new[k]) for k, o in stored.items() if o is None]
+        if len(requests) > 1 and self._processes > 1:
+            with ThreadPoolExecutor(self._processes) as pool:
+                answers = list(pool.map(evaluate_apart, requests))
+        else:
+            answers = [evaluate_apart(request) for request in requests]
+        for request, answer in zip(requests, answers, strict=True):
+            found = outcome(request, answer)
+            self.store.add(found)
+            stored[found.key] = found
+            self.evaluated += 1
+        for key, known in stored.items():
+            assert known is not None
+            self.store.append(key)
+            self._known[key] = known
+            self.seen(known)
+        if len(new) > room:
+            raise LimitError
+        return [self._known[key] for key in keys]
 
     def at(self, unit: Floats) -> Outcome:
-        """The outcome at a point of the unit cube."""
-        point = self.low + self.scale * np.asarray(unit, dtype=np.float64)
-        data = point.tobytes()
-        if self._last is None or self._last[0] != data:
-            key = self.cases.key(point)
-            found = self.store.find(key)
-            if found is None:
-                request = self.cases.request(key, point)
-                found = outcome(request, evaluate_apart(request))
-                self.store.add(found)
-                self.evaluated += 1
-            self.store.append(key)
-            self._last = data, found
-        if self._last[1].state != DONE:
-            raise NoNumbersError(self._last[1].message)
-        return self._last[1]
+        """The outcome at one point.
 
-    def value(self, name: str, unit: Floats) -> float:
-        return self.at(unit).outputs[name]
+        Raises
+        ------
+        NoNumbersError
+            Where the model fails.
+        """
+        (found,) = self.batch(np.asarray(unit, dtype=np.float64)[None])
+        if found.state != DONE:
+            raise NoNumbersError(found.message)
+        return found
 
     def slope(self, name: str, unit: Floats) -> Floats:
+        """The derivatives of an output by the coordinates of the unit cube."""
         outputs = self.at(unit).outputs
-        found = np.array([outputs[f"d {name} / d {by}"] for by in self.cases.names])
+        found: Floats = np.array([outputs[f"d {name} / d {by}"] for by in self.cases.names])
         return found * self.scale
 
 
@@ -103,12 +154,13 @@ def _prepared(study: Study) -> tuple[Study, list[Bound]]:
         bounds.append(replace(bound, name=name))
     derivatives = study.goal.method in BY_GRADIENTS
     by_analysis = {n for each in study.analyses for n in each.names}
-    used = {study.goal.output, *(b.name for b in bounds)}
+    used = {*(o.output for o in study.goal.objectives), *(b.name for b in bounds)}
     if derivatives and used & by_analysis:
         word = sorted(used & by_analysis)[0]
+        others = [name for name in OPTIMISERS if name not in BY_GRADIENTS]
         raise StudyError(
             f"`optimize.method`: `{study.goal.method}` needs derivatives, and `{word}` of an "
-            "analysis has none; cobyqa and differential-evolution use values alone"
+            f"analysis has none; by values alone: {', '.join(others)}"
         )
     return replace(study, outputs=own, constraints=(), derivatives=derivatives), bounds
 
@@ -117,9 +169,10 @@ def optimize(
     study: Study,
     store: str | os.PathLike[str],
     *,
+    processes: int = 2,
     progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
-    """Find the inputs with the least or greatest objective within the constraints.
+    """Find the inputs with the least or greatest objectives within the constraints.
 
     Parameters
     ----------
@@ -127,52 +180,63 @@ def optimize(
         A definition with a goal.
     store
         The SQLite file: points that it has are not evaluated again.
+    processes
+        The number of points evaluated at a time, for methods with a population.
     progress
-        Called with the number of evaluations and the best feasible objective.
+        Called with the number of evaluations and the best feasible value of the first objective.
 
     Returns
     -------
     Optimum
-        The best feasible point evaluated; where there is none, the last one.
+        The best feasible point evaluated (of the first objective); where there is none, the one
+        that violates the constraints least.
 
     Raises
     ------
     StudyError
         When the study has no goal, or a method needs derivatives that an analysis has not.
+    MissingPackageError
+        When the optimiser's package is not installed.
     Error
         When the model has no numbers at the start.
     """
+    from moldloft.study.optimizers import METHODS
+
     if study.goal is None:
         raise StudyError("`[optimize]` is missing: it names the objective")
-    try:
-        from scipy import optimize as scipy_optimize
-    except ImportError as error:
-        raise Error(f"this needs SciPy: pip install 'moldloft[study]' ({error})") from None
     prepared, bounds = _prepared(study)
+    method = METHODS[study.goal.method]()
     with Cases(prepared) as cases, Store(store, writing=True) as kept:
-        box = ranges(study, cases.model)
-        scale = np.where(box[:, 1] > box[:, 0], box[:, 1] - box[:, 0], 1.0)
-        points = _Points(cases, kept, scale, box[:, 0])
+        points = Points(cases, kept, ranges(study, cases.model), study.goal.evaluations, processes)
         rest = [study.goal.start.get(n, float(cases.model.eval(n))) for n in cases.names]
-        start = np.clip((np.array(rest) - box[:, 0]) / scale, 0.0, 1.0)
+        search = Search(study, bounds, points, progress)
+        starts = [points.unit(np.array(rest))]
+        if study.goal.warm:
+            starts = [points.unit(p) for p in search.stored(kept)] or starts
         kept.begin({"model": str(study.model), "digest": cases.digest, "plan": "optimize"}, [])
-        search = _Search(study, bounds, points, progress)
         try:
-            search.start(start)
-            message, converged = _minimised(scipy_optimize, study, search, start, box)
+            search.start(starts)
+            try:
+                message, converged = method(study.goal, search)
+            except LimitError:
+                message = f"the limit of {study.goal.evaluations} evaluations was reached"
+                converged = False
         finally:
             end_workers()
-        return search.optimum(message, converged)
+        best = search.optimum(message, converged)
+        facts = {"objectives": json.dumps(search.senses), "feasible": json.dumps(search.feasible)}
+        kept.note({**facts, "front": json.dumps([o.key for o in best.front])})
+        return best
 
 
-class _Search:
-    """Objective and constraints as SciPy calls them, and the best point so far."""
+class Search:
+    """Objectives and constraints in units of their sizes, and the best point so far."""
 
     def __init__(
         self,
         study: Study,
         bounds: list[Bound],
-        points: _Points,
+        points: Points,
         progress: Callable[[int, float], None] | None,
     ) -> None:
         assert study.goal is not None
@@ -180,122 +244,162 @@ class _Search:
         self.bounds = bounds
         self.points = points
         self.progress = progress
-        self.sign = -1.0 if self.goal.maximise else 1.0
-        self.size = 1.0
-        self.sizes = [1.0] * len(bounds)
-        self.best: tuple[bool, float, Outcome] | None = None
+        self.names = [o.output for o in self.goal.objectives]
+        self.signs = np.array([-1.0 if o.maximise else 1.0 for o in self.goal.objectives])
+        self.scales = np.ones(len(self.names))
+        """The sizes of the objectives at the start."""
+        self.sizes = np.ones(len(bounds))
+        """The sizes of the constraints."""
+        self.starts: list[Floats] = []
+        self.low = self.high = np.empty(0)
+        self.best: tuple[float, float, Outcome] | None = None
+        self._feasible: dict[str, Outcome] = {}
 
-    def start(self, unit: Floats) -> None:
-        """Evaluates the start, whose values are the sizes of objective and constraints."""
+    @property
+    def senses(self) -> dict[str, float]:
+        """1 for an objective that is to be small, -1 for a great one, by name."""
+        return dict(zip(self.names, self.signs.tolist(), strict=True))
+
+    @property
+    def feasible(self) -> list[str]:
+        """The keys of the feasible points."""
+        return list(self._feasible)
+
+    def stored(self, store: Store) -> list[Floats]:
+        """The best points of the store within the ranges, as many as a population has."""
+        names = self.points.cases.names
+        used = {*self.names, *(b.name for b in self.bounds)}
+        rows = []
+        for found in store.outcomes():
+            if found.state != DONE or not used <= found.outputs.keys():
+                continue
+            if set(found.inputs) != set(names):
+                continue
+            point = np.array([found.inputs[n] for n in names])
+            if (np.abs(point - self.points._point(self.points.unit(point))) <= 1e-12).all():
+                violation = self._violation(found, self._sizes(found))
+                first = self.signs[0] * found.outputs[self.names[0]]
+                rows.append((max(violation, FEASIBLE), first, found.key, point))
+        rows.sort(key=lambda row: row[:3])
+        return [row[3] for row in rows[: self.population]]
+
+    @property
+    def population(self) -> int:
+        """The points of a generation."""
+        several = len(self.names) > 1
+        default = 40 if several else max(15 * len(self.points.low), 20)
+        return min(self.goal.population or default, self.goal.evaluations)
+
+    def _sizes(self, found: Outcome) -> Floats:
+        sizes = []
+        for bound in self.bounds:
+            limits = [abs(v) for v in (bound.low, bound.high) if np.isfinite(v)]
+            sizes.append(max([*limits, 0.0]) or abs(found.outputs[bound.name]) or 1.0)
+        return np.array(sizes)
+
+    def _violation(self, found: Outcome, sizes: Floats) -> float:
+        """The greatest violation of a constraint, in its size."""
+        return max(
+            (
+                max(b.low - found.outputs[b.name], found.outputs[b.name] - b.high, 0.0) / s
+                for b, s in zip(self.bounds, sizes, strict=True)
+            ),
+            default=0.0,
+        )
+
+    def start(self, units: Sequence[Floats]) -> None:
+        """Evaluates the start, whose values are the sizes of objectives and constraints."""
+        self.starts = list(units)
         try:
-            first = self.points.at(unit)
+            first = self.points.at(units[0])
         except NoNumbersError as failed:
             raise Error(f"the model has no numbers at the start: {failed}") from None
-        self.size = abs(first.outputs[self.goal.output]) or 1.0
-        for k, bound in enumerate(self.bounds):
-            limits = [abs(v) for v in (bound.low, bound.high) if np.isfinite(v)]
-            self.sizes[k] = max([*limits, 0.0]) or abs(first.outputs[bound.name]) or 1.0
+        self.scales = np.array([abs(first.outputs[n]) or 1.0 for n in self.names])
+        self.sizes = self._sizes(first)
+        self.low = np.array([b.low for b in self.bounds]) / self.sizes
+        self.high = np.array([b.high for b in self.bounds]) / self.sizes
+        self.points.seen = self._seen
         self._seen(first)
 
     def _seen(self, found: Outcome) -> None:
-        value = self.sign * found.outputs[self.goal.output]
-        feasible = all(
-            b.low - FEASIBLE * s <= found.outputs[b.name] <= b.high + FEASIBLE * s
-            for b, s in zip(self.bounds, self.sizes, strict=True)
-        )
-        better = self.best is None or (feasible, -value) > (self.best[0], -self.best[1])
-        if better:
-            self.best = feasible, value, found
+        if found.state != DONE:
+            return
+        violation = self._violation(found, self.sizes)
+        if violation <= FEASIBLE:
+            violation = 0.0
+            self._feasible[found.key] = found
+        rank = violation, self.signs[0] * found.outputs[self.names[0]]
+        if self.best is None or rank < self.best[:2]:
+            self.best = *rank, found
         if self.progress and self.best is not None:
-            self.progress(self.points.evaluated, self.sign * self.best[1])
+            self.progress(self.points.evaluated, self.signs[0] * self.best[1])
+
+    # -- one objective, one point ----------------------------------------------------------
 
     def objective(self, unit: Floats) -> float:
-        """The objective at a point; where the model fails, one that is never taken."""
-        try:
-            found = self.points.at(unit)
-        except NoNumbersError:
-            return 1e10
-        self._seen(found)
-        return self.sign * found.outputs[self.goal.output] / self.size
+        """The first objective in its size."""
+        return float(self.values(np.asarray(unit)[None])[0][0, 0])
 
     def gradient(self, unit: Floats) -> Floats:
-        """The derivatives of the objective."""
+        """The derivatives of the first objective."""
         try:
-            return self.sign * self.points.slope(self.goal.output, unit) / self.size
+            slope = self.points.slope(self.names[0], unit)
         except NoNumbersError:
             return np.zeros(len(unit))
+        found: Floats = self.signs[0] * slope / self.scales[0]
+        return found
 
-    def constraints(self, make: Callable[..., Any], by_gradients: bool) -> list[Any]:
-        """The constraints of SciPy: equalities apart from limits, in units of their limits."""
-        made = []
-        for equal in (True, False):
-            chosen = [
-                (b, s) for b, s in zip(self.bounds, self.sizes, strict=True) if b.equal == equal
-            ]
-            if chosen:
-                more = {"jac": partial(self._slopes, chosen)} if by_gradients else {}
-                low = [b.low / s for b, s in chosen]
-                high = [b.high / s for b, s in chosen]
-                made.append(make(partial(self._values, chosen), low, high, **more))
-        return made
+    def constraints(self, unit: Floats) -> Floats:
+        """All constraints in their sizes, ``(constraints,)``."""
+        found: Floats = self.values(np.asarray(unit)[None])[1][0]
+        return found
 
-    def _values(self, chosen: list[tuple[Bound, float]], unit: Floats) -> Floats:
+    def jacobian(self, unit: Floats) -> Floats:
+        """Their derivatives, ``(constraints, inputs)``."""
         try:
-            outputs = self.points.at(unit).outputs
+            rows = [self.points.slope(b.name, unit) for b in self.bounds]
         except NoNumbersError:
-            return np.full(len(chosen), 1e10)
-        return np.array([outputs[b.name] / s for b, s in chosen])
+            return np.zeros((len(self.bounds), len(unit)))
+        return np.reshape(rows, (len(self.bounds), len(unit))) / self.sizes[:, None]
 
-    def _slopes(self, chosen: list[tuple[Bound, float]], unit: Floats) -> Floats:
-        """Derivatives, ``(constraints, inputs)``."""
-        try:
-            return np.array([self.points.slope(b.name, unit) / s for b, s in chosen])
-        except NoNumbersError:
-            return np.zeros((len(chosen), len(unit)))
+    # -- several of both -------------------------------------------------------------------
+
+    def values(self, units: Floats) -> tuple[Floats, Floats]:
+        """Objectives, all to be small, and constraints: ``(points, ...)`` each.
+
+        Where the model fails all are 1e10.
+        """
+        objectives = np.full((len(units), len(self.names)), FAILED)
+        constraints = np.full((len(units), len(self.bounds)), FAILED)
+        for k, found in enumerate(self.points.batch(units)):
+            if found.state == DONE:
+                values = np.array([found.outputs[n] for n in self.names])
+                objectives[k] = self.signs * values / self.scales
+                held = np.array([found.outputs[b.name] for b in self.bounds])
+                constraints[k] = held / self.sizes
+        return objectives, constraints
+
+    def violations(self, constraints: Floats) -> Floats:
+        """By how much constraints exceed their limits, ``(points, constraints)``; else 0."""
+        found: Floats = np.maximum(np.maximum(self.low - constraints, constraints - self.high), 0)
+        return found
 
     def optimum(self, message: str, converged: bool) -> Optimum:
-        """The best point."""
+        """The best point, and the front of several objectives."""
         assert self.best is not None
-        feasible, _, found = self.best
+        violation, _, found = self.best
         outputs = {n: v for n, v in found.outputs.items() if not n.startswith("d ")}
+        held = list(self._feasible.values())
+        chosen: tuple[Outcome, ...] = ()
+        if len(self.names) > 1 and held:
+            table = np.array([[o.outputs[n] for n in self.names] for o in held])
+            chosen = tuple(held[k] for k in front(table * self.signs))
         return Optimum(
-            dict(found.inputs), outputs, converged, feasible, message, self.points.evaluated
+            dict(found.inputs),
+            outputs,
+            converged,
+            violation == 0.0,
+            message,
+            self.points.evaluated,
+            chosen,
         )
-
-
-def _minimised(
-    scipy_optimize: Any, study: Study, search: _Search, start: Floats, box: Floats
-) -> tuple[str, bool]:
-    goal = search.goal
-    unit = scipy_optimize.Bounds(np.zeros(len(start)), (box[:, 1] > box[:, 0]).astype(float))
-    by_gradients = goal.method in BY_GRADIENTS
-    constraints = search.constraints(scipy_optimize.NonlinearConstraint, by_gradients)
-    if goal.method == "differential-evolution":
-        found = scipy_optimize.differential_evolution(
-            search.objective,
-            unit,
-            constraints=constraints,
-            rng=goal.seed,
-            x0=start,
-            polish=False,
-            tol=goal.tolerance,
-            maxiter=max(goal.evaluations // (15 * len(start)) - 1, 1),
-        )
-        return str(found.message), bool(found.success)
-    options: dict[str, Any] = {"maxiter": goal.evaluations}
-    if goal.method == "slsqp":
-        options["ftol"] = goal.tolerance
-    elif goal.method == "trust-constr":
-        options |= {"gtol": goal.tolerance, "xtol": goal.tolerance}
-    else:
-        options = {"maxfev": goal.evaluations, "final_tr_radius": goal.tolerance}
-    found = scipy_optimize.minimize(
-        search.objective,
-        start,
-        jac=search.gradient if by_gradients else None,
-        method=goal.method,
-        bounds=unit,
-        constraints=constraints,
-        options=options,
-    )
-    return str(found.message), bool(found.success)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from moldloft.errors import Error
 from moldloft.storage import read_text
 from moldloft.study.definition import Input, Study, StudyError
+from moldloft.study.extras import needed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -131,10 +131,7 @@ def _levels(each: Input, row: Any, count: int) -> list[float]:
 
 def _unit(method: str, size: int, count: int, seed: int) -> Floats:
     """Points of the unit cube."""
-    try:
-        from scipy.stats import qmc
-    except ImportError as error:
-        raise Error(f"this needs SciPy: pip install 'moldloft[study]' ({error})") from None
+    qmc = needed("scipy.stats.qmc", "study", f"the plan `{method}`")
     if method == "latin-hypercube":
         _limited(count)
         found: Floats = qmc.LatinHypercube(size, rng=seed).random(count)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["failures", "front", "html", "sensitivities", "sobol_indices", "spreads"]
+__all__ = ["failures", "html", "sensitivities", "sobol_indices", "spreads"]
 
 #: Points drawn of a plot: more cannot be told apart. The page states the number left out.
 MAX_DRAWN = 2_000
@@ -143,20 +143,6 @@ def spreads(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floa
     return found
 
 
-def front(first: Floats, second: Floats) -> NDArray[np.int64]:
-    """The rows of the Pareto front of two numbers that are to be small.
-
-    >>> front(np.array([1.0, 2.0, 3.0, 2.5]), np.array([3.0, 1.0, 2.0, 0.5])).tolist()
-    [0, 1, 3]
-    """
-    order = np.lexsort((second, first))
-    order = order[np.isfinite(first[order]) & np.isfinite(second[order])]
-    least = np.minimum.accumulate(second[order])
-    better = np.concatenate([[True], second[order][1:] < least[:-1]]) if order.size else order
-    found: NDArray[np.int64] = order[better.astype(bool)]
-    return found
-
-
 def failures(results: Results) -> dict[str, int]:
     """The number of failures by id, the most frequent first."""
     ids = results.id[(results.state != "done") & (results.state != "pending")].astype(str)
@@ -203,9 +189,13 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
         ]
         if facts.get("plan") in SAMPLED:
             parts += _sensitivity_parts(results, saltelli)
+        if results.objectives:
+            parts += ["<h2>Objectives by evaluation</h2>", _plots(_histories(results))]
         parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
         if len(_plotted(results)) > 1:
             parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
+            if results.front is not None:
+                parts.append(f"<p>Marked: the {results.front.sum()} points of the front.</p>")
         parts += ["<h2>Parallel coordinates</h2>", _parallel(results)]
     parts += ["<h2>Cases</h2>", _listed(results)]
     body = "\n".join(parts)
@@ -258,10 +248,29 @@ def _sensitivity_parts(results: Results, saltelli: int) -> list[str]:
 
 
 def _drawn(results: Results, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The rows that plots show; those of a front are among them."""
     rows = np.flatnonzero(chosen)
     if rows.size > MAX_DRAWN:
-        rows = rows[np.linspace(0, rows.size - 1, MAX_DRAWN).astype(int)]
+        few = rows[np.linspace(0, rows.size - 1, MAX_DRAWN).astype(int)]
+        if results.front is not None:
+            few = np.union1d(few, np.flatnonzero(results.front & chosen)[:MAX_DRAWN])
+        rows = few
     return rows
+
+
+def _histories(results: Results) -> list[str]:
+    """Each objective by the number of the evaluation, points that better all before marked."""
+    assert results.feasible is not None
+    rows = _drawn(results, results.done)
+    figures = []
+    for name, sign in results.objectives.items():
+        values = np.where(results.feasible, sign * results.outputs[name], np.inf)
+        best = np.minimum.accumulate(values)
+        better = np.concatenate([[True], best[1:] < best[:-1]]) & results.feasible
+        marked = np.flatnonzero(better[rows])
+        of = rows.astype(np.float64)
+        figures.append(_scatter(of, results.outputs[name][rows], ("evaluation", name), marked))
+    return figures
 
 
 def _span(values: Floats) -> tuple[float, float]:
@@ -308,8 +317,9 @@ def _scatters(results: Results) -> list[str]:
 def _output_plots(results: Results) -> list[str]:
     rows = _drawn(results, results.done)
     columns = [(n, c[rows]) for n, c in _plotted(results).items()]
+    marked = None if results.front is None else np.flatnonzero(results.front[rows])
     return [
-        _scatter(x, y, (a, b), front(x, y))
+        _scatter(x, y, (a, b), marked)
         for k, (a, x) in enumerate(columns)
         for b, y in columns[k + 1 :]
     ][:30]

@@ -9,10 +9,11 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
+import json
 import os
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,7 @@ import numpy as np
 
 from moldloft.errors import Error, FileError
 from moldloft.storage import Lock, Output, commit
+from moldloft.study.extras import needed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,9 +151,21 @@ class Store:
         """
         with self._at_once():
             self._db.execute("DELETE FROM cases")
+            self._db.execute("DELETE FROM study")
             self._db.executemany(
                 "INSERT INTO cases VALUES (?, ?)", ((k, key) for k, key in enumerate(keys))
             )
+            self._db.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
+
+    def note(self, facts: Mapping[str, str]) -> None:
+        """Add to the definition what the run found.
+
+        Parameters
+        ----------
+        facts
+            Texts by name; they replace those of the same name.
+        """
+        with self._at_once():
             self._db.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", facts.items())
 
     def append(self, key: str) -> None:
@@ -303,6 +317,13 @@ class Store:
                 f"SELECT state, id, message, seconds{selected} FROM cases"
                 " LEFT JOIN results USING (key) ORDER BY position"
             ).fetchall()
+            keys = [key for (key,) in self._db.execute("SELECT key FROM cases ORDER BY position")]
+        facts = self.facts()
+        objectives = json.loads(facts.get("objectives", "{}"))
+        held, best = (
+            np.isin(keys, json.loads(facts.get(name, "[]"))) if objectives else None
+            for name in ("feasible", "front")
+        )
         turned = list(zip(*rows, strict=True)) if rows else [()] * (4 + len(names))
         texts = [np.array([t or "" for t in column], dtype=object) for column in turned[:3]]
         texts[0][texts[0] == ""] = PENDING
@@ -315,6 +336,9 @@ class Store:
             texts[1],
             texts[2],
             numbers[0],
+            objectives,
+            held,
+            best if len(objectives) > 1 else None,
         )
 
     def close(self) -> None:
@@ -378,6 +402,12 @@ class Results:
     """The messages of failures."""
     seconds: Floats
     """The time that each case took."""
+    objectives: dict[str, float] = field(default_factory=dict)
+    """The objectives of an optimisation by name: 1 where small is good, -1 where great is."""
+    feasible: NDArray[np.bool_] | None = None
+    """The points of an optimisation that hold its constraints, ``(cases,)``."""
+    front: NDArray[np.bool_] | None = None
+    """The points of the Pareto front of several objectives, ``(cases,)``."""
 
     def __len__(self) -> int:
         return len(self.state)
@@ -395,9 +425,13 @@ class Results:
         return found
 
     def columns(self) -> dict[str, Any]:
-        """All columns by name: inputs, outputs, state, id, message."""
-        texts = {"state": self.state, "id": self.id, "message": self.message}
-        return {**self.inputs, **self.outputs, **texts}
+        """All columns by name: inputs, outputs, state, id, message; feasible and front if known."""
+        columns: dict[str, Any] = {**self.inputs, **self.outputs}
+        columns |= {"state": self.state, "id": self.id, "message": self.message}
+        for name, chosen in (("feasible", self.feasible), ("front", self.front)):
+            if chosen is not None and name not in columns:
+                columns[name] = chosen
+        return columns
 
     def csv(self) -> bytes:
         """The table as CSV; numbers have all their digits, missing ones are empty."""
@@ -418,19 +452,13 @@ class Results:
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame`` with a row for each case."""
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise Error(f"this needs pandas: pip install pandas ({error})") from None
-        return pd.DataFrame(self.columns())
+        return needed("pandas", "tables", "a table").DataFrame(self.columns())
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` over the dimension ``case``."""
-        try:
-            import xarray as xr
-        except ImportError as error:
-            raise Error(f"this needs xarray: pip install xarray ({error})") from None
-        return xr.Dataset({name: ("case", column) for name, column in self.columns().items()})
+        return needed("xarray", "tables", "a data set").Dataset(
+            {name: ("case", column) for name, column in self.columns().items()}
+        )
 
     def write(self, path: str | os.PathLike[str]) -> Path:
         """Write the table as ``.csv`` or ``.parquet``.
@@ -448,10 +476,8 @@ class Results:
         place = Path(path)
         if place.suffix.lower() == ".parquet":
             out = io.BytesIO()
-            try:
-                self.to_pandas().to_parquet(out, index=False)
-            except ImportError as error:
-                raise Error(f"Parquet needs pyarrow: pip install pyarrow ({error})") from None
+            needed("pyarrow", "tables", "Parquet")
+            self.to_pandas().to_parquet(out, index=False)
             data = out.getvalue()
         elif place.suffix.lower() == ".csv":
             data = self.csv()

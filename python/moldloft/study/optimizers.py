@@ -1,0 +1,224 @@
+"""The optimisers: SciPy, Ipopt, pymoo and Optuna on one search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.study.definition import BY_GRADIENTS, Goal
+from moldloft.study.extras import needed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moldloft.study.optimizing import Search
+
+    Floats = NDArray[np.float64]
+
+    Method = Callable[[Goal, Search], tuple[str, bool]]
+
+__all__ = ["METHODS"]
+
+#: Equalities count as held by population methods within this fraction of their size: a
+#: population meets no equality exactly.
+POPULATION_EQUALITY = 1e-6
+
+#: Points that Optuna is asked for at a time.
+BATCH = 4
+
+
+def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
+    by_gradients = goal.method in BY_GRADIENTS
+    constraints = []
+    # SciPy takes equalities apart from limits.
+    for equal in (True, False):
+        chosen = np.flatnonzero([b.equal == equal for b in search.bounds])
+        if chosen.size:
+            more = {"jac": _rows(search.jacobian, chosen)} if by_gradients else {}
+            low, high = search.low[chosen], search.high[chosen]
+            value = _rows(search.constraints, chosen)
+            constraints.append(scipy.NonlinearConstraint(value, low, high, **more))
+    options: dict[str, Any] = {"maxiter": goal.evaluations}
+    if goal.method == "slsqp":
+        options["ftol"] = goal.tolerance
+    elif goal.method == "trust-constr":
+        options |= {"gtol": goal.tolerance, "xtol": goal.tolerance}
+    else:
+        options = {"maxfev": goal.evaluations, "final_tr_radius": goal.tolerance}
+    found = scipy.minimize(
+        search.objective,
+        search.starts[0],
+        jac=search.gradient if by_gradients else None,
+        method=goal.method,
+        bounds=scipy.Bounds(np.zeros(len(search.points.most)), search.points.most),
+        constraints=constraints,
+        options=options,
+    )
+    return str(found.message), bool(found.success)
+
+
+def _rows(function: Callable[[Floats], Floats], chosen: Any) -> Callable[[Floats], Floats]:
+    return lambda unit: function(unit)[chosen]
+
+
+def _differential_evolution(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
+    """Whole generations at once, so that they are evaluated in parallel."""
+    constraints = []
+    if search.bounds:
+        constraints.append(
+            scipy.NonlinearConstraint(
+                lambda units: search.values(np.atleast_2d(units.T))[1].T, search.low, search.high
+            )
+        )
+    found = scipy.differential_evolution(
+        lambda units: search.values(np.atleast_2d(units.T))[0][:, 0],
+        scipy.Bounds(np.zeros(len(search.points.most)), search.points.most),
+        constraints=constraints,
+        rng=goal.seed,
+        init=_population(search, max(search.population, 5), goal.seed),
+        polish=False,
+        tol=goal.tolerance,
+        maxiter=goal.evaluations,
+        vectorized=True,
+        updating="deferred",
+    )
+    return str(found.message), bool(found.success)
+
+
+def _population(search: Search, count: int, seed: int) -> Floats:
+    """The first generation: the starts, and a Latin hypercube."""
+    qmc = needed("scipy.stats.qmc", "study", "a population")
+    size = len(search.points.most)
+    filled = qmc.LatinHypercube(size, rng=seed).random(count) * search.points.most
+    starts = np.array(search.starts[:count])
+    found: Floats = np.concatenate([starts, filled[len(starts) :]])
+    return found
+
+
+def _ipopt(goal: Goal, search: Search, cyipopt: Any) -> tuple[str, bool]:
+    size, rows = len(search.points.most), len(search.bounds)
+
+    class Problem:
+        """Callbacks by the names that cyipopt looks for."""
+
+        def objective(self, unit: Floats) -> float:
+            return search.objective(unit)
+
+        def gradient(self, unit: Floats) -> Floats:
+            return search.gradient(unit)
+
+        def constraints(self, unit: Floats) -> Floats:
+            return search.constraints(unit)
+
+        def jacobian(self, unit: Floats) -> Floats:
+            return search.jacobian(unit).ravel()
+
+    problem = cyipopt.Problem(
+        n=size,
+        m=rows,
+        problem_obj=Problem(),
+        lb=np.zeros(size),
+        ub=search.points.most,
+        cl=search.low,
+        cu=search.high,
+    )
+    options = {
+        "hessian_approximation": "limited-memory",
+        "tol": goal.tolerance,
+        "max_iter": goal.evaluations,
+        "print_level": 0,
+        "sb": "yes",
+        # Limits are exact: outside them the model may have no numbers.
+        "bound_relax_factor": 0.0,
+    }
+    for name, value in options.items():
+        problem.add_option(name, value)
+    _, info = problem.solve(search.starts[0])
+    said = info["status_msg"]
+    message = said.decode() if isinstance(said, bytes) else str(said)
+    # 0: solved, 1: solved to an acceptable level.
+    return message, info["status"] in (0, 1)
+
+
+def _nsga2(goal: Goal, search: Search, module: Any) -> tuple[str, bool]:
+    core = needed("pymoo.core.problem", "optimizers", "nsga2")
+    evaluator = needed("pymoo.core.evaluator", "optimizers", "nsga2").Evaluator
+    static = needed("pymoo.problems.static", "optimizers", "nsga2").StaticProblem
+    problem = core.Problem(
+        n_var=len(search.points.most),
+        n_obj=len(search.names),
+        n_ieq_constr=len(search.bounds),
+        xl=np.zeros(len(search.points.most)),
+        xu=search.points.most,
+    )
+    count = search.population
+    algorithm = module.NSGA2(pop_size=count, sampling=_population(search, count, goal.seed))
+    limit = max(goal.evaluations // count, 1)
+    algorithm.setup(problem, termination=("n_gen", limit), seed=goal.seed, verbose=False)
+    while algorithm.has_next():
+        infills = algorithm.ask()
+        objectives, constraints = search.values(infills.get("X"))
+        over = search.violations(constraints)
+        over = np.where(over <= POPULATION_EQUALITY, 0.0, over)
+        evaluator().eval(static(problem, F=objectives, G=over), infills)
+        algorithm.tell(infills=infills)
+    return f"{limit} generations of {count}", True
+
+
+def _tpe(goal: Goal, search: Search, optuna: Any) -> tuple[str, bool]:
+    names = search.points.cases.names
+    uniform = optuna.distributions.FloatDistribution
+    space = {n: uniform(0.0, m) for n, m in zip(names, search.points.most, strict=True)}
+    verbosity = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    try:
+        asked = optuna.create_study(
+            directions=["minimize"] * len(search.names),
+            sampler=optuna.samplers.TPESampler(seed=goal.seed),
+        )
+        for unit in search.starts:
+            asked.enqueue_trial(dict(zip(names, unit.tolist(), strict=True)))
+        for first in range(0, goal.evaluations, BATCH):
+            count = min(BATCH, goal.evaluations - first)
+            trials = [asked.ask(space) for _ in range(count)]
+            units = np.array([[trial.params[n] for n in names] for trial in trials])
+            objectives, constraints = search.values(units)
+            over = search.violations(constraints)
+            for trial, values, above in zip(trials, objectives, over, strict=True):
+                # Optuna counts a value above 0 as a violation.
+                for bound, excess in zip(search.bounds, above, strict=True):
+                    held = excess <= POPULATION_EQUALITY
+                    trial.set_constraint(bound.name, 0.0 if held else float(excess))
+                asked.tell(trial, values.tolist())
+    finally:
+        optuna.logging.set_verbosity(verbosity)
+    return f"{goal.evaluations} trials", True
+
+
+def _bound(method: Callable[..., tuple[str, bool]], module: str, extra: str, name: str) -> Method:
+    """A method with its package, which is looked for before anything is evaluated."""
+    return partial(_called, method, needed(module, extra, f"the optimiser `{name}`"))
+
+
+def _called(
+    method: Callable[..., tuple[str, bool]], module: Any, goal: Goal, search: Search
+) -> tuple[str, bool]:
+    return method(goal, search, module)
+
+
+METHODS: dict[str, Callable[[], Method]] = {
+    name: partial(_bound, method, module, extra, name)
+    for name, method, module, extra in (
+        ("slsqp", _scipy, "scipy.optimize", "study"),
+        ("trust-constr", _scipy, "scipy.optimize", "study"),
+        ("cobyqa", _scipy, "scipy.optimize", "study"),
+        ("differential-evolution", _differential_evolution, "scipy.optimize", "study"),
+        ("ipopt", _ipopt, "cyipopt", "ipopt"),
+        ("nsga2", _nsga2, "pymoo.algorithms.moo.nsga2", "optimizers"),
+        ("tpe", _tpe, "optuna", "optimizers"),
+    )
+}
+"""The optimisers by name: each, called, finds its package and returns the method."""
