@@ -143,6 +143,7 @@ impl<T: Real> Build<T> for Jumps<T> {
                float k = curvature(c, 0.5);"
 )]
 pub struct Curvature<T: Real> {
+    /// The curve.
     curve: CurveRef<T>,
     /// A parameter, from 0 to 1, or an array of them.
     t: Value<T>,

@@ -19,6 +19,7 @@ use moldloft_syntax::number::plain;
 pub struct Kink {
     /// The part of the scalar.
     pub part: usize,
+    /// The place.
     pub at: Vec3,
     /// True if the volume has no derivative either: faces separate, not an edge from a face.
     pub volume: bool,

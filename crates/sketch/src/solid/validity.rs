@@ -25,6 +25,7 @@ pub enum SolidDefect {
         face: Option<FaceId>,
         /// The vertices of the two sides that cross.
         sides: [[PointId; 2]; 2],
+        /// The crossing.
         at: Vec3,
     },
     /// A hole of a face of a section is not inside of the face's border.
