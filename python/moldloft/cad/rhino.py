@@ -18,9 +18,16 @@ if TYPE_CHECKING:
     from moldloft.models import Model
     from moldloft.nurbs import Nurbs
 
-__all__ = ["encode"]
+__all__ = ["UNIT_SYSTEMS", "encode", "file_bytes"]
 
-_UNITS = {"mm": "Millimeters", "cm": "Centimeters", "m": "Meters", "ft": "Feet", "in": "Inches"}
+UNIT_SYSTEMS = {
+    "mm": "Millimeters",
+    "cm": "Centimeters",
+    "m": "Meters",
+    "ft": "Feet",
+    "in": "Inches",
+}
+"""Names of units of length in Rhino."""
 
 
 def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
@@ -41,7 +48,7 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
         raise FormatError("cannot write 3dm: the model shows no surface and no curve")
     file = rhino.File3dm()
     file.Settings.ModelUnitSystem = getattr(
-        rhino.UnitSystem, _UNITS[_core.length_unit(model._document)[0]]
+        rhino.UnitSystem, UNIT_SYSTEMS[_core.length_unit(model._document)[0]]
     )
     file.Settings.ModelAbsoluteTolerance = max(1.5 * shape.gap, 1e-9)
     layers: dict[str, int] = {}
@@ -54,11 +61,18 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
         for name, colour, at in part.points:
             attributes = _attributes(rhino, file, layers, name, colour, ())
             file.Objects.AddPoint(rhino.Point3d(*at), attributes)
-    data: bytes = _bytes(file)
+    data: bytes = file_bytes(file)
     return data
 
 
-def _bytes(file: Any) -> bytes:
+def file_bytes(file: Any) -> bytes:
+    """The bytes of a file of rhino3dm.
+
+    Parameters
+    ----------
+    file
+        A `rhino3dm.File3dm`.
+    """
     from pathlib import Path
     from tempfile import TemporaryDirectory
 

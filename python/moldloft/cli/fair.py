@@ -802,14 +802,14 @@ class _Points(Source):
         import numpy as np
 
         from moldloft.fairing.files import points_text
-        from moldloft.fairing.spline_files import SPLINES, encoded
+        from moldloft.fairing.spline_files import MILLIMETRES, SPLINES, encoded
 
         known_ending(path, self.file.path)
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
-            if self.unit is None and path.suffix.lower() in (".igs", ".iges"):
+            if self.unit is None and path.suffix.lower() in MILLIMETRES:
                 self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
-            return commit_file(path, encoded(curves, path, self.unit))
+            return commit_file(path, encoded(curves, path, self.unit, getattr(result, "names", ())))
         if hasattr(result, "lists"):
             like: PointFile = self.file
             rows, tol = self._rows(result)

@@ -137,6 +137,12 @@ def fair_data(asked: Data, started: float) -> Fairing:
     arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
     rows = faired(reported["at"])
+    axis = np.asarray(way)
+    if word == "along":
+        # What stays does so to the bit.
+        rows = data + np.outer((rows - data) @ axis, axis) / (axis @ axis)
+    elif word == "across" and np.count_nonzero(axis) == 1:
+        rows[:, axis != 0] = data[:, axis != 0]
     # What the curve passes through to rounding has not moved by a bit.
     still = reported["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
     rows[still] = data[still]

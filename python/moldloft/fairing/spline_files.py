@@ -1,4 +1,4 @@
-"""Spline curves as files of others: IGES (entity 126), DXF (SPLINE) and JSON."""
+"""Spline curves as files of others: IGES (entity 126), STEP, DXF (SPLINE), 3DM and JSON."""
 
 from __future__ import annotations
 
@@ -16,24 +16,30 @@ from moldloft.errors import FairingError
 if TYPE_CHECKING:
     from moldloft.fairing.spline import Spline
 
-__all__ = ["POINTS", "SPLINES", "encoded"]
+__all__ = ["MILLIMETRES", "POINTS", "SPLINES", "encoded"]
 
 POINTS = (".csv", ".tsv", ".txt", ".dat", ".xyz", ".pts")
 """Endings of files of points."""
 
-SPLINES = (".igs", ".iges", ".dxf", ".json")
+SPLINES = (".igs", ".iges", ".stp", ".step", ".dxf", ".3dm", ".json")
 """Endings of files that hold the splines themselves."""
+
+MILLIMETRES = (".igs", ".iges", ".stp", ".step", ".3dm")
+"""Endings of files that say millimetres where no unit is known."""
 
 
 _IGES_UNITS = {"in": (1, "INCH"), "mm": (2, "MM"), "ft": (4, "FT"), "m": (6, "M"), "cm": (10, "CM")}
 """Flags and names of units in IGES."""
 
 
-def encoded(curves: Sequence[Spline], path: Path, unit: str | None = None) -> bytes:
+def encoded(
+    curves: Sequence[Spline], path: Path, unit: str | None = None, names: Sequence[str] = ()
+) -> bytes:
     """The curves in the format that the ending of ``path`` names.
 
-    ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES says millimetres, as it
-    has no word for that; DXF and JSON say nothing.
+    ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES, STEP and 3DM say
+    millimetres, as they have no word for that; DXF and JSON say nothing. ``names`` are those of the
+    curves, which STEP and 3DM have. 3DM needs rhino3dm.
 
     Raises
     ------
@@ -43,6 +49,10 @@ def encoded(curves: Sequence[Spline], path: Path, unit: str | None = None) -> by
     ending = path.suffix.lower()
     if ending in (".igs", ".iges"):
         return _iges(curves, path.name, unit)
+    if ending in (".stp", ".step"):
+        return _step(curves, path.name, unit, names)
+    if ending == ".3dm":
+        return _rhino(curves, unit, names)
     if ending == ".dxf":
         return _dxf(curves, unit)
     if ending == ".json":
@@ -144,6 +154,116 @@ def _is_flat(points: np.ndarray) -> tuple[float, float, float] | None:
         return None
     n = axes[2] if axes[2][int(np.argmax(np.abs(axes[2])))] > 0 else -axes[2]
     return float(n[0]), float(n[1]), float(n[2])
+
+
+_STEP_UNITS = {
+    "m": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))",
+    "cm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))",
+    "mm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))",
+}
+_IN_METRES = {"in": ("INCH", 0.0254), "ft": ("FOOT", 0.3048)}
+
+
+def _step(curves: Sequence[Spline], name: str, unit: str | None, names: Sequence[str]) -> bytes:
+    """STEP AP214, the curves as a set of a wireframe."""
+    lines: list[str] = []
+
+    def add(text: str) -> str:
+        lines.append(f"#{len(lines) + 1}={text};")
+        return f"#{len(lines)}"
+
+    def text_of(text: str) -> str:
+        return text.encode("ascii", "replace").decode().replace("'", "''")
+
+    title = text_of(name)
+    metre = add(_STEP_UNITS["m"])
+    length = metre
+    if unit in _IN_METRES:
+        word, metres = _IN_METRES[unit]
+        size = add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)")
+        ratio = add(f"LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({metres}),{metre})")
+        length = add(f"(CONVERSION_BASED_UNIT('{word}',{ratio})LENGTH_UNIT()NAMED_UNIT({size}))")
+    elif unit != "m":
+        length = add(_STEP_UNITS[unit or "mm"])
+    angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")
+    solid = add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")
+    accuracy = add(f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-9),{length},'accuracy','')")
+    context = add(
+        "(GEOMETRIC_REPRESENTATION_CONTEXT(3)"
+        f"GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT(({accuracy}))"
+        f"GLOBAL_UNIT_ASSIGNED_CONTEXT(({length},{angle},{solid}))REPRESENTATION_CONTEXT('',''))"
+    )
+    made = []
+    for k, curve in enumerate(curves):
+        knots, points, weights = curve.open_form()
+        called = text_of(names[k]) if names else f"curve {k + 1}"
+        places = [
+            add(f"CARTESIAN_POINT('',({','.join(map(_number, p))}))") for p in points.tolist()
+        ]
+        each, counts = np.unique(knots, return_counts=True)
+        poles = f"({','.join(places)})"
+        whole = f"({','.join(map(str, counts))}),({','.join(map(_number, each))}),.UNSPECIFIED."
+        closed = ".T." if curve.closed else ".F."
+        form = f"{curve.degree},{poles},.UNSPECIFIED.,{closed},.F."
+        if weights is None:
+            made.append(add(f"B_SPLINE_CURVE_WITH_KNOTS('{called}',{form},{whole})"))
+            continue
+        made.append(
+            add(
+                f"(BOUNDED_CURVE()B_SPLINE_CURVE({form})B_SPLINE_CURVE_WITH_KNOTS({whole})"
+                "CURVE()GEOMETRIC_REPRESENTATION_ITEM()"
+                f"RATIONAL_B_SPLINE_CURVE(({','.join(map(_number, weights))}))"
+                f"REPRESENTATION_ITEM('{called}'))"
+            )
+        )
+    every = add(f"GEOMETRIC_CURVE_SET('',({','.join(made)}))")
+    shape = add(f"GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION('',({every}),{context})")
+    application = add("APPLICATION_CONTEXT('automotive design')")
+    add(
+        "APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,"
+        f"{application})"
+    )
+    product_context = add(f"PRODUCT_CONTEXT('',{application},'mechanical')")
+    product = add(f"PRODUCT('{title}','{title}','',({product_context}))")
+    formation = add(f"PRODUCT_DEFINITION_FORMATION('','',{product})")
+    design = add(f"PRODUCT_DEFINITION_CONTEXT('part definition',{application},'design')")
+    definition = add(f"PRODUCT_DEFINITION('','',{formation},{design})")
+    of_shape = add(f"PRODUCT_DEFINITION_SHAPE('','',{definition})")
+    add(f"SHAPE_DEFINITION_REPRESENTATION({of_shape},{shape})")
+    head = [
+        "ISO-10303-21;",
+        "HEADER;",
+        "FILE_DESCRIPTION(('Spline curves'),'2;1');",
+        f"FILE_NAME('{title}','2000-01-01T00:00:00',(''),(''),'moldloft','moldloft','');",
+        "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));",
+        "ENDSEC;",
+        "DATA;",
+    ]
+    return "\n".join([*head, *lines, "ENDSEC;", "END-ISO-10303-21;", ""]).encode("ascii")
+
+
+def _rhino(curves: Sequence[Spline], unit: str | None, names: Sequence[str]) -> bytes:
+    """3DM, a NURBS curve each."""
+    from moldloft.cad import needed
+    from moldloft.cad.rhino import UNIT_SYSTEMS, file_bytes
+
+    rhino = needed("rhino3dm", "rhino3dm", "writing 3DM")
+    file = rhino.File3dm()
+    file.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, UNIT_SYSTEMS[unit or "mm"])
+    for k, curve in enumerate(curves):
+        knots, points, weights = curve.open_form()
+        count, order = len(points), curve.degree + 1
+        made = rhino.NurbsCurve(3, weights is not None, order, count)
+        for i, (x, y, z) in enumerate(points.tolist()):
+            w = 1.0 if weights is None else float(weights[i])
+            made.Points[i] = rhino.Point4d(x * w, y * w, z * w, w)
+        # rhino3dm keeps knots without the first and the last.
+        for i, knot in enumerate(knots[1:-1]):
+            made.Knots[i] = float(knot)
+        attributes = rhino.ObjectAttributes()
+        attributes.Name = names[k] if names else f"curve {k + 1}"
+        file.Objects.AddCurve(made, attributes)
+    return file_bytes(file)
 
 
 def _dxf(curves: Sequence[Spline], unit: str | None) -> bytes:

@@ -41,6 +41,9 @@ _KNUCKLE = 0.35
 #: Errors of the prediction within which a reading is one that was meant.
 _WITHIN = 2.5
 
+#: Two neighbours are swapped where this share of the measure beside them is gone so.
+_SWAPPED = 0.9
+
 #: Suspects whose deviation is below so many errors are not listed.
 _WORTH = 1.5
 
@@ -54,7 +57,6 @@ _COSTS = {
     "two digits swapped": 1.0,
     "inches and eighths swapped": 1.0,
     "the sign": 1.0,
-    "swapped with its neighbour": 0.5,
     "the decimal point": 1.5,
 }
 
@@ -193,11 +195,13 @@ def suspects(
     for index, axis, off, error in search.ranked(most):
         value = float(data[index, axis])
         text = texts.get((index, axis), f"{value:.12g}")
-        beside = [
-            (float(data[i, axis]), texts.get((i, axis), f"{data[i, axis]:.12g}"), i)
-            for i in search.neighbours(index, axis)
-        ]
-        meant, slip = _meant(text, value, value - off, error, beside, search, axis)
+        meant, slip = _meant(text, value, value - off, error)
+        gain = search.gain(index, {(index, axis): value - off if meant is None else meant})
+        for other in search.neighbours(index, axis):
+            there = float(data[other, axis])
+            both = search.gain(index, {(index, axis): there, (other, axis): value})
+            if both > max(_SWAPPED, gain) and length(text) is not None:
+                meant, slip, gain = there, "swapped with its neighbour", both
         shown = "" if meant is None else _shown(meant, text)
         own = [k for k, line in enumerate(lines) if index in line]
         out.append(
@@ -213,7 +217,7 @@ def suspects(
                 reading=text,
                 meant_reading=shown,
                 slip=slip,
-                gain=search.gain(index, axis, value - off if meant is None else meant),
+                gain=gain,
                 lines=tuple(names[k] if names else f"curve {k + 1}" for k in own),
             )
         )
@@ -253,7 +257,7 @@ class _Search:
             combined = [c for c in combined if abs(c[1]) >= _WORTH * c[2]]
             combined.sort(key=lambda c: (-abs(c[1]) / c[2], c[0]))
             # Where the measure rises without it the point is not what spoils its lines.
-            gains = (c for c in combined if self.gain(*c[0], self.data[c[0]] - c[1]) > 0)
+            gains = (c for c in combined if self.gain(c[0][0], {c[0]: self.data[c[0]] - c[1]}) > 0)
             best = next(gains, None)
             if best is None:
                 break
@@ -274,21 +278,20 @@ class _Search:
                 out += [line[j] for j in (k - 1, k + 1) if 0 <= j < len(line)]
         return out
 
-    def expected(self, index: int, axis: int) -> float | None:
-        """The prediction for a point that is not put aside."""
-        own = [found[index, axis] for found in self.found.values() if (index, axis) in found]
-        return float(self.data[index, axis]) - _combined(own)[0] if own else None
-
-    def gain(self, index: int, axis: int, value: float) -> float:
-        """Share of the squared third differences beside a point that is gone with another value."""
+    def gain(self, index: int, values: dict[tuple[int, int], float]) -> float:
+        """Share of the squared third differences beside a point that is gone with other values."""
         before = after = 0.0
         moved = self.data.copy()
-        moved[index, axis] = value
+        axes = set()
+        for cell, value in values.items():
+            moved[cell] = value
+            axes.add(cell[1])
         for line in self.lines:
             if index in line and len(line) > _SIDE:
                 at = line.index(index)
-                before += _third(self.data[line], axis, at)
-                after += _third(moved[line], axis, at)
+                for axis in axes:
+                    before += _third(self.data[line], axis, at)
+                    after += _third(moved[line], axis, at)
         return 1 - after / before if before > 0 else 0.0
 
     def _line(self, k: int) -> dict[tuple[int, int], _Prediction]:
@@ -451,24 +454,10 @@ def _slips(text: str, value: float) -> list[tuple[float, str]]:
     return out
 
 
-def _meant(
-    text: str,
-    value: float,
-    expected: float,
-    error: float,
-    beside: list[tuple[float, str, int]],
-    search: _Search,
-    axis: int,
-) -> tuple[float | None, str]:
+def _meant(text: str, value: float, expected: float, error: float) -> tuple[float | None, str]:
     """The likeliest reading that one slip turns into this one, and the slip."""
-    options = _slips(text, value)
-    for other, _, index in beside:
-        mutual = search.expected(index, axis)
-        both = mutual is not None and abs(mutual - value) < abs(mutual - other)
-        if both and length(text) is not None:
-            options.append((other, "swapped with its neighbour"))
     best: tuple[float, float | None, str] = (_WITHIN**2, None, "")
-    for reading, slip in options:
+    for reading, slip in _slips(text, value):
         if reading == value:
             continue
         cost = ((reading - expected) / error) ** 2 + _COSTS[slip]
