@@ -141,6 +141,26 @@ def test_suspects_are_accepted_one_by_one() -> None:
     assert desk.result.curves[0].inflections[1] == bends
 
 
+def test_swapped_neighbours_are_swapped_and_freed() -> None:
+    points = sine(31, 0.002)
+    points[[12, 13]] = points[[13, 12]]
+    desk = Desk(points, 0.005)
+    [found] = [s for s in desk.result.suspects if s.kind == "order"]
+    assert found.point in (12, 13)
+    desk.run(f"accept {found.point + 1}")
+    assert not [s for s in desk.result.suspects if s.kind == "order"]
+    right = sine(31, 0.002)
+    assert (np.array(desk.state.points)[:, :2] == right).all()
+    desk.run(f"free {found.point + 1}")
+    assert (np.array(desk.state.points)[:, :2] == points).all()
+
+
+def test_a_name_is_no_statement() -> None:
+    desk = Desk(DeskSource.of(sine(9), name="a\nAbsPoint evil(0, 0, 0);\r\n"), 0.02)
+    assert "AbsPoint" not in desk.program("b").splitlines()[1]
+    assert all(s.startswith(("#", "FairCurve", "  ")) for s in desk.program("b").splitlines())
+
+
 def table(tmp_path: Path) -> Desk:
     (tmp_path / "hull.csv").write_text(hull())
     return Desk.open(tmp_path / "hull.csv", 0.006)
@@ -190,6 +210,13 @@ def test_a_buttock_meets_stations_and_waterlines(tmp_path: Path) -> None:
     # Of stations and of waterlines, in order from one end to the other.
     assert len(cut.data) > 8 and (np.diff(cut.data[:, 0]) > 0).all()
     assert np.abs(cut.points[:, 1] - 1.5).max() < 1e-9
+    # A diagonal, down from the centreline.
+    desk.run("cut 0,1,1:3")
+    cut = desk.cut
+    assert cut is not None and np.abs(cut.data[:, 1] + cut.data[:, 2] - 3).max() < 1e-8
+    assert np.abs(cut.points[:, 1] + cut.points[:, 2] - 3).max() < 1e-8
+    desk.run("drop")
+    assert desk.cut is None
 
 
 def test_a_surface(tmp_path: Path) -> None:

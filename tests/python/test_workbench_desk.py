@@ -108,8 +108,8 @@ def test_a_table_is_faired_by_hand_and_applied(desk: Callable[..., DeskHand]) ->
         ".band",
         ".teeth",
         ".comb.after",
-        ".strip.curvature",
-        ".strip.jumps .bars",
+        ".desk-strip.curvature",
+        ".desk-strip.jumps .bars",
         ".limit",
     ):
         assert d.page.locator(f".desk {part}").count() >= 1, part
@@ -174,6 +174,23 @@ def test_by_keys_alone(desk: Callable[..., DeskHand]) -> None:
     d.settle()
     assert d.look()["log"][-2:] == ["clear line 1", "range 5-15"]
     agrees(d)
+    assert not d.faults
+
+
+def test_a_page_that_is_loaded_again_goes_on(desk: Callable[..., DeskHand]) -> None:
+    d = desk()
+    d.table("line.csv", csv(rail()[:20]))
+    d.key("ArrowRight", "f", "g")
+    before = d.look()
+    d.page.reload()
+    d.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
+    d.page.get_by_role("tab", name="Fairing desk").click()
+    d.page.get_by_role("button", name="Go on with line.csv, 2 steps").click()
+    d.until(lambda: d.look()["facts"])
+    after = d.settle()
+    assert after["log"] == before["log"] and after["facts"]["list"] == before["facts"]["list"]
+    d.key("Control+z", "Control+z")
+    assert d.look()["log"] == []
     assert not d.faults
 
 

@@ -3,7 +3,7 @@
 import { redo, undo } from '@codemirror/commands'
 import './desk.css'
 import { DeskPainter, Sheet, strips, views, type Chosen, type DeskFacts } from './desk_paint'
-import { h, s, shown } from './dom'
+import { h, s, shown, store, stored } from './dom'
 import type { Editor } from './editor'
 import type { Facts } from './frame'
 import { Newest, Refused, type Link } from './link'
@@ -61,9 +61,15 @@ export class Desk {
   private queue: Promise<unknown> = Promise.resolve()
   private timer = 0
   private stopping = false
-  private readonly sliding = new Newest<{ command: string; final: boolean }>(async ({ command, final }) => {
+  /** Counts decided states: what was asked of an older one is not drawn over a newer. */
+  private decided = 0
+  /** Whether what is drawn is not decided. */
+  private previewed = false
+  private readonly sliding = new Newest<{ command: string; final: boolean; decided: number }>(async ({ command, final, decided }) => {
+    if (decided !== this.decided) return
     try {
       const found = await this.ask('desk_slide', { command, final })
+      if (decided !== this.decided) return
       this.draw({ ...this.facts!, ...found } as DeskFacts)
     } catch (error) {
       if (!(error instanceof Refused && error.message === 'superseded')) this.say((error as Error).message)
@@ -178,12 +184,22 @@ export class Desk {
     })
   }
 
+  /** Go on with a session that the browser has kept. */
+  private goOn(kept: Facts): Promise<unknown> {
+    return this.later(async () => {
+      this.session = { source: kept.source, tolerance: kept.tolerance }
+      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [kept.log, kept.log.map(() => 'log'), [], '', 0]
+      this.start.hidden = true
+      this.take((await this.ask('desk_show')) as DeskFacts, true)
+      this.svg.focus()
+    })
+  }
+
   /** A command, as one step of the desk's history. */
   run(command: string): Promise<boolean> {
     return this.later(async () => {
       if (!this.session) throw new Error('open a table or an object first')
-      await this.lineByLine(command)
-      const found = await this.ask('desk_run', { command })
+      const found = await this.carriedOut(command)
       this.log = found.log
       this.done.push('log')
       this.undone = []
@@ -191,6 +207,17 @@ export class Desk {
       this.take(found as DeskFacts)
       return true
     }).then((x) => x === true)
+  }
+
+  private async carriedOut(command: string): Promise<Facts> {
+    try {
+      await this.lineByLine(command)
+      return await this.ask('desk_run', { command })
+    } catch (error) {
+      // What a slider or a drag has drawn is not the case.
+      if (this.previewed) this.take((await this.ask('desk_show')) as DeskFacts)
+      throw error
+    }
   }
 
   /** Many lines that are faired one by one: how far they are, and a way to stop. */
@@ -279,6 +306,10 @@ export class Desk {
 
   private take(facts: DeskFacts, fit = false): void {
     this.facts = facts
+    this.decided++
+    this.previewed = false
+    // A page that is loaded again goes on from here; a table too large for the browser's store is opened anew.
+    if (this.session) store(`desk.${model.name}`, { source: this.session.source, tolerance: this.session.tolerance, log: this.log })
     this.shownLine = facts.line
     if (!facts.detail.points.includes(this.chosen.point)) this.chosen = { point: facts.detail.points[0], anchor: -1 }
     if (!facts.detail.points.includes(this.chosen.anchor)) this.chosen.anchor = -1
@@ -294,6 +325,7 @@ export class Desk {
   /** A picture of what is not decided: the lists of marks stay. */
   private draw(facts: DeskFacts): void {
     this.facts = facts
+    this.previewed = true
     this.listLines()
     this.badge()
     this.paint()
@@ -352,7 +384,7 @@ export class Desk {
 
   private listSuspects(): void {
     const f = this.facts!
-    this.suspects.replaceChildren(...(f.suspects.length ? f.suspects.map((x) => h('div', { 'data-point': x.point }, x.text, x.reading ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
+    this.suspects.replaceChildren(...(f.suspects.length ? f.suspects.map((x) => h('div', { 'data-point': x.point }, x.text, x.reading && f.kind !== 'curves' ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
       h('button', { 'aria-pressed': x.accepted, onclick: () => void this.run(`accept ${x.point + 1}`) }, x.accepted ? 'Accepted' : 'Accept'),
       h('button', { onclick: () => this.showPoint(x.line, x.point) }, 'Show'))) : [h('p', { class: 'quiet' }, 'none')]))
   }
@@ -389,7 +421,9 @@ export class Desk {
     const choose = h('input', { type: 'file', accept: '.csv,.tsv,.txt,.dat,.xyz,.pts', 'aria-label': 'a table of offsets' })
     choose.addEventListener('change', () => choose.files?.[0] && void this.openFile(choose.files[0]))
     const picks = model.objects.filter((o) => ['curve', 'snake', 'surface'].includes(o.class) && o.state === 'ok').slice(0, 60)
-    this.start.replaceChildren(h('h3', {}, 'What is to be faired?'), h('p', { class: 'quiet' }, 'Drop a table of offsets or points here, choose a file, or pick a curve or a surface of the model.'), choose,
+    const kept = stored<Facts | null>(`desk.${model.name}`, null)
+    const again = kept ? h('button', { class: 'primary', onclick: () => void this.goOn(kept) }, `Go on with ${kept.source.name}, ${kept.log.length} ${kept.log.length === 1 ? 'step' : 'steps'}`) : ''
+    this.start.replaceChildren(again, h('h3', {}, 'What is to be faired?'), h('p', { class: 'quiet' }, 'Drop a table of offsets or points here, choose a file, or pick a curve or a surface of the model.'), choose,
       h('div', { class: 'picks' }, ...picks.map((o) => h('button', { onclick: () => void this.open({ object: o.name }) }, o.name))))
   }
 
@@ -463,11 +497,11 @@ export class Desk {
     if (!this.session) return
     const value = this.tolerance()
     this.value.value = String(value)
-    this.sliding.push({ command: this.command(value), final: false })
+    this.sliding.push({ command: this.command(value), final: false, decided: this.decided })
     clearTimeout(this.timer)
     this.timer = window.setTimeout(() => {
       this.timer = 0
-      this.sliding.push({ command: this.command(value), final: true })
+      this.sliding.push({ command: this.command(value), final: true, decided: this.decided })
     }, REST)
   }
 
@@ -507,7 +541,7 @@ export class Desk {
       return this.paint()
     }
     p.to = this.placed(p.point, this.sheet.from(at))
-    this.sliding.push({ command: `move ${p.point + 1} ${p.to.join(' ')}`, final: false })
+    this.sliding.push({ command: `move ${p.point + 1} ${p.to.join(' ')}`, final: false, decided: this.decided })
   }
 
   /** The place in space of a point that is seen there, rounded to what a pixel is worth. */

@@ -197,7 +197,7 @@ const HEIGHT = 84
 /** Strips below the line: curvature along the length, jumps at the knots, deviation against the limit. */
 export function strips(f: DeskFacts, width: number): SVGElement[] {
   const { detail: d } = f
-  const plot = (name: string, label: string, ...parts: SVGElement[]) => s('svg', { class: `strip ${name}`, viewBox: `0 0 ${width} ${HEIGHT}`, width, height: HEIGHT, role: 'img', 'aria-label': label }, ...parts, s('text', { class: 'title', x: 8, y: 13 }, label))
+  const plot = (name: string, label: string, ...parts: SVGElement[]) => s('svg', { class: `desk-strip ${name}`, viewBox: `0 0 ${width} ${HEIGHT}`, width, height: HEIGHT, role: 'img', 'aria-label': label }, ...parts, s('text', { class: 'title', x: 8, y: 13 }, label))
   const x = (share: number) => 8 + share * (width - 16)
   const cut = usual(d.after) * 1.15 || 1
   const y = (k: number) => HEIGHT / 2 - (Math.max(-1, Math.min(1, k / cut)) * (HEIGHT - 30)) / 2 + 6

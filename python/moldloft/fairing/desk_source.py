@@ -15,6 +15,7 @@ from moldloft.fairing.files import PointFile, read_points
 from moldloft.fairing.objects import sampled
 from moldloft.fairing.spline import Spline
 from moldloft.fairing.surface import SplineSurface
+from moldloft.storage import read_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -189,7 +190,7 @@ class DeskSource:
         data
             The bytes of the file.
         """
-        data = Path(path).read_bytes() if data is None else data
+        data = read_bytes(Path(path)) if data is None else data
         try:
             text = data.decode("utf-8")
         except UnicodeDecodeError:

@@ -337,8 +337,13 @@ def _marked(source: DeskSource, state: DeskState, word: str, words: _Words) -> D
         goal = place([*to, points[point][2]] if len(to) == 2 else to)
         points[point] = along(source.motion, points[point], goal)
         return replace(state, points=tuple(points), fixed=state.fixed | {point})
-    if point < len(source.points):
-        points[point] = source.points[point]
+    if point < len(source.points) and points[point] != source.points[point]:
+        # Of two that were swapped both return.
+        read, now = source.points[point], points[point]
+        for k, given in enumerate(source.points):
+            if given == now and points[k] == read:
+                points[k] = given
+        points[point] = read
 
     def without(own: Mapping[int, float]) -> dict[int, float]:
         return {k: v for k, v in own.items() if k != point}

@@ -35,7 +35,9 @@ def program(source: DeskSource, result: DeskResult, name: str) -> str:
         body = _surface(source, state, name)
     else:
         body = _curves(source, state, result, name)
-    return f"# {source.name}, faired\n" + "".join(f"{_wrapped(s)}\n" for s in body)
+    # A file's name is no statement, whatever is in it.
+    title = " ".join("".join(c if c.isprintable() else " " for c in source.name).split())
+    return f"# {title}, faired\n" + "".join(f"{_wrapped(s)}\n" for s in body)
 
 
 def _number(x: float) -> str:
