@@ -41,6 +41,9 @@ PLOTS = {
     "fairing-lines": ("lines.csv --tol 0.006", 1000),
 }
 
+#: Variables of the deformed hull.
+DEFORMED = {"beam_fore": 0.3, "beam_mid": 0.2, "keel_fore": -0.2, "keel_aft": 0.15}
+
 
 def plotted(arguments: str, width: int) -> bytes:
     """The plot of a fairing, in 256 colours and no wider than a page shows it."""
@@ -61,13 +64,32 @@ def plotted(arguments: str, width: int) -> bytes:
     return out.getvalue()
 
 
+def deformed() -> bytes:
+    """A hull's mesh as drawn and as deformed, beside each other, in 256 colours."""
+    sys.path.insert(0, str(EXAMPLES / "studies"))
+    from deformed_hull import deformation
+
+    with tempfile.TemporaryDirectory() as folder:
+        model = deformation(Path(folder)).model()
+    both = Image.new("RGB", (1200, 420))
+    for k, values in enumerate(({}, DEFORMED)):
+        model.set(values)
+        with Image.open(io.BytesIO(model.picture(600, 420))) as drawn:
+            both.paste(drawn.convert("RGB"), (600 * k, 0))
+    out = io.BytesIO()
+    both.quantize(256, dither=Image.Dither.NONE).save(out, "PNG", optimize=True)
+    return out.getvalue()
+
+
 def main() -> None:
     """Draws the pictures that are named, or all."""
-    named = sys.argv[1:] or [*MODELS, *PLOTS]
+    named = sys.argv[1:] or [*MODELS, *PLOTS, "deformation"]
     for name in named:
         if name in MODELS:
             place, size = MODELS[name]
             data = moldloft.load(EXAMPLES / place).picture(*size)
+        elif name == "deformation":
+            data = deformed()
         else:
             data = plotted(*PLOTS[name])
         (IMAGES / f"{name}.png").write_bytes(data)

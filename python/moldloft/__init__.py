@@ -169,7 +169,7 @@ _HOMES = {
 }
 
 # Submodules that may be named after `import moldloft` alone.
-_MODULES = ("fairing", "functions", "grids", "implicit", "kinds", "overlays", "study")
+_MODULES = ("deformation", "fairing", "functions", "grids", "implicit", "kinds", "overlays", "study")
 
 
 def __getattr__(name: str) -> object:

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft.models import Model
-    from moldloft.overlays import Overlay
 
-__all__ = ["holds_mesh", "mesh_program", "read_mesh"]
+__all__ = ["holds_mesh", "mesh_of_file", "mesh_program", "mesh_statement", "read_mesh"]
 
 _ENDINGS = {"stl", "obj", "ply", "off", "msh", "vtk", "vtu", "3mf", "glb"}
 """Files of meshes."""
@@ -64,6 +63,33 @@ def mesh_program(
     FileError
         When the file cannot be read, or holds no face.
     """
+    unit, points, faces, remarks = mesh_of_file(path, units=units, file_units=file_units)
+    head = f'Model info(units = "{unit}");\n' if unit else ""
+    listed = ", ".join(f"{{{x!r}, {y!r}, {z!r}}}" for x, y, z in points.tolist())
+    return f"# {Path(path).name}\n{head}{mesh_statement('{' + listed + '}', faces)}", remarks
+
+
+def mesh_of_file(
+    path: str | os.PathLike[str], *, units: str = "", file_units: str = ""
+) -> tuple[str, NDArray[np.float64], NDArray[np.int64], list[str]]:
+    """Unit, points and faces of a mesh, and what of the file is left out or doubtful.
+
+    Parameters
+    ----------
+    path, units, file_units
+        See :func:`mesh_program`.
+
+    Returns
+    -------
+    tuple
+        The unit, or an empty text; points ``(n, 3)`` without coincident ones; corners from 0
+        ``(m, 4)``, a triangle repeats its last; remarks.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read, or holds no face.
+    """
     from moldloft.overlays import read
 
     path = Path(path)
@@ -76,9 +102,7 @@ def mesh_program(
     remarks = list(found.remarks)
     if not stated:
         remarks.append("the file does not say what unit its numbers are in")
-    unit = units or stated
-    head = f'Model info(units = "{unit}");\n' if unit else ""
-    return f"# {path.name}\n{head}{_statement(found)}", remarks
+    return units or stated, *_joined(found.points, found.faces), remarks
 
 
 def read_mesh(path: str | os.PathLike[str], *, units: str = "", file_units: str = "") -> Model:
@@ -122,12 +146,18 @@ def read_mesh(path: str | os.PathLike[str], *, units: str = "", file_units: str 
     return loads(text, name=f"{Path(path).stem}.sdl")
 
 
-def _statement(found: Overlay) -> str:
-    """The faces as a ``MeshBody``."""
-    points, faces = _joined(found.points, found.faces)
+def mesh_statement(points: str, faces: NDArray[np.int64]) -> str:
+    """A ``MeshBody`` named ``body``.
+
+    Parameters
+    ----------
+    points
+        The points, as an expression.
+    faces
+        Corners from 0, ``(m, 4)``; a triangle repeats its last.
+    """
     threes = faces[:, 2] == faces[:, 3]
-    rows = [", ".join(f"{{{x!r}, {y!r}, {z!r}}}" for x, y, z in points.tolist())]
-    text = f"MeshBody body({{{rows[0]}}}"
+    text = f"MeshBody body({points}"
     if threes.any():
         text += f", triangles = {{{_numbers(faces[threes][:, :3])}}}"
     if not threes.all():

@@ -143,13 +143,15 @@ class Nurbs:
             found.append((piece + np.arctan2(across, along) / each) / pieces)
         return tuple(found)
 
-    def to_sdl(self, name: str) -> str:
+    def to_sdl(self, name: str, *, points: str = "") -> str:
         """A statement that declares this curve or surface: ``NURBCurve`` or ``NURBSurf``.
 
         Parameters
         ----------
         name
             The name of the object.
+        points
+            An expression of the control points in their order; by default their coordinates.
 
         Returns
         -------
@@ -168,12 +170,15 @@ class Nurbs:
         >>> print(m["l"].to_nurbs().to_sdl("copy"))
         NURBCurve copy({{0, 0, 0}, {1, 2, 3}}, 1, {0, 0, 1, 1});
         """
-        return self._statement(name, {})
+        return self._statement(name, {}, points)
 
-    def _statement(self, name: str, points_of: Mapping[int, str]) -> str:
+    def _statement(self, name: str, points_of: Mapping[int, str], points: str = "") -> str:
         """The statement; some control points, by their number, are objects of these names."""
-        flat = self.points.reshape(-1, 3)
-        points = _braced([points_of.get(k) or _braced(map(_plain, p)) for k, p in enumerate(flat)])
+        if not points:
+            flat = self.points.reshape(-1, 3)
+            points = _braced(
+                points_of.get(k) or _braced(map(_plain, p)) for k, p in enumerate(flat)
+            )
         weights = "" if self.weights is None else _braced(map(_plain, self.weights.ravel()))
         knots = [_braced(map(_plain, k)) for k in self.knots]
         if self.dimension == 1:
