@@ -15,7 +15,8 @@ __all__ = ["Statement", "Token", "block", "replaced", "statements", "units"]
 _SOLID = (
     "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "EXTRUDE", "REVOLVE", "CLEAN", "MEASURE",
     "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE", "PATTERN", "FILLET", "CHAMFER",
-    "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR", "SCALE", "SAVE", "EXPORT", "ESTIMATE",
+    "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR", "SCALE", "SAVE", "EXPORT",
+    "ESTIMATE",
 )  # fmt: skip
 
 
