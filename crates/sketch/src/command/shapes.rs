@@ -18,7 +18,7 @@ const LEVEL: f64 = 1e-12;
 const MAX_CORNERS: u32 = 200;
 
 /// Commands that draw a shape, and how its first point is placed.
-struct Outline {
+struct SectionOutline {
     text: String,
     /// The numbers of its points, in a cycle.
     points: Vec<PointId>,
@@ -85,7 +85,7 @@ impl SketchSession {
         let first = object.drawing.next_point().0;
         let points: Vec<PointId> = (0..corners).map(|k| PointId(first + k)).collect();
         let numbers = names.iter().cloned().zip(drawn.iter().copied()).collect();
-        let mut outline = Outline { text, points, axes: normal.others(), numbers };
+        let mut outline = SectionOutline { text, points, axes: normal.others(), numbers };
         // What has a centre is placed by it.
         let from_centre = match verb {
             "CIRCLE" => Some(["-0.5", "-0.5"]),
@@ -139,7 +139,7 @@ impl SketchSession {
     /// The page coordinates of a shape's first point, which `at` places relative to the section's reference point.
     fn start(
         &mut self,
-        outline: &mut Outline,
+        outline: &mut SectionOutline,
         at: Option<&[DimensionExpr; 2]>,
     ) -> Result<[f64; 2], CommandError> {
         let object = self.active()?.clone();
@@ -230,7 +230,7 @@ fn shifted(
     Ok([moved(p, shares[0])?, moved(q, shares[1])?])
 }
 
-impl Outline {
+impl SectionOutline {
     fn draw(&mut self, page: &[[f64; 2]], types: impl Fn(usize) -> String) {
         let mut points = String::new();
         for (id, [u, v]) in self.points.iter().zip(page) {

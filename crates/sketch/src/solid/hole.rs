@@ -18,7 +18,7 @@ use std::sync::Arc;
 const NOTHING_REMOVED: f64 = 1e-12;
 
 /// A ring of the drill's profile: radius, coordinate along the axis, and the name of the face above it.
-struct Ring<T> {
+struct DrillRing<T> {
     radius: T,
     level: T,
     above: &'static str,
@@ -77,7 +77,7 @@ impl Hole {
             }
         };
         let mut rings = Vec::new();
-        let mut ring = |radius: T, level: T, above| rings.push(Ring { radius, level, above });
+        let mut ring = |radius: T, level: T, above| rings.push(DrillRing { radius, level, above });
         let end = match &self.depth {
             Some(depth) => entry()? + size(depth, "depth")? * inwards,
             None => T::from(if self.top { low - over } else { high + over }),
@@ -109,7 +109,7 @@ impl Hole {
                 ring(wide, outside, "HEAD");
             }
         }
-        let deeper = |pair: &[Ring<T>]| (pair[1].level - pair[0].level).re() * -inwards >= 0.0;
+        let deeper = |pair: &[DrillRing<T>]| (pair[1].level - pair[0].level).re() * -inwards >= 0.0;
         if !rings.windows(2).all(deeper) {
             return Err(fault("the head of a hole is deeper than the hole", "give it less depth"));
         }
@@ -160,15 +160,15 @@ fn fault(text: impl Into<String>, next: &'static str) -> NoBody {
 
 /// The body of revolution of rings from the lowest to the highest, about the axis `k` through a point: plane caps,
 /// quarters of cylinders and cones, and plane rings.
-fn rotational<T: Real>(k: usize, centre: Vec3<T>, rings: &[Ring<T>]) -> SketchSolid<T> {
+fn rotational<T: Real>(k: usize, centre: Vec3<T>, rings: &[DrillRing<T>]) -> SketchSolid<T> {
     const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     let mut out = SketchSolid::<T>::default();
-    let middle = |ring: &Ring<T>| {
+    let middle = |ring: &DrillRing<T>| {
         let mut at = centre.to_array();
         at[k] = ring.level;
         Vec3::from(at)
     };
-    let arm = |ring: &Ring<T>, quarter: usize| {
+    let arm = |ring: &DrillRing<T>, quarter: usize| {
         let mut at = [T::zero(); 3];
         let [c, s] = QUARTERS[quarter % 4];
         (at[(k + 1) % 3], at[(k + 2) % 3]) = (ring.radius * c, ring.radius * s);
