@@ -210,6 +210,8 @@ export class Desk {
   }
 
   private async carriedOut(command: string): Promise<Facts> {
+    // What is under way for a slider or a drag comes too late now.
+    this.decided++
     try {
       await this.lineByLine(command)
       return await this.ask('desk_run', { command })
@@ -566,7 +568,10 @@ export class Desk {
     this.pressed = null
     if (!p || !this.facts) return
     if (p.moved) {
-      if (p.kind === 'point' && p.to) void this.sliding.settled().then(() => this.run(`move ${p.point + 1} ${p.to!.join(' ')}`))
+      if (p.kind === 'point' && p.to) {
+        void this.later(() => this.sliding.settled())
+        void this.run(`move ${p.point + 1} ${p.to.join(' ')}`)
+      }
       return
     }
     if (p.kind === 'pan') {
