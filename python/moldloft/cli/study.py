@@ -247,4 +247,6 @@ def _files(study: Study, results: Results, options: argparse.Namespace) -> None:
             plan = store.facts().get("plan", "")
         facts = {"model": study.model.name, "plan": plan, "cases": str(len(results))}
         saltelli = study.plan.count if plan == "saltelli" else 0
-        emit(options.html, html(results, f"Study {Path(options.study).stem}", facts, saltelli))
+        tolerances = {each.name: each.tolerance for each in study.inputs if each.tolerance}
+        title = f"Study {Path(options.study).stem}"
+        emit(options.html, html(results, title, facts, saltelli, tolerances))

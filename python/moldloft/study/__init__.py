@@ -29,7 +29,13 @@ from moldloft.study.definition import (
 from moldloft.study.functions import Function, function
 from moldloft.study.openmdao import component
 from moldloft.study.optimizing import Optimum, optimize
-from moldloft.study.report import sobol_indices, spreads
+from moldloft.study.robustness import (
+    Validity,
+    sobol_indices,
+    spreads,
+    validity,
+    worst_cases,
+)
 from moldloft.study.running import sweep
 from moldloft.study.store import Outcome, Results, Store
 
@@ -48,6 +54,7 @@ __all__ = [
     "Store",
     "Study",
     "StudyError",
+    "Validity",
     "component",
     "function",
     "optimize",
@@ -55,4 +62,6 @@ __all__ = [
     "sobol_indices",
     "spreads",
     "sweep",
+    "validity",
+    "worst_cases",
 ]

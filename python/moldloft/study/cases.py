@@ -72,7 +72,8 @@ def evaluate(request: Mapping[str, Any]) -> dict[str, Any]:
         answer = _failed(SOLVER_FAILED, "solver-failed", str(error))
     except Error as error:
         first = next((d for d in error.diagnostics if d.severity == "error"), None)
-        answer = _failed(REFUSED, first.id if first else "refused", str(first or error))
+        reason = next((n for kind, n in REASONS.items() if isinstance(error, kind)), "refused")
+        answer = _failed(REFUSED, first.id if first else reason, str(first or error))
     except MemoryError:
         answer = _failed(REFUSED, "out-of-memory", "the case needs more memory than its limit")
     except RecursionError as error:
@@ -93,6 +94,8 @@ def _outputs(request: Mapping[str, Any]) -> dict[str, float]:
     inputs: dict[str, float] = request["inputs"]
     model.set(inputs)
     model.check()
+    if request["closed"]:
+        _closed(model)
     for name, value, low, high in request["constraints"]:
         _held(model, name, value, low, high)
     found = {name: _value(model, name, text) for name, text in request["outputs"].items()}
@@ -122,6 +125,19 @@ def _held(model: Model, name: str, value: str, low: float | None, high: float | 
     if not least - room <= found <= most + room:
         limit = f"at least {least:g}" if found < least else f"at most {most:g}"
         raise ConstraintError(f"constraint `{name}`: `{value}` is {found:g}, {limit} is allowed")
+
+
+def _closed(model: Model) -> None:
+    for edge in model.mesh().closure(level=None)["edges"]:
+        if not (edge["closed_by"] or "").startswith("mirror"):
+            raise OpenError(
+                f"the mesh is open at the edge {edge['edge']} of `{edge['patch']}`, over a length "
+                f"of {edge['length']:g}"
+            )
+
+
+class OpenError(Error):
+    """The mesh of a case is not closed."""
 
 
 class ConstraintError(Error):
@@ -165,6 +181,10 @@ def number(value: object, text: str) -> float:
 
 class NumberError(Error):
     """The value of an expression is not a finite number."""
+
+
+REASONS: dict[type[Error], str] = {ConstraintError: "constraint", OpenError: "not-closed"}
+"""Ids of refusals that are no diagnostic of the model."""
 
 
 def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) -> dict[str, float]:

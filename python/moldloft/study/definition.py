@@ -80,7 +80,7 @@ class Input:
     values: tuple[float, ...] = ()
     """The values of a grid; by default `levels` equally spaced ones."""
     tolerance: float = 0.0
-    """Standard deviation of manufacture; spreads of the outputs are derived from it."""
+    """Of manufacture; the report derives spreads and worst cases of the outputs from it."""
 
 
 @dataclass(frozen=True)
@@ -229,6 +229,8 @@ class Study:
     seconds: float = DEFAULT_SECONDS
     memory: str = DEFAULT_MEMORY
     library: tuple[str, ...] = ()
+    closed: bool = False
+    """Whether a case whose mesh has an open edge is refused; images in planes of symmetry close."""
     folder: Path = Path()
     """The folder that relative names of analyses start from."""
 
@@ -413,6 +415,7 @@ def _study(top: Table, folder: Path) -> Study:
         derivatives=top.take("derivatives", "flag", False),
         seconds=_positive(top.take("seconds", "number", DEFAULT_SECONDS), "seconds"),
         memory=top.take("memory", "text", DEFAULT_MEMORY),
+        closed=top.take("closed", "flag", False),
         library=tuple(str(folder / each) for each in top.take("library", "texts", ())),
         folder=folder,
     )

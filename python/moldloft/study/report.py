@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.study.robustness import by_value, sobol_indices, spreads, validity, worst_cases
 from moldloft.study.store import Results
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["failures", "html", "sensitivities", "sobol_indices", "spreads"]
+__all__ = ["failures", "html", "sensitivities"]
 
 #: Points drawn of a plot: more cannot be told apart. The page states the number left out.
 MAX_DRAWN = 2_000
@@ -62,7 +63,7 @@ def sensitivities(results: Results) -> dict[str, dict[str, float]]:
         return {}
     columns = np.stack([_standard(results.inputs[n][done]) for n in names], axis=1)
     found = {}
-    for output, values in _plotted(results).items():
+    for output, values in by_value(results).items():
         if np.ptp(values[done]) > 0:
             slopes, *_ = np.linalg.lstsq(columns, _standard(values[done]), rcond=None)
             found[output] = dict(zip(names, slopes.tolist(), strict=True))
@@ -74,75 +75,6 @@ def _standard(values: Floats) -> Floats:
     return found
 
 
-def _plotted(results: Results) -> dict[str, Floats]:
-    """The outputs without derivatives."""
-    return {n: c for n, c in results.outputs.items() if not n.startswith("d ")}
-
-
-def sobol_indices(results: Results, count: int) -> dict[str, dict[str, tuple[float, float]]]:
-    """First-order and total Sobol indices of a plan by Saltelli's scheme (Jansen's estimators).
-
-    Parameters
-    ----------
-    results
-        The table of a plan ``saltelli``.
-    count
-        The `count` of the plan: the table has ``count (inputs + 2)`` rows.
-
-    Returns
-    -------
-    dict
-        ``(first, total)`` by output and input. Rows with a case that is not done are left out.
-        Empty for tables of other plans.
-    """
-    names = list(results.inputs)
-    if len(results) != count * (len(names) + 2):
-        return {}
-    found: dict[str, dict[str, tuple[float, float]]] = {}
-    for output, values in _plotted(results).items():
-        blocks = values.reshape(len(names) + 2, count)
-        blocks = blocks[:, np.isfinite(blocks).all(axis=0)]
-        a, b = blocks[0], blocks[1]
-        variance = np.concatenate([a, b]).var() if a.size else 0.0
-        if variance == 0.0:
-            continue
-        found[output] = {
-            name: (
-                float(1 - ((b - mixed) ** 2).mean() / (2 * variance)),
-                float(((a - mixed) ** 2).mean() / (2 * variance)),
-            )
-            for name, mixed in zip(names, blocks[2:], strict=True)
-        }
-    return found
-
-
-def spreads(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floats]:
-    """Standard deviations of the outputs for independent deviations of the inputs, to first order.
-
-    Parameters
-    ----------
-    results
-        A table with derivatives.
-    tolerances
-        Standard deviations by input.
-
-    Returns
-    -------
-    dict
-        ``sqrt(sum((d output / d input * tolerance)**2))`` by output, ``(cases,)``.
-    """
-    found = {}
-    for output in _plotted(results):
-        terms = [
-            (results.outputs[f"d {output} / d {name}"] * tolerance) ** 2
-            for name, tolerance in tolerances.items()
-            if tolerance > 0 and f"d {output} / d {name}" in results.outputs
-        ]
-        if terms:
-            found[output] = np.sqrt(np.sum(terms, axis=0))
-    return found
-
-
 def failures(results: Results) -> dict[str, int]:
     """The number of failures by id, the most frequent first."""
     ids = results.id[(results.state != "done") & (results.state != "pending")].astype(str)
@@ -151,7 +83,13 @@ def failures(results: Results) -> dict[str, int]:
     return {str(names[k]): int(numbers[k]) for k in order}
 
 
-def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int = 0) -> bytes:
+def html(
+    results: Results,
+    title: str,
+    facts: Mapping[str, str],
+    saltelli: int = 0,
+    tolerances: Mapping[str, float] | None = None,
+) -> bytes:
     """The page.
 
     Parameters
@@ -164,6 +102,8 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
         Lines about the study, by name; sensitivities are given for a sampled `plan`.
     saltelli
         The `count` of a plan by Saltelli's scheme.
+    tolerances
+        Tolerances of manufacture by input: spreads of the outputs are stated.
 
     Returns
     -------
@@ -176,6 +116,11 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
         "<h2>States</h2>",
         _rows(["state", "cases"], [[k, str(v)] for k, v in results.counts.items()]),
     ]
+    if found := validity(results):
+        parts.append(
+            f"<p>Valid: {found.valid} of {found.cases} shapes, {100 * found.fraction:.1f} %; "
+            f"of the space {100 * found.low:.1f} to {100 * found.high:.1f} % (95 %).</p>"
+        )
     if failed := failures(results):
         parts += [
             "<h2>Failures</h2>",
@@ -187,12 +132,15 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
             "<h2>Numbers</h2>",
             _rows(["", "least", "mean", "greatest"], _statistics(results)),
         ]
+        if rows := _tolerance_rows(results, tolerances or {}):
+            header = ["", "RSS, mean", "RSS, greatest", "worst case, mean", "worst case, greatest"]
+            parts += ["<h2>Tolerances of manufacture</h2>", _rows(header, rows)]
         if facts.get("plan") in SAMPLED:
             parts += _sensitivity_parts(results, saltelli)
         if results.objectives:
             parts += ["<h2>Objectives by evaluation</h2>", _plots(_histories(results))]
         parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
-        if len(_plotted(results)) > 1:
+        if len(by_value(results)) > 1:
             parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
             if results.front is not None:
                 parts.append(f"<p>Marked: the {results.front.sum()} points of the front.</p>")
@@ -227,7 +175,19 @@ def _statistics(results: Results) -> list[list[str]]:
     done = results.done
     return [
         [name, *(_text(float(v)) for v in (c[done].min(), c[done].mean(), c[done].max()))]
-        for name, c in {**results.inputs, **_plotted(results)}.items()
+        for name, c in {**results.inputs, **by_value(results)}.items()
+    ]
+
+
+def _tolerance_rows(results: Results, tolerances: Mapping[str, float]) -> list[list[str]]:
+    both = zip(
+        spreads(results, tolerances).items(),
+        worst_cases(results, tolerances).values(),
+        strict=True,
+    )
+    return [
+        [name, *(_text(float(v)) for c in (rss, worst) for v in (np.nanmean(c), np.nanmax(c)))]
+        for (name, rss), worst in both
     ]
 
 
@@ -309,14 +269,14 @@ def _scatters(results: Results) -> list[str]:
     rows = _drawn(results, results.done)
     return [
         _scatter(x[rows], y[rows], (by, name))
-        for name, y in _plotted(results).items()
+        for name, y in by_value(results).items()
         for by, x in results.inputs.items()
     ][:60]
 
 
 def _output_plots(results: Results) -> list[str]:
     rows = _drawn(results, results.done)
-    columns = [(n, c[rows]) for n, c in _plotted(results).items()]
+    columns = [(n, c[rows]) for n, c in by_value(results).items()]
     marked = None if results.front is None else np.flatnonzero(results.front[rows])
     return [
         _scatter(x, y, (a, b), marked)
@@ -358,7 +318,7 @@ def _failure_plots(results: Results) -> list[str]:
 
 def _parallel(results: Results) -> str:
     rows = _drawn(results, results.done)
-    columns = {**results.inputs, **_plotted(results)}
+    columns = {**results.inputs, **by_value(results)}
     step = 110.0
     width, height = step * (len(columns) - 1) + 120, 260.0
     units = []

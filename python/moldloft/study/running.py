@@ -112,6 +112,7 @@ class Cases:
         return {
             "outputs": dict(study.outputs),
             "derivatives": study.derivatives,
+            "closed": study.closed,
             "constraints": [
                 (
                     b.name,
