@@ -173,7 +173,7 @@ export class LivingLink implements Link {
       case 'save':
         return { kind: 'saved', version: this.version, text: this.text.toString() }
       case 'revert':
-        return this.revert()
+        return { kind: 'reverted', text: this.original }
       default:
         throw new Refused('no such request')
     }
@@ -206,14 +206,6 @@ export class LivingLink implements Link {
     }
   }
 
-  private revert(): Facts {
-    const old = this.text.toString()
-    if (old !== this.original) {
-      const changes = ChangeSet.of({ from: 0, to: old.length, insert: this.original }, old.length)
-      this.accept([{ changes: changes.toJSON(), clientID: 'file' }])
-    }
-    return { kind: 'reverted', version: this.version }
-  }
 }
 
 /** A short hash of a text, to know it again. */

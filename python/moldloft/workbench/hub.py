@@ -381,10 +381,13 @@ class Hub:
                 stamp = None
 
     async def _revert(self, tab: Tab, number: int) -> None:
-        """The file's text instead of what was typed; a step that the page can undo."""
+        """The file's text for a page, which takes it as a step of its own history."""
         try:
-            await self._outside(read(self.path))
-            reply = {"kind": "reverted", "id": number, "version": self.version}
+            now = read(self.path)
+            self.stored, self._noted = now, now.digest
+            if now.text == self.text:
+                await self._outside(now)
+            reply = {"kind": "reverted", "id": number, "text": now.text}
         except (OSError, Error) as error:
             reply = {"kind": "refused", "id": number, "error": str(error)}
         self.recovered = False
