@@ -26,7 +26,7 @@ interface Job {
 }
 
 /** As in the hub: requests of which only the newest counts. */
-const NEWEST = new Set(['set', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
+const NEWEST = new Set(['set', 'solve_for', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
 
 /** What a new engine must hear before it is asked anything else. */
 const STATE = ['show', 'watch']

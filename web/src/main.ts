@@ -15,6 +15,7 @@ import { Cell } from './notebook'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
 import { help, palette, type Command } from './palette'
+import { GivenNumbers } from './numbers'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
 import { changed, model } from './state'
@@ -395,7 +396,13 @@ parametersPanel(params, actions)
 treePanel(tree, actions)
 inspectorPanel(inspector, actions)
 messagesPanel(messagesHost, actions)
-strip(footer, actions)
+strip(footer, actions, (host) => new GivenNumbers(host, link, {
+  say, write: actions.write, typed: actions.typed,
+  reset: async () => {
+    await link.ask('reset')
+    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+  },
+}))
 
 function showSaved(): void {
   const waits = editor.pending

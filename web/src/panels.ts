@@ -1,6 +1,7 @@
 // Parameters, objects, the inspector, messages and the strip of numbers.
 
 import { h, shown, store, stored } from './dom'
+import type { GivenNumbers } from './numbers'
 import { changed, model, on, type Fault, type Obj, type Param } from './state'
 
 export interface Actions {
@@ -432,12 +433,13 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   })
 }
 
-export function strip(host: HTMLElement, act: Actions): void {
+export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement) => GivenNumbers): void {
   const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
   const add = h('input', { type: 'text', placeholder: '+ number to watch', 'aria-label': 'watch an expression', class: 'add', list: 'watchable', disabled: act.still })
   const list = h('datalist', { id: 'watchable' })
   for (const word of ['mesh.area', 'mesh.volume', 'hydrostatics.displacement', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.vcb', 'hydrostatics.wetted_area', 'hydrostatics.waterplane_area', 'hydrostatics.draft', 'hydrostatics.kmt', 'hydrostatics.kb', 'hydrostatics.cb', 'hydrostatics.cp'])
     list.append(h('option', { value: word }))
+  const numbers = given(host)
   const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
   host.append(box, add, list, setMark)
   let marked = new Map<string, number>()
@@ -452,6 +454,8 @@ export function strip(host: HTMLElement, act: Actions): void {
     add.value = ''
   })
   function build(): void {
+    // A number that is dragged keeps its element.
+    if (numbers.busy) return numbers.follow()
     box.replaceChildren(...model.watched.map((w) => {
       const was = marked.get(w.expression)
       const value = typeof w.value === 'number' ? w.value : null
@@ -459,7 +463,7 @@ export function strip(host: HTMLElement, act: Actions): void {
       const delta = value !== null && was !== undefined && value !== was ? value - was : 0
       const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
       return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? w.expression },
-        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), value !== null && !act.still && model.params.length ? numbers.handle(w.expression, value) : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
         delta ? h('span', { class: `delta ${delta > 0 ? 'up' : 'down'}` }, `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`) : '',
         act.still ? '' : h('button', { class: 'icon', 'aria-label': `stop watching ${w.expression}`, onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)) }, '×'))
     }))

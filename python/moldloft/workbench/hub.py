@@ -30,7 +30,7 @@ __all__ = ["Hub", "Tab"]
 
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
-    "set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs",
+    "set", "solve_for", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs",
     "deviation", "measure", "blocks",
 }  # fmt: skip
 
@@ -42,7 +42,7 @@ ASKED = NEWEST | {
 }  # fmt: skip
 
 #: After these other tabs have something new, too.
-CHANGING = {"set", "drag_to", "commit", "reset", "write", "drag_end", "show"}
+CHANGING = {"set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show"}
 
 MOST_TABS = 32
 #: Bytes of a frame that says no more than what is wrong.
