@@ -4,13 +4,14 @@ import { Vector3 } from 'three'
 import { h, shown } from './dom'
 import { Newest, Refused, type Link } from './link'
 import { model } from './state'
+import { typed } from './typed'
 import type { Drawn, View } from './view'
 
 export interface Handlers {
   select(name: string): void
   hover(name: string): void
   say(words: string): void
-  apply(edits: any[], version?: number): void
+  apply(edits: any[], version: number | undefined, name: string): void
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
@@ -30,7 +31,12 @@ interface Drag {
   target: Vector3
   handles: Handle[]
   own: string[]
+  /** The numbers that follow now. */
   names: string[]
+  /** The parameters that the person chose for what the object's own numbers cannot follow. */
+  chosen: string[]
+  /** Parameters that have joined: what has once moved goes on. */
+  joined: Set<string>
   axis: number | null
   plane: number | null
   /** True while the place is to be on the surface under the pointer. */
@@ -48,6 +54,12 @@ interface Drag {
 
 const AXES = ['x', 'y', 'z']
 const STEPS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
+/** A number counts as moving the place in the picture when at least this share of its motion is seen there. */
+const SEEN = 0.05
+/** A part of the motion that is smaller than this share needs no further number. */
+const FOLLOWED = 1e-3
+/** Picture points behind the pointer that need a reason. */
+const BEHIND = 2
 const unit = (k: number) => new Vector3().setComponent(k, 1)
 
 export class Hands {
@@ -62,7 +74,7 @@ export class Hands {
   private readonly requests: Newest<() => Promise<unknown>>
   private readonly tip = h('div', { class: 'tip', hidden: true })
   private readonly chooser = h('div', { class: 'chooser', role: 'group', 'aria-label': 'what to move', hidden: true })
-  private readonly entry = h('input', { class: 'entry number', type: 'text', inputmode: 'decimal', 'aria-label': 'value', hidden: true })
+  private readonly entry = h('input', { class: 'entry number', type: 'text', 'aria-label': 'value', hidden: true })
 
   constructor(private readonly view: View, private readonly link: Link, host: HTMLElement, private readonly act: Handlers) {
     host.append(this.tip, this.chooser, this.entry)
@@ -81,7 +93,7 @@ export class Hands {
       else view.fit()
     })
     c.addEventListener('keydown', (e) => this.key(e))
-    this.entry.addEventListener('keydown', (e) => this.entered(e))
+    this.entry.addEventListener('keydown', (e) => void this.entered(e))
     this.entry.addEventListener('blur', () => {
       if (!this.entry.hidden && this.drag) void this.finish(this.drag.moved)
     })
@@ -118,7 +130,7 @@ export class Hands {
     this.act.select(item.object)
     const start = this.view.place(item)
     const drag: Drag = {
-      item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, onSurface: false,
+      item, start, target: start.clone(), handles: [], own: [], names: [], chosen: [], joined: new Set(), axis: null, plane: null, onSurface: false,
       moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y],
     }
     this.drag = drag
@@ -132,8 +144,7 @@ export class Hands {
       await this.act.synced()
       const { head } = await this.link.ask('drag_begin', { object })
       Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
-      drag.names = this.chosen(drag)
-      const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression: choose what moves it`
+      const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression`
       if (this.drag === drag) {
         this.act.status(`${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
         if (drag.moved) this.aim(drag, false)
@@ -155,33 +166,76 @@ export class Hands {
     this.grab(item, ...this.view.project(this.view.place(item)), true)
   }
 
-  /** The object's own numbers; for an expression the parameter that moves it most within its range. */
-  private chosen(drag: Drag): string[] {
-    const own = drag.handles.filter((k) => drag.own.includes(k.name))
-    if (own.length) return []
+  /**
+   * The numbers that follow the motion: the object's own, as far as the view shows what they do, and for what these cannot
+   * follow the chosen parameters, or the one that takes most of it within its range.
+   */
+  private followers(drag: Drag, basis: Vector3[]): string[] {
+    const shadow = (v: Vector3) => basis.map((b) => b.dot(v))
+    const size = (v: number[]) => Math.hypot(...v)
+    const dot = (a: number[], b: number[]) => a.reduce((sum, x, k) => sum + x * b[k], 0)
+    const followed: number[][] = []
+    const without = (v: number[]) => followed.reduce((rest, q) => rest.map((x, k) => x - dot(rest, q) * q[k]), v)
+    const motion = shadow(drag.target.clone().sub(drag.start))
+    const whole = size(motion)
+    let left = motion
+    const names: string[] = []
+    const take = (handle: Handle): boolean => {
+      const d = new Vector3(...(handle.direction as [number, number, number]))
+      const seen = shadow(d)
+      const fresh = without(seen)
+      // A number that moves the place mostly along the line of sight would run away.
+      if (size(seen) < SEEN * d.length() || size(fresh) < SEEN * size(seen)) return false
+      followed.push(fresh.map((x) => x / size(fresh)))
+      left = without(left)
+      names.push(handle.name)
+      return true
+    }
+    for (const handle of drag.handles) if (handle.own) take(handle)
     const params = drag.handles.filter((k) => !k.own)
-    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : 1)
-    params.sort((a, b) => reach(b) - reach(a))
-    return params.length ? [params[0].name] : []
+    for (const handle of params) if (drag.chosen.includes(handle.name) || (!drag.chosen.length && drag.joined.has(handle.name))) names.push(handle.name) && take(handle)
+    // A bead is meant to stay on its curve: nothing but a choice takes that along.
+    const kind = model.objects.find((o) => o.name === drag.item.object)?.class ?? ''
+    const held = drag.own.length > 0 && ['bead', 'magnet', 'ring'].includes(kind)
+    if (!drag.chosen.length && !held)
+      while (size(left) > FOLLOWED * whole) {
+        const pull = (k: Handle) => {
+          const seen = shadow(new Vector3(...(k.direction as [number, number, number])))
+          const along = Math.abs(dot(seen, left))
+          return along > SEEN * size(seen) * size(left) ? along * (k.range ? k.range[1] - k.range[0] : Math.max(1, Math.abs(k.value))) : 0
+        }
+        const best = params.filter((k) => !names.includes(k.name)).sort((a, b) => pull(b) - pull(a))[0]
+        if (!best || !pull(best) || !take(best)) break
+        drag.joined.add(best.name)
+      }
+    return [...new Set(names)]
   }
 
+  /** Chips of the parameters that may follow; the ones that do are pressed. */
   private offer(drag: Drag): void {
     const params = drag.handles.filter((k) => !k.own)
-    if (!params.length) return
+    const follow = drag.names.filter((n) => !drag.own.includes(n))
+    this.chooser.hidden = !params.length || !follow.length
+    if (this.chooser.hidden) return
     const [x, y] = this.view.project(this.view.place(drag.item))
     const choose = (names: string[]) => {
-      drag.names = names
-      this.offer(drag)
+      // What moved for the old choice goes back.
+      const back = Object.fromEntries(params.filter((k) => follow.includes(k.name) && !names.includes(k.name)).map((k) => [k.name, k.value]))
+      if (Object.keys(back).length) this.requests.push(() => this.link.ask('set', { values: back }).catch(() => undefined))
+      void this.requests.settled().then(() => this.drag === drag && this.aim(drag, false))
+      drag.chosen = names
+      drag.joined.clear()
     }
     const chip = (label: string, names: string[]) =>
-      h('button', { class: `chip ${names.join() === drag.names.join() ? 'on' : ''}`, onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+      h('button', { class: `chip ${names.join() === follow.join() ? 'on' : ''}`, 'aria-pressed': names.join() === follow.join(), onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : 1)
+    const listed = [...params].sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a)).slice(0, 6)
     this.chooser.replaceChildren(
-      ...(drag.own.length ? [chip(drag.own.map((n) => n.slice(drag.item.object.length + 1)).join(' '), [])] : []),
-      ...params.slice(0, 6).map((k) => chip(k.name, [k.name])),
+      h('span', { class: 'quiet' }, 'follows by'),
+      ...listed.map((k) => chip(k.name, [k.name])),
       ...(params.length > 1 ? [chip('all together', params.map((k) => k.name))] : []))
     this.chooser.style.left = `${x + 16}px`
     this.chooser.style.top = `${y + 16}px`
-    this.chooser.hidden = drag.own.length > 0
   }
 
   private move(e: PointerEvent): void {
@@ -289,19 +343,27 @@ export class Hands {
       }
     }
     // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
-    const whole = drag.names.every((n) => drag.own.includes(n))
-    if (whole && (drag.axis !== null || drag.plane !== null)) basis = [unit(0), unit(1), unit(2)]
+    if (drag.axis !== null || drag.plane !== null) basis = [unit(0), unit(1), unit(2)]
     const target = drag.target.clone()
-    if (!drag.own.length && this.drag === drag) this.offer(drag)
+    drag.names = this.followers(drag, basis)
+    const { names } = drag
+    if (!names.length) return this.act.status(`${drag.item.object} does not move that way in this view: no number of the text does that. Turn the view, or lock another axis`)
+    if (this.drag === drag) this.offer(drag)
+    const grain = camera.grain(this.view.height)
     this.requests.push(async () => {
       try {
-        const { head } = await this.link.ask('drag_to', {
-          target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.names, grain: camera.grain(this.view.height),
-        })
+        const { head } = await this.link.ask('drag_to', { target: target.toArray(), basis: basis.map((b) => b.toArray()), names, grain })
         if (this.drag !== drag) return
-        const values = Object.entries(head.values as Record<string, number>).map(([n, v]) => `${n} = ${shown(v)}`)
+        const values = head.values as Record<string, number>
+        const words = Object.entries(values).map(([n, v]) => `${n} = ${shown(v)}`)
         const lock = drag.axis !== null ? ` · along ${AXES[drag.axis]}` : drag.plane !== null ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}` : ''
-        this.act.status(values.join('   ') + lock + (snapped ? ` · on ${snapped}` : ''))
+        // Where it stays behind the pointer, the reason: an end of a range, or no number for the rest of the way.
+        const ended = drag.handles.filter((k) => names.includes(k.name) && k.range && (values[k.name] <= k.range[0] || values[k.name] >= k.range[1]))
+        const short = Number(head.left) / grain
+        const why = !(short > BEHIND) ? '' : ended.length
+          ? ` · stays ${Math.round(short)} px behind: ${ended.map((k) => `${k.name} is at the end of its range, ${shown(values[k.name])}`).join(', ')}`
+          : ` · stays ${Math.round(short)} px behind: ${names.join(', ')} ${names.length > 1 ? 'move' : 'moves'} it no further that way`
+        this.act.status(words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why)
       } catch (error) {
         if (error instanceof Refused && error.message !== 'superseded') this.act.status(error.message)
       }
@@ -342,7 +404,7 @@ export class Hands {
     await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })
-      if (commit) this.act.apply(head.edits ?? [], head.version)
+      if (commit) this.act.apply(head.edits ?? [], head.version, `Drag ${drag.item.object}`)
     } catch (error) {
       this.act.status((error as Error).message)
     }
@@ -404,7 +466,7 @@ export class Hands {
   private enter(drag: Drag, e: KeyboardEvent): void {
     e.preventDefault()
     e.stopPropagation()
-    const names = drag.names.length ? drag.names : drag.own
+    const names = drag.names.length ? drag.names : drag.own.length ? drag.own : drag.handles.slice(0, 1).map((k) => k.name)
     const name = names.find((n) => drag.axis !== null && n.endsWith(`.${AXES[drag.axis]}`)) ?? names[0]
     if (!name) return
     this.entry.hidden = false
@@ -417,7 +479,7 @@ export class Hands {
     this.entry.focus()
   }
 
-  private entered(e: KeyboardEvent): void {
+  private async entered(e: KeyboardEvent): Promise<void> {
     e.stopPropagation()
     if (e.key === 'Escape') {
       this.cancel()
@@ -426,8 +488,14 @@ export class Hands {
     if (e.key !== 'Enter' && e.key !== 'Tab') return
     e.preventDefault()
     const { name, names } = this.entry.dataset
-    const x = Number(this.entry.value.replace(',', '.'))
-    if (!name || !Number.isFinite(x) || this.entry.value.trim() === '') return
+    const text = this.entry.value
+    if (!name || text.trim() === '') return
+    let x: number
+    try {
+      x = await typed(text, this.link)
+    } catch (error) {
+      return this.act.status((error as Error).message)
+    }
     this.requests.push(() => this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)))
     if (this.drag) this.drag.moved = this.drag.aimed = true
     if (e.key === 'Tab') {

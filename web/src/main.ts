@@ -6,18 +6,21 @@ import { BlockPlanes } from './blocks'
 import { drawAxes } from './axes'
 import { Analysis } from './analysis'
 import { Board } from './board'
-import { h, store, stored } from './dom'
+import { h, shown, store, stored } from './dom'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
+import { historyButtons, type Held } from './history'
 import { door, Host } from './host'
 import { Cell } from './notebook'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
 import { help, palette, type Command } from './palette'
+import { GivenNumbers } from './numbers'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
 import { changed, model } from './state'
+import { typed } from './typed'
 import { View, type Paint, type Style } from './view'
 import type { Standard } from './camera'
 
@@ -87,7 +90,7 @@ const saveButton = link.local
 const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
 const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
 const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
-const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'grow' }), paletteButton, link.still ? '' : saveButton, themeButton, helpButton)
+const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, link.still ? '' : saveButton, themeButton, helpButton)
 const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
 const editorHost = $('div', { class: 'editor' })
 const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
@@ -192,21 +195,80 @@ const setting = new Newest<Record<string, number>>(
 
 /** One after the other: the engine must have what the last one wrote before it writes the next. */
 let writing: Promise<void> = Promise.resolve()
-function edits(kind: string, fields: Record<string, unknown> = {}): Promise<void> {
-  writing = writing.then(() => written(kind, fields))
+function edits(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
+  writing = writing.then(() => written(kind, fields, name))
   return writing
 }
 
-async function written(kind: string, fields: Record<string, unknown>): Promise<void> {
+/** Values of parameters that the text computes from others, while they are held. */
+const held = new Map<string, number>()
+
+async function written(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
   try {
     await editor.synced()
     await setting.settled()
     const { head } = await link.ask(kind, fields)
-    editor.apply(head.edits ?? [], head.version)
-    if (head.kept?.length) say(`${head.kept.join(', ')} follows from an expression: the value holds for this session and is not in the text`)
+    const now = (head.kept ?? []).map((n: string) => ({ name: n, from: held.get(n) ?? null, to: model.params.find((p) => p.name === n)?.value ?? null }))
+    const news = now.filter((one: Held) => one.from !== one.to)
+    for (const one of news) if (one.to !== null) held.set(one.name, one.to)
+    editor.apply(head.edits ?? [], head.version, name, news)
+    if (news.length) say(`${news.map((one: Held) => one.name).join(', ')} follows from an expression: the value holds for this session and is not in the text`)
   } catch (error) {
     say((error as Error).message)
   }
+}
+
+/** What waits for the hand to rest. */
+let rests: { name: string; run: () => Promise<void>; timer: number } | null = null
+const REST = 600
+function rested(): Promise<void> {
+  const one = rests
+  rests = null
+  if (one) clearTimeout(one.timer)
+  return one ? one.run() : Promise.resolve()
+}
+
+function values(list: Record<string, number>): string {
+  const one = ([n, x]: [string, number]) => {
+    const was = model.params.find((p) => p.name === n)?.value
+    return was === undefined ? `${n}: ${shown(x)}` : `${n}: ${shown(was)} → ${shown(x)}`
+  }
+  return Object.entries(list).map(one).join(', ')
+}
+
+/** Steps of the history, back or, with a negative count, again; what is under way is a step, too. */
+function turn(count: number): void {
+  if (host) return host.undo(count > 0)
+  if (link.still) return
+  if (hands.busy) {
+    hands.cancel()
+    if (count > 0) return
+  }
+  void rested()
+  // Between what was written before the key and what is written after it.
+  writing = writing.then(async () => {
+    await hands.settled()
+    const back = count > 0
+    const step = (back ? editor.steps.done : editor.steps.undone).at(-1)
+    const gone = editor.steps.go(editor.view, count)
+    say(!gone ? `Nothing to ${back ? 'undo' : 'redo'}` : `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`)
+  })
+}
+
+function revert(): void {
+  void rested()
+  writing = writing.then(async () => {
+    try {
+      await hands.settled()
+      await editor.synced()
+      const { text } = await link.tell({ kind: 'revert' })
+      editor.replace(text, false, false, 'Revert to the saved file')
+      say('Reverted to the saved file; Ctrl+Z takes it back')
+      warn('')
+    } catch (error) {
+      say((error as Error).message)
+    }
+  })
 }
 
 const hidden = new Set<string>(stored<string[]>('hidden', []))
@@ -216,9 +278,14 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   hidden,
   selected: () => selected,
   set: (name, value) => setting.push({ [name]: value }),
-  commit: () => edits('commit'),
-  write: (values) => edits('write', { values }),
-  reset: () => edits('reset'),
+  typed: (text) => typed(text, link),
+  rested,
+  rest(name, run) {
+    if (rests && rests.name !== name) void rested()
+    if (rests) clearTimeout(rests.timer)
+    rests = { name, run, timer: window.setTimeout(() => void rested(), REST) }
+  },
+  write: (list, name) => edits('write', { values: list }, name ?? values(list)),
   say,
   hover(name) {
     if (view.hovered === name) return
@@ -237,7 +304,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   },
   locate: (name) => locate(name, true),
   show: (place) => editor.show(place, true),
-  apply: (list, version) => editor.apply(list, version),
+  apply: (list, version, name) => editor.apply(list, version, name),
   toggle(name) {
     const o = model.objects.find((k) => k.name === name)
     if (o && !o.shown) {
@@ -288,7 +355,21 @@ view.hidden = hidden
 const editor = new Editor(editorHost, link, nonce.startsWith('__') ? '' : nonce, [
   { key: 'Mod-s', run: () => (void save(), true) },
   { key: 'Mod-k', run: () => (openPalette(), true) },
+  { key: 'Mod-z', run: () => (turn(1), true) },
+  { key: 'Mod-Shift-z', run: () => (turn(-1), true) },
+  { key: 'Mod-y', run: () => (turn(-1), true) },
 ])
+editor.steps.onHeld = ({ name, to }) => {
+  if (to === null) held.delete(name)
+  else held.set(name, to)
+  // The engine gives up all that the text does not state, and takes again what is still held.
+  writing = writing.then(async () => {
+    await editor.synced()
+    if (to === null) await link.ask('reset')
+    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+  }).catch((error) => say(error.message))
+}
+header.querySelector('.history-place')!.replaceWith(link.still ? '' : historyButtons(editor.steps, turn, !host))
 editor.onTrouble = (words) => say(words)
 editor.onPending = () => showSaved()
 let cursorTimer = 0
@@ -307,7 +388,7 @@ const hands = new Hands(view, link, viewHost, {
   hover: actions.hover,
   say,
   status: say,
-  apply: (list, version) => editor.apply(list, version),
+  apply: (list, version, name) => editor.apply(list, version, name),
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
 })
@@ -318,7 +399,13 @@ parametersPanel(params, actions)
 treePanel(tree, actions)
 inspectorPanel(inspector, actions)
 messagesPanel(messagesHost, actions)
-strip(footer, actions)
+strip(footer, actions, (host) => new GivenNumbers(host, link, {
+  say, write: actions.write, typed: actions.typed,
+  reset: async () => {
+    await link.ask('reset')
+    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+  },
+}))
 
 function showSaved(): void {
   const waits = editor.pending
@@ -345,6 +432,8 @@ function keeps(): boolean {
 async function save(force = false): Promise<void> {
   if (host) return host.save()
   try {
+    await rested()
+    await writing
     await editor.synced()
     const answer = await link.tell({ kind: 'save', force })
     if (link.local) return give(new Blob([answer.text], { type: 'text/plain' }), model.name)
@@ -364,7 +453,7 @@ function conflict(text: string): void {
   const lines = (t: string) => t.split('\n').length
   warn(`The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
     $('button', { onclick: () => void save(true).then(() => warn('')) }, 'Keep mine, write the file'),
-    $('button', { onclick: () => void link.tell({ kind: 'revert' }).then(() => warn('')).catch(() => warn('')) }, 'Take theirs'),
+    $('button', { onclick: revert }, 'Take theirs'),
     $('button', { onclick: () => compare() }, 'Show both'))
 }
 
@@ -459,6 +548,7 @@ link.onMessage = (message) => {
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
       else {
         warn('')
+        if (held.size) void link.ask('write', { values: Object.fromEntries(held) }).catch(() => undefined)
         if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
         void foreign.again()
       }
@@ -488,7 +578,7 @@ async function begin(hello: any): Promise<void> {
     tabs.append(tab('board', 'Drawing board'))
     if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
   }
-  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
+  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.')
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
   showSaved()
   try {
@@ -574,7 +664,11 @@ function sheet(name: SheetName | 'board'): void {
 function commands(): Command[] {
   return [
     { name: link.local ? 'Download the text' : 'Save', keys: 'Ctrl+S', run: () => void save() },
-    { name: link.local ? 'Take the text as it came: drop changes' : 'Take the file: drop unsaved changes', run: () => void link.tell({ kind: 'revert' }).catch((e) => say(e.message)) },
+    ...(link.still ? [] : [
+      { name: 'Undo', keys: 'Ctrl+Z', run: () => turn(1) },
+      { name: 'Redo', keys: 'Ctrl+Shift+Z', run: () => turn(-1) },
+      { name: link.local ? 'Revert to the text as it came' : 'Revert to the saved file', run: revert },
+    ]),
     { name: 'Fit the model', keys: 'F', run: () => view.fit() },
     ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
     { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
@@ -664,19 +758,27 @@ paletteButton.addEventListener('click', openPalette)
 helpButton.addEventListener('click', () => help(commands()))
 saveButton.addEventListener('click', () => void save())
 
+/** The texts of fields when the focus came to them. */
+const came = new WeakMap<HTMLInputElement, string>()
+addEventListener('focusin', (e) => {
+  if (e.target instanceof HTMLInputElement && e.target.type !== 'range') came.set(e.target, e.target.value)
+})
 addEventListener('keydown', (e) => {
   const target = e.target as HTMLElement
   const typing = target.closest('input, select, textarea, .cm-editor, dialog') !== null
   const name = `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && e.key.length === 1 && /[a-z]/i.test(e.key) ? 'Shift+' : ''}${e.key.length === 1 ? e.key.toUpperCase() : e.key}`
   if (name === 'Ctrl+K') {
+    if (e.defaultPrevented) return
     e.preventDefault()
     return openPalette()
   }
-  if (name === 'Ctrl+Z' && !typing) {
+  const turns: Record<string, number> = { 'Ctrl+Z': 1, 'Ctrl+Shift+Z': -1, 'Ctrl+Y': -1 }
+  if (name in turns) {
+    // A field with something typed in it takes that back first.
+    const field = target.closest('input')
+    if (e.defaultPrevented || target.closest('dialog') || (field && (came.get(field) ?? field.value) !== field.value)) return
     e.preventDefault()
-    if (host) host.undo()
-    else editor.view.focus()
-    return
+    return turn(turns[name])
   }
   const command = commands().find((c) => c.keys === name)
   if (e.key === 'Escape' && !typing) {
@@ -727,7 +829,9 @@ Object.assign(window, {
     positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
     board,
+    steps: () => ({ done: [...editor.steps.done], undone: [...editor.steps.undone] }),
     settled: async () => {
+      await rested()
       await hands.settled()
       await editor.synced()
       await setting.settled()

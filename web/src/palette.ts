@@ -9,7 +9,8 @@ export interface Command {
 }
 
 export function palette(all: Command[]): void {
-    const input = h('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
+  if (document.querySelector('dialog[open]')) return
+  const input = h('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
   const list = h('ul', { role: 'listbox', id: 'commands', 'aria-label': 'commands' })
   const dialog = h('dialog', { class: 'palette', 'aria-label': 'commands' }, input, list)
   let found: Command[] = []

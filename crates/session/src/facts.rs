@@ -1,6 +1,6 @@
 //! Facts of a document as data: parameters, objects, diagnostics, all about one object.
 
-use crate::drag::{own_numbers, state};
+use crate::drag::own_numbers;
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_document::{ArgumentInText, Document};
@@ -197,7 +197,7 @@ pub fn inspected(
             .iter()
             .filter(|p| **p == base || p.strip_prefix(&*base).is_some_and(|r| r.starts_with('.')))
         {
-            if let Some((value, range)) = state(document, path) {
+            if let Some((value, range)) = document.number_state(path) {
                 let range = range.map(|(a, b)| [a, b]);
                 numbers.push(json!({"path": path, "value": value, "range": range}));
             }

@@ -127,3 +127,50 @@ fn what_cannot_be_dragged_says_so() {
         assert!(said.contains(part), "{request}: {said}");
     }
 }
+
+#[test]
+fn a_number_in_the_expression_follows_before_a_parameter_does() {
+    let text = "param float beam = 4 in [2, 6];\n\
+                AbsPoint P(1, 5.046 * beam, beam / 2);\nAbsPoint Q(0, 0, 0);";
+    let mut s = session(text);
+    let begin = ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    let handles = begin.head["handles"].as_array().unwrap();
+    let coefficients: Vec<&Value> = handles.iter().filter(|h| h["coefficient"] == true).collect();
+    assert_eq!(coefficients.len(), 2, "{}", begin.head["handles"]);
+    assert_eq!(coefficients[0]["name"], "P.y#1");
+    assert_eq!(coefficients[0]["direction"], json!([0.0, 4.0, 0.0]));
+    assert_eq!(coefficients[1]["direction"], json!([0.0, 0.0, -1.0]));
+    // Looking along x: x is not touched although it is a number of its own.
+    let drag = json!({"kind": "drag_to", "target": [1, 24.184, 2.5],
+        "basis": [[0, 1, 0], [0, 0, 1]], "grain": 1e-6});
+    let to = ask(&mut s, drag);
+    assert!((number(&to, "P.y#1") - 6.046).abs() < 1e-9, "{}", to.head);
+    assert!((number(&to, "P.z#1") - 1.6).abs() < 1e-9, "{}", to.head);
+    assert!(to.head["values"].get("P.x").is_none() && to.head["values"].get("beam").is_none());
+    let end = ask(&mut s, json!({"kind": "drag_end", "commit": true}));
+    let new = edited(text, &end);
+    assert_eq!(new, text.replace("5.046", "6.046").replace("beam / 2", "beam / 1.6"));
+}
+
+#[test]
+fn numbers_that_are_given_are_reached_and_written() {
+    let text = "param float l = 10 in [5, 20];\nparam float b = 4 in [2, 6];\n\
+                param float t = 2 in [1, 3];\nAbsPoint P(l * b * t, l / b, t);";
+    let mut s = session(text);
+    let given = json!({"kind": "solve_for", "targets": {"P.x": 90, "P.y": 2.5},
+        "by": {"l": {}, "b": {"weight": 2.0}, "t": {"home": 2.0}}});
+    let reply = ask(&mut s, given);
+    assert!(reply.head.get("error").is_none(), "{}", reply.head);
+    let shares = reply.head["adjustments"].as_array().unwrap().iter();
+    let shares: f64 = shares.map(|a| a["share"].as_f64().unwrap()).sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+    let end = ask(&mut s, json!({"kind": "commit"}));
+    let mut again = session(&edited(text, &end));
+    let value = ask(&mut again, json!({"kind": "evaluate", "expressions": ["P.x", "P.y"]}));
+    for (row, want) in value.head["values"].as_array().unwrap().iter().zip([90.0, 2.5]) {
+        assert!((row["value"].as_f64().unwrap() / want - 1.0).abs() < 1e-8, "{row}");
+    }
+    let far = json!({"kind": "solve_for", "targets": {"P.x": 900}, "by": {"l": {}}});
+    let said = ask(&mut s, far).head["error"].to_string();
+    assert!(said.contains("out of reach"), "{said}");
+}
