@@ -35,6 +35,7 @@ pub mod searches;
 mod set;
 mod solve;
 mod solve_for;
+mod statements;
 
 pub use convert::ModelFormat;
 pub use degenerate::has_no_area;

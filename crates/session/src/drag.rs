@@ -6,7 +6,7 @@
 use moldloft_document::follow::{Conditions, Follower, Search, follow};
 use moldloft_document::{Document, round_to};
 use moldloft_num::Vec3;
-use moldloft_registry::Value;
+use moldloft_registry::{Class, Value};
 
 /// A drag under way.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Drag {
     pub expression: String,
     /// What moves it.
     pub handles: Vec<Handle>,
+    /// True for what is on a curve or surface by its own numbers: only a choice takes that along.
+    carried: bool,
     /// Where it was.
     start: Vec3,
     /// Every number that was moved, and its value before.
@@ -28,10 +30,12 @@ pub struct Drag {
 pub enum HandleKind {
     /// A number of the object itself.
     Own,
-    /// A number in the expression of one of its numbers.
+    /// A number in the expression of one of its numbers, such as 5.046 in `5.046 * beam`.
     Coefficient,
     /// A parameter.
     Parameter,
+    /// A whole number in such an expression: mostly part of a rule, as in `beam / 2`.
+    WholeCoefficient,
 }
 
 /// A number that moves the place.
@@ -118,7 +122,15 @@ impl Drag {
                     names.push((name, HandleKind::Own));
                 } else {
                     let found = document.coefficients(&name).into_iter();
-                    names.extend(found.map(|c| (c.name, HandleKind::Coefficient)));
+                    names.extend(found.map(|c| {
+                        let whole = c.value.fract() == 0.0;
+                        let kind = if whole {
+                            HandleKind::WholeCoefficient
+                        } else {
+                            HandleKind::Coefficient
+                        };
+                        (c.name, kind)
+                    }));
                 }
             }
         }
@@ -138,84 +150,58 @@ impl Drag {
         if handles.is_empty() {
             return Err(format!("`{object}` cannot be dragged: no number of this text moves it"));
         }
-        Ok(Self { object: object.into(), expression, handles, start, moved: Vec::new() })
+        let own = handles.iter().any(|h| h.kind == HandleKind::Own);
+        let carried = own
+            && document
+                .graph()
+                .find(object)
+                .and_then(|key| document.graph().get(key))
+                .is_some_and(|o| matches!(o.row.class, Class::Bead | Class::Magnet | Class::Ring));
+        Ok(Self { object: object.into(), expression, handles, carried, start, moved: Vec::new() })
     }
 
-    /// The numbers that follow a motion when none are chosen: those of the object itself, for what these cannot follow the
-    /// numbers in its expressions, and for the rest the parameter that takes most of it within its range.
-    pub fn follows(&self, target: Vec3, basis: &[Vec3]) -> Vec<String> {
+    /// The numbers that follow a motion: those of the object itself, as far as the view shows what they do, and the
+    /// chosen ones. Where none are chosen, for what is left of the motion the coefficients in its expressions, then the
+    /// parameters that take most of it within their ranges, then whole coefficients.
+    pub fn followers(&self, target: Vec3, basis: &[Vec3], chosen: &[String]) -> Vec<String> {
         let seen = |h: &Handle| -> Vec<f64> { basis.iter().map(|b| b.dot(h.direction)).collect() };
-        let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let motion: Vec<f64> = basis.iter().map(|b| b.dot(target - self.start)).collect();
-        let whole = size(&motion);
-        let mut left = motion;
-        // The directions that are followed, at right angles to each other.
-        let mut followed: Vec<Vec<f64>> = Vec::new();
+        let mut left = Left { whole: norm(&motion), motion, followed: Vec::new() };
         let mut names = Vec::new();
-        let without = |v: &[f64], followed: &[Vec<f64>]| {
-            let mut v = v.to_vec();
-            for q in followed {
-                let dot: f64 = v.iter().zip(q).map(|(a, b)| a * b).sum();
-                v.iter_mut().zip(q).for_each(|(a, b)| *a -= dot * b);
-            }
-            v
-        };
-        let mut take = |h: &Handle, left: &mut Vec<f64>, followed: &mut Vec<Vec<f64>>| {
-            let d = seen(h);
-            let new = without(&d, followed);
-            if size(&d) < SEEN * h.direction.norm() || size(&new) < SEEN * size(&d) {
-                return;
-            }
-            let length = size(&new);
-            followed.push(new.iter().map(|x| x / length).collect());
-            *left = without(left, followed);
-            names.push(h.name.clone());
-        };
-        for h in self.handles.iter().filter(|h| h.kind == HandleKind::Own) {
-            take(h, &mut left, &mut followed);
-        }
-        // Of several numbers in an expression the one that changes least.
-        let mut others: Vec<&Handle> =
-            self.handles.iter().filter(|h| h.kind == HandleKind::Coefficient).collect();
-        let worth = |h: &Handle| h.direction.norm() * h.value.abs().max(1e-3);
-        others.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-        for h in others {
-            if size(&left) > FOLLOWED * whole {
-                let dot: f64 = seen(h).iter().zip(&left).map(|(a, b)| a * b).sum();
-                if dot.abs() > SEEN * size(&seen(h)) * size(&left) {
-                    take(h, &mut left, &mut followed);
-                }
+        let of = |kind: HandleKind| self.handles.iter().filter(move |h| h.kind == kind);
+        for h in of(HandleKind::Own) {
+            if left.take(&seen(h), h.direction.norm()) {
+                names.push(h.name.clone());
             }
         }
-        let mut params: Vec<&Handle> =
-            self.handles.iter().filter(|h| h.kind == HandleKind::Parameter).collect();
-        for _ in 0..basis.len() {
-            if size(&left) <= FOLLOWED * whole {
-                break;
-            }
-            let pull = |h: &Handle| -> f64 {
-                let width = h.range.map_or(h.value.abs().max(1.0), |(a, b)| b - a);
-                let dot: f64 = seen(h).iter().zip(&left).map(|(a, b)| a * b).sum();
-                if dot.abs() > SEEN * size(&seen(h)) * size(&left) {
-                    dot.abs() * width
-                } else {
-                    0.0
+        if !chosen.is_empty() {
+            names.extend(
+                chosen.iter().filter(|c| self.handles.iter().any(|h| h.name == **c)).cloned(),
+            );
+            names.dedup();
+            return names;
+        }
+        if self.carried {
+            return names;
+        }
+        for kind in [HandleKind::Coefficient, HandleKind::Parameter, HandleKind::WholeCoefficient] {
+            let width = |h: &Handle| h.range.map_or(h.value.abs().max(1e-3), |(a, b)| b - a);
+            let mut rest: Vec<&Handle> = of(kind).collect();
+            while !left.is_followed() && !rest.is_empty() {
+                let pull = |h: &&Handle| left.pull(&seen(h)) * width(h);
+                let at = (0..rest.len())
+                    .max_by(|a, b| pull(&rest[*a]).total_cmp(&pull(&rest[*b])))
+                    .unwrap_or_default();
+                let best = rest.remove(at);
+                if left.pull(&seen(best)) > 0.0 && left.take(&seen(best), best.direction.norm()) {
+                    names.push(best.name.clone());
                 }
-            };
-            let Some(at) =
-                (0..params.len()).max_by(|a, b| pull(params[*a]).total_cmp(&pull(params[*b])))
-            else {
-                break;
-            };
-            let best = params.remove(at);
-            if pull(best) > 0.0 {
-                take(best, &mut left, &mut followed);
             }
         }
         names
     }
 
-    /// Moves the place as near to `target` as the numbers take it: those named, or those that [`Drag::follows`] gives.
+    /// Moves the place as near to `target` as [`Drag::followers`] take it.
     ///
     /// # Errors
     /// Why nothing moves.
@@ -224,10 +210,10 @@ impl Drag {
         document: &mut Document,
         target: Vec3,
         basis: &[Vec3],
-        names: &[String],
+        chosen: &[String],
         grain: f64,
     ) -> Result<Reached, String> {
-        let names = if names.is_empty() { self.follows(target, basis) } else { names.to_vec() };
+        let names = self.followers(target, basis, chosen);
         for name in &names {
             self.keep(document, name)?;
         }
@@ -241,7 +227,15 @@ impl Drag {
                 .map_err(|d| d.first().map_or(String::new(), |d| d.message.clone()))?;
         }
         if names.is_empty() {
-            return Err(format!("no number moves `{}` that way in this view", self.object));
+            let moves = basis.iter().any(|b| b.dot(target - self.start).abs() > grain);
+            if moves {
+                return Err(format!(
+                    "`{}` does not move that way in this view: no number of the text does that",
+                    self.object
+                ));
+            }
+            let place = place(document, &self.expression)?;
+            return Ok(Reached { place, left: 0.0, values: Vec::new(), ended: Vec::new() });
         }
         let home = |name: &String| self.moved.iter().find(|(n, _)| n == name).map(|(_, x)| *x);
         let mut followers = Vec::new();
@@ -318,6 +312,50 @@ impl Drag {
         });
         changed.collect()
     }
+}
+
+/// What is left of a motion in the picture, and the directions that are followed, at right angles to each other.
+struct Left {
+    whole: f64,
+    motion: Vec<f64>,
+    followed: Vec<Vec<f64>>,
+}
+
+impl Left {
+    fn is_followed(&self) -> bool {
+        norm(&self.motion) <= FOLLOWED * self.whole
+    }
+
+    /// How far a number that moves the place by `seen` follows what is left.
+    fn pull(&self, seen: &[f64]) -> f64 {
+        let along: f64 = seen.iter().zip(&self.motion).map(|(a, b)| a * b).sum::<f64>().abs();
+        if along > SEEN * norm(seen) * norm(&self.motion) { along } else { 0.0 }
+    }
+
+    /// Follows a direction of that length in space, if the picture shows it and it is a new one.
+    fn take(&mut self, seen: &[f64], length: f64) -> bool {
+        let new = self.without(seen);
+        if norm(seen) < SEEN * length || norm(&new) < SEEN * norm(seen) {
+            return false;
+        }
+        let size = norm(&new);
+        self.followed.push(new.iter().map(|x| x / size).collect());
+        self.motion = self.without(&self.motion);
+        true
+    }
+
+    fn without(&self, v: &[f64]) -> Vec<f64> {
+        let mut v = v.to_vec();
+        for q in &self.followed {
+            let dot: f64 = v.iter().zip(q).map(|(a, b)| a * b).sum();
+            v.iter_mut().zip(q).for_each(|(a, b)| *a -= dot * b);
+        }
+        v
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn place(document: &mut Document, expression: &str) -> Result<Vec3, String> {

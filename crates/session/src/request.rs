@@ -91,7 +91,7 @@ pub enum Ask {
         target: [f64; 3],
         /// Orthogonal unit vectors: only the distance along these counts.
         basis: Vec<[f64; 3]>,
-        /// The numbers that may change; by default those of the object itself, and what else the motion needs.
+        /// Numbers that follow besides the object's own; by default what the motion needs.
         #[serde(default)]
         names: Vec<String>,
         /// A length that does not matter, such as that of a picture point: numbers are rounded to it.
@@ -233,6 +233,30 @@ pub enum Ask {
         /// The new name.
         new: String,
     },
+    /// The kinds of objects, with their arguments.
+    Kinds,
+    /// Writes a statement where it belongs; the reply has the edits.
+    Add {
+        /// A statement that makes one object or parameter.
+        statement: String,
+    },
+    /// Deletes an object and its statement; the reply has the edits.
+    Delete {
+        /// Its name.
+        name: String,
+    },
+    /// Writes a statement like that of an object behind it; the reply has the edits and the new name.
+    Duplicate {
+        /// The object.
+        name: String,
+    },
+    /// Gives an object another name everywhere; the reply has the edits.
+    RenameObject {
+        /// Its name.
+        name: String,
+        /// The new name.
+        new: String,
+    },
     /// The edit that formats the text.
     Format,
     /// The words of the language, for highlighting.
@@ -257,6 +281,10 @@ impl Ask {
                 | Ask::SolveFor { .. }
                 | Ask::DragTo { .. }
                 | Ask::DragEnd { .. }
+                | Ask::Add { .. }
+                | Ask::Delete { .. }
+                | Ask::Duplicate { .. }
+                | Ask::RenameObject { .. }
                 | Ask::Show { .. }
         )
     }

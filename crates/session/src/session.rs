@@ -358,6 +358,16 @@ impl Session {
                 };
                 frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
             }
+            Ask::Kinds => frame.put("kinds", facts::kinds(self.document.registry())),
+            Ask::Add { statement } => self.rewrite(|d| d.add(&statement), frame)?,
+            Ask::Delete { name } => self.rewrite(|d| d.delete(&name).map(drop), frame)?,
+            Ask::Duplicate { name } => {
+                let new = self.rewrite(|d| d.duplicate(&name), frame)?;
+                frame.put("name", new);
+            }
+            Ask::RenameObject { name, new } => {
+                self.rewrite(|d| d.rename(&name, &new).map(drop), frame)?;
+            }
             Ask::Format => {
                 let formatted = moldloft_syntax::sdl::format(&self.text);
                 let formatted = formatted
@@ -413,6 +423,19 @@ impl Session {
         frame.put("kept", self.kept.clone());
     }
 
+    /// A change of the text by the document; the page makes its edits and sends the text back.
+    fn rewrite<A>(
+        &mut self,
+        change: impl FnOnce(&mut Document) -> Result<A, Diagnostic>,
+        frame: &mut ReplyFrame,
+    ) -> Result<A, Refusal> {
+        self.rev += 1;
+        let made = change(&mut self.document)?;
+        let text = self.document.text();
+        self.put_edits(frame, &text);
+        Ok(made)
+    }
+
     fn put_edits(&self, frame: &mut ReplyFrame, new: &str) {
         let edit = difference(&self.text, new);
         let edits =
@@ -424,11 +447,10 @@ impl Session {
         let drag = Drag::begin(&mut self.document, object, at)?;
         let rows = drag.handles.iter().map(|h| {
             let own = h.kind == HandleKind::Own;
-            let coefficient = h.kind == HandleKind::Coefficient;
             json!({
                 "name": h.name,
                 "own": own,
-                "coefficient": coefficient,
+                "parameter": h.kind == HandleKind::Parameter,
                 "direction": h.direction.to_array(),
                 "value": h.value,
                 "range": h.range.map(|(a, b)| [a, b]),

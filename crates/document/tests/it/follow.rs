@@ -25,7 +25,8 @@ struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 }
@@ -81,7 +82,11 @@ fn random_conditions_are_met_by_a_least_change() {
         };
         let slopes = |x: &[f64]| {
             vec![
-                vec![c[0] * x[1] * x[2] + 2.0 * c[1] * x[0], c[0] * x[0] * x[2], c[0] * x[0] * x[1]],
+                vec![
+                    c[0] * x[1] * x[2] + 2.0 * c[1] * x[0],
+                    c[0] * x[0] * x[2],
+                    c[0] * x[0] * x[1],
+                ],
                 vec![c[2], c[3] * x[2] + 2.0 * c[4] * x[1], c[3] * x[1]],
             ]
         };
@@ -110,11 +115,8 @@ fn random_conditions_are_met_by_a_least_change() {
         let inside = found.x.iter().all(|x| *x > 1.0 + 1e-6 && *x < 2.0 - 1e-6);
         if inside {
             let [a, b] = [&slopes(&found.x)[0], &slopes(&found.x)[1]];
-            let along = [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ];
+            let along =
+                [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
             let size = along.iter().map(|x| x * x).sum::<f64>().sqrt();
             let slope: f64 = (0..3)
                 .map(|k| followers[k].weight.powi(2) * (found.x[k] - home[k]) * along[k] / size)
