@@ -2,6 +2,7 @@
 
 import { Vector3 } from 'three'
 import { h, shown } from './dom'
+import { Gumball } from './gumball'
 import { Newest, Refused, type Link } from './link'
 import { model } from './state'
 import { typed } from './typed'
@@ -15,11 +16,14 @@ export interface Handlers {
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
+  /** A place that was clicked where nothing is dragged; true when it was wanted. */
+  place(at: Vector3, grain: number): Promise<boolean>
 }
 
 interface Handle {
   name: string
   own: boolean
+  parameter: boolean
   direction: number[]
   value: number
   range: [number, number] | null
@@ -33,10 +37,8 @@ interface Drag {
   own: string[]
   /** The numbers that follow now. */
   names: string[]
-  /** The parameters that the person chose for what the object's own numbers cannot follow. */
+  /** What the person chose for what the object's own numbers cannot follow. */
   chosen: string[]
-  /** Parameters that have joined: what has once moved goes on. */
-  joined: Set<string>
   axis: number | null
   plane: number | null
   /** True while the place is to be on the surface under the pointer. */
@@ -50,14 +52,12 @@ interface Drag {
   /** True for a drag by the keys of the keyboard. */
   keys: boolean
   last: [number, number]
+  /** From the place to the pointer, where a handle beside the place is held. */
+  offset: [number, number]
 }
 
 const AXES = ['x', 'y', 'z']
 const STEPS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
-/** A number counts as moving the place in the picture when at least this share of its motion is seen there. */
-const SEEN = 0.05
-/** A part of the motion that is smaller than this share needs no further number. */
-const FOLLOWED = 1e-3
 /** Picture points behind the pointer that need a reason. */
 const BEHIND = 2
 const unit = (k: number) => new Vector3().setComponent(k, 1)
@@ -72,12 +72,14 @@ export class Hands {
   private readonly pointers = new Map<number, [number, number]>()
   private pressed: { x: number; y: number; button: number; shift: boolean; moved: boolean } | null = null
   private readonly requests: Newest<() => Promise<unknown>>
+  private readonly gumball: Gumball
   private readonly tip = h('div', { class: 'tip', hidden: true })
   private readonly chooser = h('div', { class: 'chooser', role: 'group', 'aria-label': 'what to move', hidden: true })
   private readonly entry = h('input', { class: 'entry number', type: 'text', 'aria-label': 'value', hidden: true })
 
   constructor(private readonly view: View, private readonly link: Link, host: HTMLElement, private readonly act: Handlers) {
-    host.append(this.tip, this.chooser, this.entry)
+    this.gumball = new Gumball(view, () => this.held(), (e, axis, plane) => this.grip(e, axis, plane))
+    host.append(this.gumball.element, this.tip, this.chooser, this.entry)
     this.requests = new Newest((run) => run())
     const c = view.canvas
     c.addEventListener('pointerdown', (e) => this.down(e))
@@ -126,12 +128,41 @@ export class Hands {
     if (item) this.grab(item, x, y)
   }
 
+  /** The selected point, which has handles: none in a picture that cannot be changed. */
+  private point(object: string): Drawn | undefined {
+    return [...this.view.items.values()].find((i) => i.object === object && i.kind === 'point' && this.view.seen(i))
+  }
+
+  private held(): Vector3 | null {
+    if (this.link.still || this.measuring) return null
+    const item = this.point(this.view.selected)
+    return item ? this.view.place(item) : null
+  }
+
+  /** After each frame. */
+  drawn(): void {
+    this.gumball.draw()
+  }
+
+  private grip(e: PointerEvent, axis: number | null, plane: number | null): void {
+    const item = this.point(this.view.selected)
+    if (!item || this.drag) return
+    this.view.canvas.focus({ preventScroll: true })
+    this.view.canvas.setPointerCapture(e.pointerId)
+    const [x, y] = this.at(e)
+    const [px, py] = this.view.project(this.view.place(item))
+    this.pointers.set(e.pointerId, [x, y])
+    this.pressed = { x, y, button: 0, shift: false, moved: false }
+    this.grab(item, x, y)
+    Object.assign(this.drag!, { axis, plane, offset: [x - px, y - py] })
+  }
+
   private grab(item: Drawn, x: number, y: number, keys = false): void {
     this.act.select(item.object)
     const start = this.view.place(item)
     const drag: Drag = {
-      item, start, target: start.clone(), handles: [], own: [], names: [], chosen: [], joined: new Set(), axis: null, plane: null, onSurface: false,
-      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y],
+      item, start, target: start.clone(), handles: [], own: [], names: [], chosen: [], axis: null, plane: null, onSurface: false,
+      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y], offset: [0, 0],
     }
     this.drag = drag
     drag.begun = this.begin(drag)
@@ -159,81 +190,33 @@ export class Hands {
 
   /** A drag of the selected point by keys: arrows instead of the pointer. */
   take(object: string): void {
-    const item = [...this.view.items.values()].find((i) => i.object === object && i.kind === 'point' && this.view.seen(i))
+    const item = this.point(object)
     if (!item) return this.act.status(object ? `${object} is no point that can be moved: select one` : 'Select a point first')
     if (this.drag || this.link.still) return
     this.view.canvas.focus({ preventScroll: true })
     this.grab(item, ...this.view.project(this.view.place(item)), true)
   }
 
-  /**
-   * The numbers that follow the motion: the object's own, as far as the view shows what they do, and for what these cannot
-   * follow the chosen parameters, or the one that takes most of it within its range.
-   */
-  private followers(drag: Drag, basis: Vector3[]): string[] {
-    const shadow = (v: Vector3) => basis.map((b) => b.dot(v))
-    const size = (v: number[]) => Math.hypot(...v)
-    const dot = (a: number[], b: number[]) => a.reduce((sum, x, k) => sum + x * b[k], 0)
-    const followed: number[][] = []
-    const without = (v: number[]) => followed.reduce((rest, q) => rest.map((x, k) => x - dot(rest, q) * q[k]), v)
-    const motion = shadow(drag.target.clone().sub(drag.start))
-    const whole = size(motion)
-    let left = motion
-    const names: string[] = []
-    const take = (handle: Handle): boolean => {
-      const d = new Vector3(...(handle.direction as [number, number, number]))
-      const seen = shadow(d)
-      const fresh = without(seen)
-      // A number that moves the place mostly along the line of sight would run away.
-      if (size(seen) < SEEN * d.length() || size(fresh) < SEEN * size(seen)) return false
-      followed.push(fresh.map((x) => x / size(fresh)))
-      left = without(left)
-      names.push(handle.name)
-      return true
-    }
-    for (const handle of drag.handles) if (handle.own) take(handle)
-    const params = drag.handles.filter((k) => !k.own)
-    for (const handle of params) if (drag.chosen.includes(handle.name) || (!drag.chosen.length && drag.joined.has(handle.name))) names.push(handle.name) && take(handle)
-    // A bead is meant to stay on its curve: nothing but a choice takes that along.
-    const kind = model.objects.find((o) => o.name === drag.item.object)?.class ?? ''
-    const held = drag.own.length > 0 && ['bead', 'magnet', 'ring'].includes(kind)
-    if (!drag.chosen.length && !held)
-      while (size(left) > FOLLOWED * whole) {
-        const pull = (k: Handle) => {
-          const seen = shadow(new Vector3(...(k.direction as [number, number, number])))
-          const along = Math.abs(dot(seen, left))
-          return along > SEEN * size(seen) * size(left) ? along * (k.range ? k.range[1] - k.range[0] : Math.max(1, Math.abs(k.value))) : 0
-        }
-        const best = params.filter((k) => !names.includes(k.name)).sort((a, b) => pull(b) - pull(a))[0]
-        if (!best || !pull(best) || !take(best)) break
-        drag.joined.add(best.name)
-      }
-    return [...new Set(names)]
-  }
-
-  /** Chips of the parameters that may follow; the ones that do are pressed. */
+  /** Chips of the numbers that may follow besides the object's own; the ones that do are pressed. */
   private offer(drag: Drag): void {
-    const params = drag.handles.filter((k) => !k.own)
+    const others = drag.handles.filter((k) => !k.own)
     const follow = drag.names.filter((n) => !drag.own.includes(n))
-    this.chooser.hidden = !params.length || !follow.length
+    this.chooser.hidden = !others.length || !follow.length
     if (this.chooser.hidden) return
     const [x, y] = this.view.project(this.view.place(drag.item))
     const choose = (names: string[]) => {
-      // What moved for the old choice goes back.
-      const back = Object.fromEntries(params.filter((k) => follow.includes(k.name) && !names.includes(k.name)).map((k) => [k.name, k.value]))
-      if (Object.keys(back).length) this.requests.push(() => this.link.ask('set', { values: back }).catch(() => undefined))
-      void this.requests.settled().then(() => this.drag === drag && this.aim(drag, false))
       drag.chosen = names
-      drag.joined.clear()
+      this.aim(drag, false)
     }
     const chip = (label: string, names: string[]) =>
       h('button', { class: `chip ${names.join() === follow.join() ? 'on' : ''}`, 'aria-pressed': names.join() === follow.join(), onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
-    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : 1)
-    const listed = [...params].sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a)).slice(0, 6)
+    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
+    const listed = [...others].sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a)).slice(0, 6)
+    const params = others.filter((k) => k.parameter).map((k) => k.name)
     this.chooser.replaceChildren(
       h('span', { class: 'quiet' }, 'follows by'),
-      ...listed.map((k) => chip(k.name, [k.name])),
-      ...(params.length > 1 ? [chip('all together', params.map((k) => k.name))] : []))
+      ...listed.map((k) => chip(k.parameter ? k.name : `${shown(k.value)} of ${k.name.replace(/#\d+$/, '')}`, [k.name])),
+      ...(params.length > 1 ? [chip('all parameters', params)] : []))
     this.chooser.style.left = `${x + 16}px`
     this.chooser.style.top = `${y + 16}px`
   }
@@ -312,9 +295,9 @@ export class Hands {
   private aim(drag: Drag, free: boolean): void {
     if (!drag.ready) return
     drag.aimed = true
-    this.tip.hidden = true
+    this.view.ghost(true)
     const { camera } = this.view
-    const [x, y] = drag.last
+    const [x, y] = [drag.last[0] - drag.offset[0], drag.last[1] - drag.offset[1]]
     const { ray } = this.view.ray(x, y)
     let basis = [camera.right, camera.up]
     let snapped = ''
@@ -345,29 +328,39 @@ export class Hands {
     // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
     if (drag.axis !== null || drag.plane !== null) basis = [unit(0), unit(1), unit(2)]
     const target = drag.target.clone()
-    drag.names = this.followers(drag, basis)
-    const { names } = drag
-    if (!names.length) return this.act.status(`${drag.item.object} does not move that way in this view: no number of the text does that. Turn the view, or lock another axis`)
-    if (this.drag === drag) this.offer(drag)
     const grain = camera.grain(this.view.height)
     this.requests.push(async () => {
       try {
-        const { head } = await this.link.ask('drag_to', { target: target.toArray(), basis: basis.map((b) => b.toArray()), names, grain })
+        const { head } = await this.link.ask('drag_to', { target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.chosen, grain })
         if (this.drag !== drag) return
         const values = head.values as Record<string, number>
+        drag.names = Object.keys(values)
+        this.offer(drag)
+        this.label(drag, head.reached)
         const words = Object.entries(values).map(([n, v]) => `${n} = ${shown(v)}`)
         const lock = drag.axis !== null ? ` · along ${AXES[drag.axis]}` : drag.plane !== null ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}` : ''
         // Where it stays behind the pointer, the reason: an end of a range, or no number for the rest of the way.
-        const ended = drag.handles.filter((k) => names.includes(k.name) && k.range && (values[k.name] <= k.range[0] || values[k.name] >= k.range[1]))
         const short = Number(head.left) / grain
-        const why = !(short > BEHIND) ? '' : ended.length
-          ? ` · stays ${Math.round(short)} px behind: ${ended.map((k) => `${k.name} is at the end of its range, ${shown(values[k.name])}`).join(', ')}`
-          : ` · stays ${Math.round(short)} px behind: ${names.join(', ')} ${names.length > 1 ? 'move' : 'moves'} it no further that way`
+        const ended = (head.ended as string[]).map((n) => `${n} is at the end of its range, ${shown(values[n])}`)
+        const why = !(short > BEHIND) ? '' : ` · stays ${Math.round(short)} px behind: ${ended.length ? ended.join(', ') : `${drag.names.join(', ')} ${drag.names.length > 1 ? 'move' : 'moves'} it no further that way`}`
         this.act.status(words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why)
       } catch (error) {
-        if (error instanceof Refused && error.message !== 'superseded') this.act.status(error.message)
+        if (error instanceof Refused && error.message !== 'superseded') this.act.status(`${error.message}. Turn the view, or lock another axis`)
       }
     })
+  }
+
+  /** How far the place has moved, beside it, and the line from where it was. */
+  private label(drag: Drag, reached: number[]): void {
+    const now = new Vector3().fromArray(reached)
+    const by = now.clone().sub(drag.start)
+    this.view.overlay('moved', [[...drag.start.toArray(), ...reached]], 0xe8711a)
+    const parts = AXES.map((a, k) => (by.getComponent(k) ? `${a} ${shown(now.getComponent(k), 5)} (${by.getComponent(k) > 0 ? '+' : ''}${shown(by.getComponent(k), 3)})` : '')).filter(Boolean)
+    this.tip.textContent = `${parts.join('   ')} ${model.unit}`
+    this.tip.hidden = !parts.length
+    const [x, y] = this.view.project(now)
+    this.tip.style.left = `${x + 14}px`
+    this.tip.style.top = `${y - 34}px`
   }
 
   private up(e: PointerEvent): void {
@@ -382,8 +375,11 @@ export class Hands {
     if (!pressed || pressed.moved || pressed.button !== 0) return
     const [x, y] = this.at(e)
     const hit = this.view.pick(x, y)
-    if (this.measuring) this.measure(hit?.point ?? null)
-    else this.act.select(hit?.object ?? '')
+    if (this.measuring) return this.measure(hit?.point ?? null)
+    const at = hit?.point ?? this.view.placeAt(x, y)
+    void this.act.place(at, this.view.camera.grain(this.view.height)).then((taken) => {
+      if (!taken) this.act.select(hit?.object ?? '')
+    })
   }
 
   /** Ends the drag; what the hand does from now on is another one. */
@@ -391,8 +387,10 @@ export class Hands {
     const drag = this.drag
     if (!drag) return this.ended
     this.drag = null
-    this.chooser.hidden = true
-    this.entry.hidden = true
+    this.chooser.hidden = this.entry.hidden = this.tip.hidden = true
+    this.view.overlay('moved', null)
+    this.view.ghost(false)
+    if (!commit) this.act.status('')
     this.ended = this.end(drag, commit)
     return this.ended
   }
@@ -408,7 +406,6 @@ export class Hands {
     } catch (error) {
       this.act.status((error as Error).message)
     }
-    if (!commit) this.act.status('')
   }
 
   cancel(): void {

@@ -46,11 +46,14 @@ export class Steps {
   done: string[] = []
   undone: string[] = []
   onChange: () => void = () => {}
+  /** The text is another one, whoever changed it. */
+  onText: () => void = () => {}
   /** A value that is held goes with a step that was taken back or done again. */
   onHeld: (held: Held) => void = () => {}
 
   follow(update: ViewUpdate): void {
     if (!update.transactions.length) return
+    if (update.docChanged) this.onText()
     let name = 'Edit'
     for (const tr of update.transactions) {
       const back = tr.isUserEvent('undo')
@@ -109,8 +112,12 @@ export function historyButtons(steps: Steps, go: (count: number) => void, listed
     const row = (name: string, count: number, state: string) => h('button', { class: state, onclick: () => (count ? go(count) : undefined), 'aria-current': count === 0 ? 'step' : null }, name)
     const later = steps.undone.map((name, k) => row(name, k - steps.undone.length, 'undone'))
     const before = steps.done.map((name, k) => row(name, steps.done.length - 1 - k, k === steps.done.length - 1 ? 'now' : '')).reverse()
+    // The focus stays in the list that it came from: Escape closes that.
+    const within = list.contains(document.activeElement)
     list.replaceChildren(...later, ...before, row('As opened', steps.done.length, steps.done.length ? '' : 'now'))
-    list.querySelector('.now')?.scrollIntoView({ block: 'nearest' })
+    const now = list.querySelector<HTMLElement>('.now')
+    now?.scrollIntoView({ block: 'nearest' })
+    if (within) now?.focus({ preventScroll: true })
   }
   addEventListener('pointerdown', (e) => {
     if (!list.hidden && !box.contains(e.target as Node)) show(false)

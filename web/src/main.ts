@@ -3,7 +3,6 @@
 import './style.css'
 import { Editor } from './editor'
 import { BlockPlanes } from './blocks'
-import { drawAxes } from './axes'
 import { Analysis } from './analysis'
 import { Board } from './board'
 import { h, shown, store, stored } from './dom'
@@ -16,10 +15,13 @@ import { Cell } from './notebook'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
 import { help, palette, type Command } from './palette'
+import { Making } from './making'
 import { GivenNumbers } from './numbers'
+import { Orientation } from './orientation'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
-import { changed, model } from './state'
+import { startPage } from './start'
+import { changed, model, on } from './state'
 import { typed } from './typed'
 import { View, type Paint, type Style } from './view'
 import type { Standard } from './camera'
@@ -88,9 +90,10 @@ const saveButton = link.local
   ? $('button', { class: 'primary', title: 'The text as a file (Ctrl+S)' }, 'Download')
   : $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
 const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
+const exportButton = $('button', { title: 'Picture, meshes, curves, panels' }, 'Export')
 const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
 const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
-const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, link.still ? '' : saveButton, themeButton, helpButton)
+const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, exportButton, link.still ? '' : saveButton, themeButton, helpButton)
 const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
 const editorHost = $('div', { class: 'editor' })
 const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
@@ -99,7 +102,6 @@ const sheetHost = $('div', { class: 'sheet', hidden: true, tabindex: 0 })
 const toolbar = $('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'view' })
 const tabs = $('div', { class: 'tabs', role: 'tablist', 'aria-label': 'what is shown' })
 const legend = $('div', { class: 'legend', hidden: true })
-const axes = $('canvas', { class: 'axes', width: 144, height: 144, 'aria-hidden': 'true' })
 const section = $('div', { class: 'section', hidden: true })
 const planesHost = $('div', { class: 'section', role: 'group', 'aria-label': 'plane of a block', hidden: true })
 const status = $('output', { class: 'status', 'aria-live': 'polite' })
@@ -108,7 +110,7 @@ const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
 const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
 const footer = $('footer', { class: 'strip' })
 const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
-const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, axes, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
+const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
 const right = $('div', { class: 'right' }, ...[['Parameters', params], ['Objects', tree], ['Inspector', inspector]].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)))
 const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
 const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
@@ -176,7 +178,12 @@ themeButton.addEventListener('click', () => {
   applyTheme()
 })
 
-view.onFrame = () => drawAxes(axes, view.camera)
+const orientation = new Orientation(view.camera, (name) => look(name), () => view.height)
+viewHost.parentElement!.append(orientation.element)
+view.onFrame = () => {
+  orientation.draw()
+  hands.drawn()
+}
 
 // What the page does.
 
@@ -293,6 +300,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     view.settle()
   },
   select(name, from) {
+    if ((from === 'view' || from === 'tree') && making.pick(name)) return
     if (name !== selected) {
       selected = view.selected = name
       const o = model.objects.find((k) => k.name === name)
@@ -305,6 +313,10 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   locate: (name) => locate(name, true),
   show: (place) => editor.show(place, true),
   apply: (list, version, name) => editor.apply(list, version, name),
+  async rewrite(kind, fields, name) {
+    await rested()
+    await edits(kind, fields, name)
+  },
   toggle(name) {
     const o = model.objects.find((k) => k.name === name)
     if (o && !o.shown) {
@@ -314,6 +326,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     if (!hidden.delete(name)) hidden.add(name)
     hide()
   },
+  ghost: (on) => view.ghost(on),
   isolate(name) {
     hidden.clear()
     if (name) for (const o of model.objects) if (o.name !== name) hidden.add(o.name)
@@ -333,6 +346,18 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     void link.ask('watch', { expressions }).catch((error) => say(error.message))
   },
 }
+
+/** The control polygons of the selected curve, or of those that the selected point is in. */
+function polygons(): void {
+  const points = new Map([...view.items.values()].filter((i) => i.kind === 'point').map((i) => [i.object, i]))
+  const near = model.objects.filter((o) => (o.class === 'curve' || o.class === 'snake') && o.parents.length > 2 && (o.name === selected || o.parents.includes(selected)))
+  const runs = near.map((o) => o.parents.flatMap((p) => {
+    const item = points.get(p)
+    return item && view.seen(item) ? view.place(item).toArray() : []
+  }))
+  view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
+}
+on(['selection', 'rev'], polygons)
 
 async function locate(name: string, focus: boolean): Promise<void> {
   if (!name || link.still) return editor.show(null)
@@ -391,7 +416,23 @@ const hands = new Hands(view, link, viewHost, {
   apply: (list, version, name) => editor.apply(list, version, name),
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
+  place: (at, grain) => making.place(at, grain),
 })
+const making = new Making(right, link, {
+  say, select: (name) => actions.select(name, 'text'), apply: (list, version, name) => editor.apply(list, version, name), synced: () => editor.synced(),
+})
+const start = startPage({
+  begin: (text, name, reach) => {
+    // An empty scene is looked at from where its first points will be.
+    fitted = reach !== undefined
+    if (reach) Object.assign(view.camera, { reach, target: view.camera.target.set(0, 0, 0) })
+    view.draw()
+    editor.replace(text, false, false, name)
+  },
+  add: (kind) => void editor.synced().then(() => making.open(kind)),
+})
+viewHost.parentElement!.append(start)
+editor.steps.onText = () => (start.hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name))
 const board = new Board(link, editor, say)
 viewHost.parentElement!.append(board.element)
 const sheets = new Sheets(sheetHost, link, actions)
@@ -568,6 +609,7 @@ async function begin(hello: any): Promise<void> {
   document.title = `${hello.name} · Moldloft`
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
+  editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
   if (hello.watched) {
@@ -586,9 +628,12 @@ async function begin(hello: any): Promise<void> {
     if (link.local) await link.ask('open')
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
-    const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
+    // A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing.
+    const floats = view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
+    const usual = ![...view.items.values()].some((i) => i.kind === 'patch') ? [] : floats ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt'] : ['mesh.area', 'mesh.volume']
     const watched = stored<string[]>(`watch.${model.name}`, usual)
     if (!link.still) await link.ask('watch', { expressions: watched })
+    if (!again && !link.still) formats = (await link.ask('formats')).head.formats
     if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
@@ -610,7 +655,9 @@ viewHost.addEventListener('drop', (e) => {
 
 // Commands: one table for buttons, keys and the palette.
 
-const openPalette = () => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))])
+/** The formats of the engine: names, and what they hold. */
+let formats: [string, string][] = []
+const openPalette = (words = '') => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))], words)
 
 const looks: [Standard, string, string][] = [
   ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
@@ -687,6 +734,12 @@ function commands(): Command[] {
     ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => analysis.paint('field', 'derivative', p.name) })),
     ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
     { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
+    ...(link.still || !model.program ? [] : [
+      { name: 'Add an object', keys: 'Shift+A', run: () => void making.open() },
+      { name: 'Delete the selected object', keys: 'Delete', run: () => selected && void actions.rewrite('delete', { name: selected }, `Delete ${selected}`) },
+      { name: 'Duplicate the selected object', keys: 'Ctrl+D', run: () => selected && void actions.rewrite('duplicate', { name: selected }, `Duplicate ${selected}`) },
+      { name: 'Rename the selected object', keys: 'Shift+R', run: () => inspector.querySelector<HTMLInputElement>('input.title')?.select() },
+    ]),
     { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
     { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
     { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
@@ -709,8 +762,8 @@ function commands(): Command[] {
     { name: 'Go to objects', keys: 'Ctrl+4', run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus() },
     { name: 'Format the program', keys: 'Shift+Alt+F', run: () => void editor.format() },
     { name: 'Rename the name at the cursor', keys: 'F2', run: () => void editor.rename() },
-    { name: 'Picture as PNG', run: () => void download('png') },
-    ...[['svg', 'Lines plan as SVG'], ['stl', 'Mesh as STL'], ['obj', 'Mesh as OBJ'], ['gltf', 'Mesh as glTF'], ['gdf', 'Panels for WAMIT'], ['vtp', 'Mesh for ParaView']].map(([f, w]) => ({ name: `Download: ${w}`, run: () => void download(f) })),
+    { name: 'Export: picture (PNG)', run: () => void download('png') },
+    ...formats.map(([f, about]) => ({ name: `Export: ${f}, ${about}`, run: () => void download(f) })),
     { name: 'Light or dark', run: () => themeButton.click() },
     { name: 'Help', keys: 'F1', run: () => help(commands()) },
   ]
@@ -727,6 +780,7 @@ function buildToolbar(): void {
   const { field, by } = analysis
   const value = view.paint === 'field' ? (field === 'derivative' ? `d:${by}` : field) : view.paint
   toolbar.replaceChildren(
+    link.still ? '' : button('+', 'Add an object (Shift+A)', () => void making.open()),
     button('⤢', 'Fit the model (F)', () => view.fit()),
     choice('view', '', [['', 'View'], ...looks.map(([n, w, k]) => [n, `${w}  ${k}`] as [string, string])], (v) => {
       if (v) look(v as Standard)
@@ -754,7 +808,8 @@ function tab(name: SheetName | 'board', words: string): HTMLElement {
 }
 for (const [name, words] of SHEETS) tabs.append(tab(name, words))
 
-paletteButton.addEventListener('click', openPalette)
+paletteButton.addEventListener('click', () => openPalette())
+exportButton.addEventListener('click', () => openPalette('Export: '))
 helpButton.addEventListener('click', () => help(commands()))
 saveButton.addEventListener('click', () => void save())
 
@@ -783,6 +838,7 @@ addEventListener('keydown', (e) => {
   const command = commands().find((c) => c.keys === name)
   if (e.key === 'Escape' && !typing) {
     if (hands.busy) hands.cancel()
+    else if (making.isOpen) making.close()
     else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
     else if (view.clip) analysis.cut(null)
     else if (planes.shown) planes.close()

@@ -19,8 +19,12 @@ export interface Actions {
   locate(name: string): Promise<void>
   show(place: [number, number]): void
   apply(edits: { from: number; to: number; insert: string }[], version?: number, name?: string): void
+  /** A change of statements by the engine: a step of the history. */
+  rewrite(kind: string, fields: Record<string, unknown>, name: string): Promise<void>
   toggle(name: string): void
   isolate(name: string | null): void
+  /** Shows what was there before, while the hand moves. */
+  ghost(on: boolean): void
   inspect(name: string, by: string | null): Promise<any>
   watch(expressions: string[]): void
   say(words: string): void
@@ -87,7 +91,11 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         show(entry)
       }
       const commit = () => (keys ? act.rest(p.name, write) : void write())
-      slider.addEventListener('pointerdown', () => (keys = false))
+      slider.addEventListener('pointerdown', () => {
+        keys = false
+        act.ghost(true)
+        addEventListener('pointerup', () => act.ghost(false), { once: true })
+      })
       slider.addEventListener('blur', () => void act.rested())
       slider.addEventListener('input', () => step(slider.valueAsNumber))
       slider.addEventListener('change', commit)
@@ -345,6 +353,25 @@ function numberField(n: any, act: Actions, other: ((text: string) => void) | nul
   return input
 }
 
+/** An object's name: typed over, it is renamed everywhere. */
+function titled(name: string, act: Actions): HTMLElement {
+  if (act.still) return h('strong', {}, name)
+  const input = h('input', { type: 'text', class: 'title', 'aria-label': 'name of the object', spellcheck: 'false' })
+  input.value = name
+  input.addEventListener('keydown', (e) => {
+    if (e.key === 'Escape') input.value = name
+    if (e.key === 'Enter' || e.key === 'Escape') input.blur()
+  })
+  input.addEventListener('blur', async () => {
+    const now = input.value.trim()
+    input.value = name
+    if (!now || now === name) return
+    await act.rewrite('rename_object', { name, new: now }, `Rename ${name} to ${now}`)
+    act.select(now, 'text')
+  })
+  return input
+}
+
 export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () => string }): void {
   let by: string | null = stored<string | null>('by', null)
   let serial = 0
@@ -383,7 +410,7 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       void build()
     })
     host.replaceChildren(
-      h('header', { class: 'inspected' }, h('strong', {}, o.name), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
+      h('header', { class: 'inspected' }, titled(o.name, act), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
       h('p', { class: 'quiet' }, o.about),
       ...(o.failure ? [h('p', { class: 'bad' }, o.failure)] : []),
       ...(o.waits ? [h('p', { class: 'bad' }, 'Waits for ', link(o.waits))] : []),
@@ -397,6 +424,10 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       h('div', { class: 'buttons' },
         h('button', { onclick: () => act.toggle(o.name) }, 'Hide or show'),
         h('button', { onclick: () => act.isolate(o.name) }, 'Isolate'),
+        ...(act.still || !model.program ? [] : [
+          h('button', { onclick: () => void act.rewrite('duplicate', { name: o.name }, `Duplicate ${o.name}`) }, 'Duplicate'),
+          h('button', { onclick: () => void act.rewrite('delete', { name: o.name }, `Delete ${o.name}`) }, 'Delete'),
+        ]),
         h('button', { onclick: () => void navigator.clipboard?.writeText(o.name).then(() => act.say(`${o.name} copied`)) }, 'Copy name')),
     )
   }
@@ -433,12 +464,19 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   })
 }
 
+/** Numbers of the whole model: the power of the unit of length, and what they are in full. */
+const KNOWN: Record<string, [number, string]> = {
+  'mesh.area': [2, 'area of one side of all panels'], 'mesh.volume': [3, 'volume that the panels enclose'],
+  'hydrostatics.volume': [3, 'immersed volume, both sides'], 'hydrostatics.wetted_area': [2, 'wetted area, both sides'], 'hydrostatics.waterplane_area': [2, 'area of the waterplane, both sides'],
+  'hydrostatics.lcb': [1, 'longitudinal centre of buoyancy'], 'hydrostatics.vcb': [1, 'vertical centre of buoyancy'], 'hydrostatics.draft': [1, 'draught'], 'hydrostatics.kmt': [1, 'transverse metacentre above the keel'], 'hydrostatics.kb': [1, 'centre of buoyancy above the keel'],
+  'hydrostatics.cb': [0, 'block coefficient'], 'hydrostatics.cp': [0, 'prismatic coefficient'],
+}
+
 export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement) => GivenNumbers): void {
   const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
   const add = h('input', { type: 'text', placeholder: '+ number to watch', 'aria-label': 'watch an expression', class: 'add', list: 'watchable', disabled: act.still })
   const list = h('datalist', { id: 'watchable' })
-  for (const word of ['mesh.area', 'mesh.volume', 'hydrostatics.displacement', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.vcb', 'hydrostatics.wetted_area', 'hydrostatics.waterplane_area', 'hydrostatics.draft', 'hydrostatics.kmt', 'hydrostatics.kb', 'hydrostatics.cb', 'hydrostatics.cp'])
-    list.append(h('option', { value: word }))
+  for (const [word, [, about]] of Object.entries(KNOWN)) list.append(h('option', { value: word, label: about }))
   const numbers = given(host)
   const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
   host.append(box, add, list, setMark)
@@ -453,6 +491,10 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
     act.watch([...model.watched.map((w) => w.expression), add.value.trim()])
     add.value = ''
   })
+  const unit = (expression: string) => {
+    const power = KNOWN[expression]?.[0] ?? 0
+    return power && model.unit ? `${model.unit}${['', '', '²', '³'][power]}` : ''
+  }
   function build(): void {
     // A number that is dragged keeps its element.
     if (numbers.busy) return numbers.follow()
@@ -462,8 +504,9 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
       if (value !== null && was === undefined) marked.set(w.expression, value)
       const delta = value !== null && was !== undefined && value !== was ? value - was : 0
       const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
-      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? w.expression },
+      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? (KNOWN[w.expression] ? `${w.expression}: ${KNOWN[w.expression][1]}` : w.expression) },
         h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), value !== null && !act.still && model.params.length ? numbers.handle(w.expression, value) : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+        value !== null && unit(w.expression) ? h('span', { class: 'unit' }, unit(w.expression)) : '',
         delta ? h('span', { class: `delta ${delta > 0 ? 'up' : 'down'}` }, `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`) : '',
         act.still ? '' : h('button', { class: 'icon', 'aria-label': `stop watching ${w.expression}`, onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)) }, '×'))
     }))

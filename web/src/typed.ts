@@ -10,9 +10,9 @@ const RADIANS: Record<string, number> = { rad: 1, deg: Math.PI / 180, '°': Math
 /** Parts of a text: what is in front of a unit, and the unit's factor. */
 export function parted(text: string, unit: string): { words: string; factor: number } {
   const words = text.trim().replace(/−/g, '-')
-  const found = /^(.*[\d.)\s\w])\s*(mm|cm|dm|km|m|in|ft|yd|"|'|rad|deg|°)$/.exec(words)
   // A unit comes after a digit, a parenthesis or a space: `beam` does not end in metres.
-  if (!found || !/[\d.)\s]$/.test(words.slice(0, words.length - found[2].length))) return { words, factor: 1 }
+  const found = /^(.*?[\d.)\s])\s*(mm|cm|dm|km|m|in|ft|yd|"|'|rad|deg|°)$/.exec(words)
+  if (!found) return { words, factor: 1 }
   const [, front, name] = found
   if (name in RADIANS) return { words: front.trim(), factor: RADIANS[name] }
   if (!(unit in METRES)) throw new Error(`The model states no unit, so ${name} cannot be converted`)
