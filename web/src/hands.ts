@@ -18,6 +18,8 @@ export interface Handlers {
   open(name: string): void
   /** A place that was clicked where nothing is dragged; true when it was wanted. */
   place(at: Vector3, grain: number): Promise<boolean>
+  /** True when a click was for what lies in the corner of the picture. */
+  corner(e: MouseEvent): boolean
 }
 
 interface Handle {
@@ -373,6 +375,7 @@ export class Hands {
       return
     }
     if (!pressed || pressed.moved || pressed.button !== 0) return
+    if (this.act.corner(e)) return
     const [x, y] = this.at(e)
     const hit = this.view.pick(x, y)
     if (this.measuring) return this.measure(hit?.point ?? null)

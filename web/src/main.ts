@@ -180,6 +180,7 @@ themeButton.addEventListener('click', () => {
 
 const orientation = new Orientation(view.camera, (name) => look(name), () => view.height)
 viewHost.parentElement!.append(orientation.element)
+canvas.addEventListener('pointermove', (e) => orientation.hover(e))
 view.onFrame = () => {
   orientation.draw()
   hands.drawn()
@@ -417,6 +418,7 @@ const hands = new Hands(view, link, viewHost, {
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
   place: (at, grain) => making.place(at, grain),
+  corner: (e) => orientation.click(e),
 })
 const making = new Making(right, link, {
   say, select: (name) => actions.select(name, 'text'), apply: (list, version, name) => editor.apply(list, version, name), synced: () => editor.synced(),

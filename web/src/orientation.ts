@@ -12,25 +12,26 @@ const HALF = 23
 const LONGEST_BAR = 120
 
 export class Orientation {
-  private readonly cube = h('canvas', { class: 'cube', width: 2 * SIZE, height: 2 * SIZE, 'aria-hidden': 'true', title: 'Click a face to look at it' })
+  private readonly cube = h('canvas', { class: 'cube', width: 2 * SIZE, height: 2 * SIZE, 'aria-hidden': 'true' })
   private readonly bar = h('div', { class: 'scale-bar', role: 'img', 'aria-label': 'scale' })
   private over = -1
   readonly element = h('div', { class: 'orientation' }, this.cube, this.bar)
 
-  constructor(private readonly camera: Camera, look: (view: Standard) => void, private readonly height: () => number) {
-    this.cube.addEventListener('pointermove', (e) => this.hover(this.at(e)))
-    this.cube.addEventListener('pointerleave', () => this.hover(-1))
-    this.cube.addEventListener('click', (e) => {
-      const face = this.at(e)
-      if (face >= 0) look(VIEWS[face])
-    })
-  }
+  constructor(private readonly camera: Camera, private readonly look: (view: Standard) => void, private readonly height: () => number) {}
 
-  private hover(face: number): void {
+  /** The picture hears the pointer: a point that is under the cube can be dragged. */
+  hover(e: MouseEvent): void {
+    const face = this.at(e)
     if (face === this.over) return
     this.over = face
-    this.cube.style.cursor = face < 0 ? '' : 'pointer'
     this.draw()
+  }
+
+  /** True when a face was clicked. */
+  click(e: MouseEvent): boolean {
+    const face = this.at(e)
+    if (face >= 0) this.look(VIEWS[face])
+    return face >= 0
   }
 
   private facing(face: number): number {
