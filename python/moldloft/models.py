@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from moldloft.mesh import Mesh
     from moldloft.objects import Entry
 
-__all__ = ["Model", "Param"]
+__all__ = ["Adjustment", "Model", "Param", "Solution"]
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,30 @@ class Param:
     """The greatest value of its range."""
     whole: bool
     """True when it takes whole numbers only."""
+
+
+@dataclass(frozen=True)
+class Adjustment:
+    """A parameter that has followed in :meth:`Model.solve_for`."""
+
+    before: float
+    """Its value before."""
+    after: float
+    """Its value now."""
+    share: float
+    """Its part of the weighted change of all, 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The result of :meth:`Model.solve_for`."""
+
+    adjustments: dict[str, Adjustment]
+    """The parameters that may change, by name."""
+    reached: dict[str, float]
+    """The numbers that were given, by expression."""
+    steps: int
+    """Steps of the search."""
 
 
 class Model(Floating, Writable, Adapted):
@@ -474,6 +498,55 @@ class Model(Floating, Writable, Adapted):
             except (TypeError, ValueError):
                 raise ModelError(f"`{name}` is a number; found {value!r}") from None
         self._document.set(numbers)
+
+    def solve_for(
+        self, targets: Mapping[str, float], by: Sequence[str] | Mapping[str, float]
+    ) -> Solution:
+        """Give numbers of the model values: chosen parameters follow by the least change.
+
+        Of all values within the ranges of the parameters that give the targets, those of the least
+        sum of squares of weighted changes, each as a share of its range (without one, of its
+        value). The search uses exact derivatives; it finds the solution near the present values.
+
+        Parameters
+        ----------
+        targets
+            Values by expression, such as ``{"hydrostatics.volume": 130, "hydrostatics.lcb": 5.9}``,
+            in the model's units. They are met within 1e-8 of their values.
+        by
+            The parameters (or numbers of objects, such as ``"P21.y"``) that may change; as a
+            mapping, with weights > 0: one of weight 2 changes less.
+
+        Returns
+        -------
+        Solution
+            What each parameter has become and its share of the change. The model has the new
+            values, as after :meth:`set`.
+
+        Raises
+        ------
+        ModelError
+            When the targets are not reached; the message has the range that was found within the
+            ranges of the parameters. The model is as before then.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float a = 2 in [1, 5]; param float b = 3 in [1, 5];
+        ... AbsPoint P(a * b, a, 0);
+        ... ''')
+        >>> found = m.solve_for({"P.x": 8, "P.y": 2}, by=["a", "b"])
+        >>> round(m["b"], 9), round(found.adjustments["b"].share, 6)
+        (4.0, 1.0)
+        """
+        weights = by if isinstance(by, Mapping) else dict.fromkeys(names_of(by), 1.0)
+        rows, reached, steps = self._document.solve_for(
+            [(text, float(x)) for text, x in targets.items()],
+            [(name, float(x)) for name, x in weights.items()],
+        )
+        adjustments = {name: Adjustment(*row) for name, *row in rows}
+        return Solution(adjustments, dict(zip(targets, reached, strict=True)), steps)
 
     # -- measuring -------------------------------------------------------------------------
 

@@ -61,7 +61,8 @@ class Bench:
         self.page.on("request", lambda r: self.requests.append(r.url))
         self.page.goto(self.url)
         self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
-        self.ready()
+        if path.read_text(encoding="utf-8").strip():
+            self.ready()
 
     def ready(self) -> None:
         """Until there is something to see."""

@@ -168,6 +168,81 @@ def test_distances_and_angles_are_measured(bench: Callable[..., Bench]) -> None:
     assert b.text().startswith("AbsPoint P(0, 0, 0)")
 
 
+HALF = (
+    'Model info(units = "m kg");\n'
+    "param float beam = 4 in [2, 6];\nparam float depth = 3 in [1, 5];\n"
+    "AbsPoint P(1, beam / 2, 1.5);\nAbsPoint Q(0, 0, 0);\nAbsPoint R(3, 3, 3);\n"
+)
+
+
+def by(b: Bench, name: str, dx: float, dy: float) -> tuple[float, float]:
+    """Drags a point in steps; where the pointer is let go."""
+    x, y = b.hand(f"project('{name}')")
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    b.page.get_by_text("lock an axis").wait_for()
+    for k in range(1, 6):
+        b.page.mouse.move(x + dx * k / 5, y + dy * k / 5)
+        b.page.wait_for_timeout(20)
+    return x + dx, y + dy
+
+
+def test_what_own_numbers_cannot_follow_a_parameter_does(bench: Callable[..., Bench]) -> None:
+    b = opened(bench, HALF)
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("4")
+    x, y = by(b, "P", 25, -15)
+    b.until(
+        lambda: abs(b.hand("project('P')")[0] - x) < 2 and abs(b.hand("project('P')")[1] - y) < 2
+    )
+    offered = b.page.get_by_role("group", name="what to move")
+    assert offered.get_by_role("button", pressed=True).inner_text() == "beam"
+    b.page.mouse.up()
+    b.until(lambda: b.text() != HALF)
+    assert "P(1, beam / 2, " in b.text() and "beam = 4 in" not in b.text()
+    assert "depth = 3 in" in b.text() and not b.faults
+    assert b.hand("steps().done") == ["Drag P"]
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == HALF and b.param("beam") == 4)
+    # At the end of the range it stays behind, and the reason is given.
+    by(b, "P", 300, 0)
+    b.page.get_by_text("beam is at the end of its range").wait_for()
+    b.page.keyboard.press("Escape")
+    b.page.mouse.up()
+    b.until(lambda: b.param("beam") == 4)
+    assert b.text() == HALF
+
+
+def test_a_number_along_the_line_of_sight_stays(bench: Callable[..., Bench]) -> None:
+    text = "AbsPoint Q(0, -2, -2);\nAbsPoint R(4, 4, 4);\nAbsPoint P(1, R.y + Q.y, R.z + Q.z);\n"
+    b = opened(bench, text)
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("4")
+    by(b, "P", 40, 10)
+    b.page.get_by_text("does not move that way in this view").wait_for()
+    b.page.mouse.up()
+    b.page.evaluate("() => window.moldloft.settled()")
+    assert b.text() == text and not b.hand("steps().done.length")
+
+
+def test_numbers_are_typed_as_expressions(bench: Callable[..., Bench]) -> None:
+    b = opened(bench, HALF)
+    field = b.page.get_by_role("textbox", name="beam, value", exact=True)
+    field.fill("depth + 2^0.5 * 0")
+    field.press("Enter")
+    b.until(lambda: "beam = 3 in" in b.text())
+    # A field shows what the model has, never what it refused.
+    for wrong, said in (("25", "out of its range"), ("nothing", "nothing")):
+        field.fill(wrong)
+        field.press("Enter")
+        b.page.locator(".status").get_by_text(said).wait_for()
+        b.until(lambda: field.input_value() == "3")
+    assert "beam = 3 in" in b.text()
+    field.fill("2500 mm")
+    field.press("Enter")
+    b.until(lambda: "beam = 2.5 in" in b.text())
+
+
 SOLID = (
     "AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);\n"
     "Line l(A, B); Line m(C, D); RuledSurf s(l, m);\n"

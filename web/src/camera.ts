@@ -59,6 +59,8 @@ export class Camera {
   fit(box: Box3, aspect: number): void {
     if (box.isEmpty()) return
     box.getCenter(this.target)
+    // One point has no size: it is looked at from as far as before.
+    if (box.min.equals(box.max)) return
     const [right, up] = [this.right, this.up]
     const half = box.getSize(new Vector3()).multiplyScalar(0.5)
     const along = (v: Vector3) => Math.abs(v.x) * half.x + Math.abs(v.y) * half.y + Math.abs(v.z) * half.z

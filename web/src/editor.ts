@@ -2,7 +2,7 @@
 
 import { acceptCompletion, autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
 import { collab, getSyncedVersion, receiveUpdates, sendableUpdates } from '@codemirror/collab'
-import { defaultKeymap, history, historyKeymap, indentLess, indentMore, isolateHistory, toggleComment } from '@codemirror/commands'
+import { defaultKeymap, indentLess, indentMore, toggleComment } from '@codemirror/commands'
 import { bracketMatching, foldGutter, indentOnInput, StreamLanguage, syntaxHighlighting, type StreamParser } from '@codemirror/language'
 import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
 import { highlightSelectionMatches, searchKeymap, search } from '@codemirror/search'
@@ -10,6 +10,7 @@ import { Annotation, ChangeSet, Compartment, EditorState, StateEffect, StateFiel
 import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from '@codemirror/view'
 import { classHighlighter } from '@lezer/highlight'
 import { h } from './dom'
+import { holding, keptSteps, stepOf, Steps, type Held } from './history'
 import type { Link } from './link'
 
 export interface Edit {
@@ -82,6 +83,8 @@ function parser(words: Words): StreamParser<{ text: boolean }> {
 
 export class Editor {
   readonly view: EditorView
+  /** What was done, to be taken back. */
+  readonly steps = new Steps()
   private readonly language = new Compartment()
   private readonly shared = new Compartment()
   private pushing = false
@@ -106,7 +109,7 @@ export class Editor {
       doc: text,
       extensions: [
         nonce ? EditorView.cspNonce.of(nonce) : [],
-        lineNumbers(), highlightActiveLineGutter(), foldGutter(), history(), drawSelection(), indentOnInput(), bracketMatching(), closeBrackets(),
+        lineNumbers(), highlightActiveLineGutter(), foldGutter(), keptSteps(), drawSelection(), indentOnInput(), bracketMatching(), closeBrackets(),
         autocompletion({ override: [(c) => this.complete(c)] }), highlightActiveLine(), highlightSelectionMatches(), search({ top: true }), lintGutter(), marks,
         syntaxHighlighting(classHighlighter), EditorState.tabSize.of(4), EditorView.lineWrapping,
         this.language.of(StreamLanguage.define(parser({}))), this.shared.of([]),
@@ -120,9 +123,10 @@ export class Editor {
           { key: 'F2', run: () => (void this.rename(), true) },
           { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
           { key: 'Mod-/', run: toggleComment },
-          ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap,
+          ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...completionKeymap,
         ]),
         EditorView.updateListener.of((update) => {
+          this.steps.follow(update)
           if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) {
             if (!update.transactions.some((t) => t.annotation(fromHost))) {
               const made: Edit[] = []
@@ -195,8 +199,8 @@ export class Editor {
     }
   }
 
-  /** The least change that makes the text this one. */
-  replace(text: string, silently: boolean, host = false): void {
+  /** The least change that makes the text this one: a step of that name, or none. */
+  replace(text: string, silently: boolean, host = false, name = 'Your text'): void {
     const old = this.text
     if (old === text) return
     let start = 0
@@ -206,7 +210,7 @@ export class Editor {
     while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
     this.view.dispatch({
       changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) },
-      annotations: host ? [Transaction.addToHistory.of(false), fromHost.of(true)] : silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : [isolateHistory.of('full')],
+      annotations: host ? [Transaction.addToHistory.of(false), fromHost.of(true)] : silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : stepOf(name),
     })
   }
 
@@ -267,8 +271,9 @@ export class Editor {
   }
 
   /** Edits that the engine made of a version of the text, as one step of the history. */
-  apply(edits: Edit[], version = this.version): void {
-    if (!edits.length) return
+  apply(edits: Edit[], version = this.version, name = 'Edit', held: Held[] = []): void {
+    const effects = held.map((one) => holding.of(one))
+    if (!edits.length && !effects.length) return
     const since = this.past.filter((p) => p.version >= version)
     if (this.version - version !== since.length) return this.onTrouble('The text has changed too much meanwhile: do it again')
     // What was typed meanwhile moves the places.
@@ -277,7 +282,7 @@ export class Editor {
       const from = later.reduce((at, c) => c.mapPos(at, 1), e.from)
       return { from, to: Math.max(from, later.reduce((at, c) => c.mapPos(at, -1), e.to)), insert: e.insert }
     })
-    this.view.dispatch({ changes, annotations: isolateHistory.of('full'), userEvent: 'input.hand' })
+    this.view.dispatch({ changes, effects, annotations: stepOf(name), userEvent: 'input.hand' })
   }
 
   // What is known of the text.
@@ -293,7 +298,7 @@ export class Editor {
       const expected = d.expected ? `\nexpected ${d.expected}` : ''
       const help = (d.help ?? []).map((t: string) => `\n${t}`).join('')
       const actions = d.edit
-        ? [{ name: d.edit.title, apply: (v: EditorView) => d.edit.place[1] <= v.state.doc.length && v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert } }) }]
+        ? [{ name: d.edit.title, apply: (v: EditorView) => d.edit.place[1] <= v.state.doc.length && v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert }, annotations: stepOf(d.edit.title) }) }]
         : []
       shown.push({ from, to, severity: d.severity === 'note' ? 'info' : d.severity, message: d.message + expected + found + help, actions })
     }
@@ -358,7 +363,7 @@ export class Editor {
     if (!now || now === old) return
     try {
       const { head } = await this.link.ask('rename', { offset: word.from, new: now })
-      this.apply(head.edits, head.version)
+      this.apply(head.edits, head.version, `Rename ${old} to ${now}`)
     } catch (error) {
       this.onTrouble((error as Error).message)
     }
@@ -367,7 +372,7 @@ export class Editor {
   async format(): Promise<void> {
     try {
       const { head } = await this.link.ask('format')
-      this.apply(head.edits, head.version)
+      this.apply(head.edits, head.version, 'Format')
     } catch (error) {
       this.onTrouble((error as Error).message)
     }

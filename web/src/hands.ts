@@ -2,23 +2,30 @@
 
 import { Vector3 } from 'three'
 import { h, shown } from './dom'
+import { Gumball } from './gumball'
 import { Newest, Refused, type Link } from './link'
 import { model } from './state'
+import { typed } from './typed'
 import type { Drawn, View } from './view'
 
 export interface Handlers {
   select(name: string): void
   hover(name: string): void
   say(words: string): void
-  apply(edits: any[], version?: number): void
+  apply(edits: any[], version: number | undefined, name: string): void
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
+  /** A place that was clicked where nothing is dragged; true when it was wanted. */
+  place(at: Vector3, grain: number): Promise<boolean>
+  /** True when a click was for what lies in the corner of the picture. */
+  corner(e: MouseEvent): boolean
 }
 
 interface Handle {
   name: string
   own: boolean
+  parameter: boolean
   direction: number[]
   value: number
   range: [number, number] | null
@@ -30,7 +37,10 @@ interface Drag {
   target: Vector3
   handles: Handle[]
   own: string[]
+  /** The numbers that follow now. */
   names: string[]
+  /** What the person chose for what the object's own numbers cannot follow. */
+  chosen: string[]
   axis: number | null
   plane: number | null
   /** True while the place is to be on the surface under the pointer. */
@@ -44,10 +54,14 @@ interface Drag {
   /** True for a drag by the keys of the keyboard. */
   keys: boolean
   last: [number, number]
+  /** From the place to the pointer, where a handle beside the place is held. */
+  offset: [number, number]
 }
 
 const AXES = ['x', 'y', 'z']
 const STEPS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
+/** Picture points behind the pointer that need a reason. */
+const BEHIND = 2
 const unit = (k: number) => new Vector3().setComponent(k, 1)
 
 export class Hands {
@@ -60,12 +74,14 @@ export class Hands {
   private readonly pointers = new Map<number, [number, number]>()
   private pressed: { x: number; y: number; button: number; shift: boolean; moved: boolean } | null = null
   private readonly requests: Newest<() => Promise<unknown>>
+  private readonly gumball: Gumball
   private readonly tip = h('div', { class: 'tip', hidden: true })
   private readonly chooser = h('div', { class: 'chooser', role: 'group', 'aria-label': 'what to move', hidden: true })
-  private readonly entry = h('input', { class: 'entry number', type: 'text', inputmode: 'decimal', 'aria-label': 'value', hidden: true })
+  private readonly entry = h('input', { class: 'entry number', type: 'text', 'aria-label': 'value', hidden: true })
 
   constructor(private readonly view: View, private readonly link: Link, host: HTMLElement, private readonly act: Handlers) {
-    host.append(this.tip, this.chooser, this.entry)
+    this.gumball = new Gumball(view, () => this.held(), (e, axis, plane) => this.grip(e, axis, plane))
+    host.append(this.gumball.element, this.tip, this.chooser, this.entry)
     this.requests = new Newest((run) => run())
     const c = view.canvas
     c.addEventListener('pointerdown', (e) => this.down(e))
@@ -81,7 +97,7 @@ export class Hands {
       else view.fit()
     })
     c.addEventListener('keydown', (e) => this.key(e))
-    this.entry.addEventListener('keydown', (e) => this.entered(e))
+    this.entry.addEventListener('keydown', (e) => void this.entered(e))
     this.entry.addEventListener('blur', () => {
       if (!this.entry.hidden && this.drag) void this.finish(this.drag.moved)
     })
@@ -114,12 +130,41 @@ export class Hands {
     if (item) this.grab(item, x, y)
   }
 
+  /** The selected point, which has handles: none in a picture that cannot be changed. */
+  private point(object: string): Drawn | undefined {
+    return [...this.view.items.values()].find((i) => i.object === object && i.kind === 'point' && this.view.seen(i))
+  }
+
+  private held(): Vector3 | null {
+    if (this.link.still || this.measuring) return null
+    const item = this.point(this.view.selected)
+    return item ? this.view.place(item) : null
+  }
+
+  /** After each frame. */
+  drawn(): void {
+    this.gumball.draw()
+  }
+
+  private grip(e: PointerEvent, axis: number | null, plane: number | null): void {
+    const item = this.point(this.view.selected)
+    if (!item || this.drag) return
+    this.view.canvas.focus({ preventScroll: true })
+    this.view.canvas.setPointerCapture(e.pointerId)
+    const [x, y] = this.at(e)
+    const [px, py] = this.view.project(this.view.place(item))
+    this.pointers.set(e.pointerId, [x, y])
+    this.pressed = { x, y, button: 0, shift: false, moved: false }
+    this.grab(item, x, y)
+    Object.assign(this.drag!, { axis, plane, offset: [x - px, y - py] })
+  }
+
   private grab(item: Drawn, x: number, y: number, keys = false): void {
     this.act.select(item.object)
     const start = this.view.place(item)
     const drag: Drag = {
-      item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, onSurface: false,
-      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y],
+      item, start, target: start.clone(), handles: [], own: [], names: [], chosen: [], axis: null, plane: null, onSurface: false,
+      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y], offset: [0, 0],
     }
     this.drag = drag
     drag.begun = this.begin(drag)
@@ -132,8 +177,7 @@ export class Hands {
       await this.act.synced()
       const { head } = await this.link.ask('drag_begin', { object })
       Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
-      drag.names = this.chosen(drag)
-      const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression: choose what moves it`
+      const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression`
       if (this.drag === drag) {
         this.act.status(`${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
         if (drag.moved) this.aim(drag, false)
@@ -148,40 +192,35 @@ export class Hands {
 
   /** A drag of the selected point by keys: arrows instead of the pointer. */
   take(object: string): void {
-    const item = [...this.view.items.values()].find((i) => i.object === object && i.kind === 'point' && this.view.seen(i))
+    const item = this.point(object)
     if (!item) return this.act.status(object ? `${object} is no point that can be moved: select one` : 'Select a point first')
     if (this.drag || this.link.still) return
     this.view.canvas.focus({ preventScroll: true })
     this.grab(item, ...this.view.project(this.view.place(item)), true)
   }
 
-  /** The object's own numbers; for an expression the parameter that moves it most within its range. */
-  private chosen(drag: Drag): string[] {
-    const own = drag.handles.filter((k) => drag.own.includes(k.name))
-    if (own.length) return []
-    const params = drag.handles.filter((k) => !k.own)
-    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : 1)
-    params.sort((a, b) => reach(b) - reach(a))
-    return params.length ? [params[0].name] : []
-  }
-
+  /** Chips of the numbers that may follow besides the object's own; the ones that do are pressed. */
   private offer(drag: Drag): void {
-    const params = drag.handles.filter((k) => !k.own)
-    if (!params.length) return
+    const others = drag.handles.filter((k) => !k.own)
+    const follow = drag.names.filter((n) => !drag.own.includes(n))
+    this.chooser.hidden = !others.length || !follow.length
+    if (this.chooser.hidden) return
     const [x, y] = this.view.project(this.view.place(drag.item))
     const choose = (names: string[]) => {
-      drag.names = names
-      this.offer(drag)
+      drag.chosen = names
+      this.aim(drag, false)
     }
     const chip = (label: string, names: string[]) =>
-      h('button', { class: `chip ${names.join() === drag.names.join() ? 'on' : ''}`, onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+      h('button', { class: `chip ${names.join() === follow.join() ? 'on' : ''}`, 'aria-pressed': names.join() === follow.join(), onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
+    const listed = [...others].sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a)).slice(0, 6)
+    const params = others.filter((k) => k.parameter).map((k) => k.name)
     this.chooser.replaceChildren(
-      ...(drag.own.length ? [chip(drag.own.map((n) => n.slice(drag.item.object.length + 1)).join(' '), [])] : []),
-      ...params.slice(0, 6).map((k) => chip(k.name, [k.name])),
-      ...(params.length > 1 ? [chip('all together', params.map((k) => k.name))] : []))
+      h('span', { class: 'quiet' }, 'follows by'),
+      ...listed.map((k) => chip(k.parameter ? k.name : `${shown(k.value)} of ${k.name.replace(/#\d+$/, '')}`, [k.name])),
+      ...(params.length > 1 ? [chip('all parameters', params)] : []))
     this.chooser.style.left = `${x + 16}px`
     this.chooser.style.top = `${y + 16}px`
-    this.chooser.hidden = drag.own.length > 0
   }
 
   private move(e: PointerEvent): void {
@@ -258,9 +297,9 @@ export class Hands {
   private aim(drag: Drag, free: boolean): void {
     if (!drag.ready) return
     drag.aimed = true
-    this.tip.hidden = true
+    this.view.ghost(true)
     const { camera } = this.view
-    const [x, y] = drag.last
+    const [x, y] = [drag.last[0] - drag.offset[0], drag.last[1] - drag.offset[1]]
     const { ray } = this.view.ray(x, y)
     let basis = [camera.right, camera.up]
     let snapped = ''
@@ -289,23 +328,41 @@ export class Hands {
       }
     }
     // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
-    const whole = drag.names.every((n) => drag.own.includes(n))
-    if (whole && (drag.axis !== null || drag.plane !== null)) basis = [unit(0), unit(1), unit(2)]
+    if (drag.axis !== null || drag.plane !== null) basis = [unit(0), unit(1), unit(2)]
     const target = drag.target.clone()
-    if (!drag.own.length && this.drag === drag) this.offer(drag)
+    const grain = camera.grain(this.view.height)
     this.requests.push(async () => {
       try {
-        const { head } = await this.link.ask('drag_to', {
-          target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.names, grain: camera.grain(this.view.height),
-        })
+        const { head } = await this.link.ask('drag_to', { target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.chosen, grain })
         if (this.drag !== drag) return
-        const values = Object.entries(head.values as Record<string, number>).map(([n, v]) => `${n} = ${shown(v)}`)
+        const values = head.values as Record<string, number>
+        drag.names = Object.keys(values)
+        this.offer(drag)
+        this.label(drag, head.reached)
+        const words = Object.entries(values).map(([n, v]) => `${n} = ${shown(v)}`)
         const lock = drag.axis !== null ? ` · along ${AXES[drag.axis]}` : drag.plane !== null ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}` : ''
-        this.act.status(values.join('   ') + lock + (snapped ? ` · on ${snapped}` : ''))
+        // Where it stays behind the pointer, the reason: an end of a range, or no number for the rest of the way.
+        const short = Number(head.left) / grain
+        const ended = (head.ended as string[]).map((n) => `${n} is at the end of its range, ${shown(values[n])}`)
+        const why = !(short > BEHIND) ? '' : ` · stays ${Math.round(short)} px behind: ${ended.length ? ended.join(', ') : `${drag.names.join(', ')} ${drag.names.length > 1 ? 'move' : 'moves'} it no further that way`}`
+        this.act.status(words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why)
       } catch (error) {
-        if (error instanceof Refused && error.message !== 'superseded') this.act.status(error.message)
+        if (error instanceof Refused && error.message !== 'superseded') this.act.status(`${error.message}. Turn the view, or lock another axis`)
       }
     })
+  }
+
+  /** How far the place has moved, beside it, and the line from where it was. */
+  private label(drag: Drag, reached: number[]): void {
+    const now = new Vector3().fromArray(reached)
+    const by = now.clone().sub(drag.start)
+    this.view.overlay('moved', [[...drag.start.toArray(), ...reached]], 0xe8711a)
+    const parts = AXES.map((a, k) => (by.getComponent(k) ? `${a} ${shown(now.getComponent(k), 5)} (${by.getComponent(k) > 0 ? '+' : ''}${shown(by.getComponent(k), 3)})` : '')).filter(Boolean)
+    this.tip.textContent = `${parts.join('   ')} ${model.unit}`
+    this.tip.hidden = !parts.length
+    const [x, y] = this.view.project(now)
+    this.tip.style.left = `${x + 14}px`
+    this.tip.style.top = `${y - 34}px`
   }
 
   private up(e: PointerEvent): void {
@@ -318,10 +375,14 @@ export class Hands {
       return
     }
     if (!pressed || pressed.moved || pressed.button !== 0) return
+    if (this.act.corner(e)) return
     const [x, y] = this.at(e)
     const hit = this.view.pick(x, y)
-    if (this.measuring) this.measure(hit?.point ?? null)
-    else this.act.select(hit?.object ?? '')
+    if (this.measuring) return this.measure(hit?.point ?? null)
+    const at = hit?.point ?? this.view.placeAt(x, y)
+    void this.act.place(at, this.view.camera.grain(this.view.height)).then((taken) => {
+      if (!taken) this.act.select(hit?.object ?? '')
+    })
   }
 
   /** Ends the drag; what the hand does from now on is another one. */
@@ -329,8 +390,10 @@ export class Hands {
     const drag = this.drag
     if (!drag) return this.ended
     this.drag = null
-    this.chooser.hidden = true
-    this.entry.hidden = true
+    this.chooser.hidden = this.entry.hidden = this.tip.hidden = true
+    this.view.overlay('moved', null)
+    this.view.ghost(false)
+    if (!commit) this.act.status('')
     this.ended = this.end(drag, commit)
     return this.ended
   }
@@ -342,11 +405,10 @@ export class Hands {
     await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })
-      if (commit) this.act.apply(head.edits ?? [], head.version)
+      if (commit) this.act.apply(head.edits ?? [], head.version, `Drag ${drag.item.object}`)
     } catch (error) {
       this.act.status((error as Error).message)
     }
-    if (!commit) this.act.status('')
   }
 
   cancel(): void {
@@ -404,7 +466,7 @@ export class Hands {
   private enter(drag: Drag, e: KeyboardEvent): void {
     e.preventDefault()
     e.stopPropagation()
-    const names = drag.names.length ? drag.names : drag.own
+    const names = drag.names.length ? drag.names : drag.own.length ? drag.own : drag.handles.slice(0, 1).map((k) => k.name)
     const name = names.find((n) => drag.axis !== null && n.endsWith(`.${AXES[drag.axis]}`)) ?? names[0]
     if (!name) return
     this.entry.hidden = false
@@ -417,7 +479,7 @@ export class Hands {
     this.entry.focus()
   }
 
-  private entered(e: KeyboardEvent): void {
+  private async entered(e: KeyboardEvent): Promise<void> {
     e.stopPropagation()
     if (e.key === 'Escape') {
       this.cancel()
@@ -426,8 +488,14 @@ export class Hands {
     if (e.key !== 'Enter' && e.key !== 'Tab') return
     e.preventDefault()
     const { name, names } = this.entry.dataset
-    const x = Number(this.entry.value.replace(',', '.'))
-    if (!name || !Number.isFinite(x) || this.entry.value.trim() === '') return
+    const text = this.entry.value
+    if (!name || text.trim() === '') return
+    let x: number
+    try {
+      x = await typed(text, this.link)
+    } catch (error) {
+      return this.act.status((error as Error).message)
+    }
     this.requests.push(() => this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)))
     if (this.drag) this.drag.moved = this.drag.aimed = true
     if (e.key === 'Tab') {

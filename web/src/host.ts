@@ -1,6 +1,6 @@
 // A page inside of an editor: the text is the editor's own document, and its undo takes back what a hand does here.
 //
-// `host -> page: text, files, cursor`   `page -> host: ready, edit, show, save, undo, read, download`
+// `host -> page: text, files, cursor`   `page -> host: ready, edit, show, save, undo, redo, read, download`
 //
 // Places are lines and columns, so that the ends of lines in the document do not matter. An edit names the version
 // of the document that it was made for; the host refuses one that is too old by sending the text again.
@@ -67,8 +67,8 @@ export class Host {
     this.api.postMessage({ kind: 'save' })
   }
 
-  undo(): void {
-    this.api.postMessage({ kind: 'undo' })
+  undo(back: boolean): void {
+    this.api.postMessage({ kind: back ? 'undo' : 'redo' })
   }
 
   /** A file for the person: a webview has no downloads. */

@@ -26,7 +26,7 @@ interface Job {
 }
 
 /** As in the hub: requests of which only the newest counts. */
-const NEWEST = new Set(['set', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
+const NEWEST = new Set(['set', 'solve_for', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
 
 /** What a new engine must hear before it is asked anything else. */
 const STATE = ['show', 'watch']
@@ -173,7 +173,7 @@ export class LivingLink implements Link {
       case 'save':
         return { kind: 'saved', version: this.version, text: this.text.toString() }
       case 'revert':
-        return this.revert()
+        return { kind: 'reverted', text: this.original }
       default:
         throw new Refused('no such request')
     }
@@ -206,14 +206,6 @@ export class LivingLink implements Link {
     }
   }
 
-  private revert(): Facts {
-    const old = this.text.toString()
-    if (old !== this.original) {
-      const changes = ChangeSet.of({ from: 0, to: old.length, insert: this.original }, old.length)
-      this.accept([{ changes: changes.toJSON(), clientID: 'file' }])
-    }
-    return { kind: 'reverted', version: this.version }
-  }
 }
 
 /** A short hash of a text, to know it again. */

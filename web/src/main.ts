@@ -3,22 +3,27 @@
 import './style.css'
 import { Editor } from './editor'
 import { BlockPlanes } from './blocks'
-import { drawAxes } from './axes'
 import { Analysis } from './analysis'
 import { Board } from './board'
 import { Desk } from './desk'
-import { h, store, stored } from './dom'
+import { h, shown, store, stored } from './dom'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
+import { historyButtons, type Held } from './history'
 import { door, Host } from './host'
 import { Cell } from './notebook'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
 import { help, palette, type Command } from './palette'
+import { Making } from './making'
+import { GivenNumbers } from './numbers'
+import { Orientation } from './orientation'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
-import { changed, model } from './state'
+import { startPage } from './start'
+import { changed, model, on } from './state'
+import { typed } from './typed'
 import { View, type Paint, type Style } from './view'
 import type { Standard } from './camera'
 
@@ -86,9 +91,10 @@ const saveButton = link.local
   ? $('button', { class: 'primary', title: 'The text as a file (Ctrl+S)' }, 'Download')
   : $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
 const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
+const exportButton = $('button', { title: 'Picture, meshes, curves, panels' }, 'Export')
 const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
 const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
-const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'grow' }), paletteButton, link.still ? '' : saveButton, themeButton, helpButton)
+const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, exportButton, link.still ? '' : saveButton, themeButton, helpButton)
 const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
 const editorHost = $('div', { class: 'editor' })
 const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
@@ -97,7 +103,6 @@ const sheetHost = $('div', { class: 'sheet', hidden: true, tabindex: 0 })
 const toolbar = $('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'view' })
 const tabs = $('div', { class: 'tabs', role: 'tablist', 'aria-label': 'what is shown' })
 const legend = $('div', { class: 'legend', hidden: true })
-const axes = $('canvas', { class: 'axes', width: 144, height: 144, 'aria-hidden': 'true' })
 const section = $('div', { class: 'section', hidden: true })
 const planesHost = $('div', { class: 'section', role: 'group', 'aria-label': 'plane of a block', hidden: true })
 const status = $('output', { class: 'status', 'aria-live': 'polite' })
@@ -106,7 +111,7 @@ const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
 const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
 const footer = $('footer', { class: 'strip' })
 const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
-const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, axes, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
+const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
 const right = $('div', { class: 'right' }, ...[['Parameters', params], ['Objects', tree], ['Inspector', inspector]].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)))
 const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
 const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
@@ -174,7 +179,13 @@ themeButton.addEventListener('click', () => {
   applyTheme()
 })
 
-view.onFrame = () => drawAxes(axes, view.camera)
+const orientation = new Orientation(view.camera, (name) => look(name), () => view.height)
+viewHost.parentElement!.append(orientation.element)
+canvas.addEventListener('pointermove', (e) => orientation.hover(e))
+view.onFrame = () => {
+  orientation.draw()
+  hands.drawn()
+}
 
 // What the page does.
 
@@ -193,21 +204,80 @@ const setting = new Newest<Record<string, number>>(
 
 /** One after the other: the engine must have what the last one wrote before it writes the next. */
 let writing: Promise<void> = Promise.resolve()
-function edits(kind: string, fields: Record<string, unknown> = {}): Promise<void> {
-  writing = writing.then(() => written(kind, fields))
+function edits(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
+  writing = writing.then(() => written(kind, fields, name))
   return writing
 }
 
-async function written(kind: string, fields: Record<string, unknown>): Promise<void> {
+/** Values of parameters that the text computes from others, while they are held. */
+const held = new Map<string, number>()
+
+async function written(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
   try {
     await editor.synced()
     await setting.settled()
     const { head } = await link.ask(kind, fields)
-    editor.apply(head.edits ?? [], head.version)
-    if (head.kept?.length) say(`${head.kept.join(', ')} follows from an expression: the value holds for this session and is not in the text`)
+    const now = (head.kept ?? []).map((n: string) => ({ name: n, from: held.get(n) ?? null, to: model.params.find((p) => p.name === n)?.value ?? null }))
+    const news = now.filter((one: Held) => one.from !== one.to)
+    for (const one of news) if (one.to !== null) held.set(one.name, one.to)
+    editor.apply(head.edits ?? [], head.version, name, news)
+    if (news.length) say(`${news.map((one: Held) => one.name).join(', ')} follows from an expression: the value holds for this session and is not in the text`)
   } catch (error) {
     say((error as Error).message)
   }
+}
+
+/** What waits for the hand to rest. */
+let rests: { name: string; run: () => Promise<void>; timer: number } | null = null
+const REST = 600
+function rested(): Promise<void> {
+  const one = rests
+  rests = null
+  if (one) clearTimeout(one.timer)
+  return one ? one.run() : Promise.resolve()
+}
+
+function values(list: Record<string, number>): string {
+  const one = ([n, x]: [string, number]) => {
+    const was = model.params.find((p) => p.name === n)?.value
+    return was === undefined ? `${n}: ${shown(x)}` : `${n}: ${shown(was)} → ${shown(x)}`
+  }
+  return Object.entries(list).map(one).join(', ')
+}
+
+/** Steps of the history, back or, with a negative count, again; what is under way is a step, too. */
+function turn(count: number): void {
+  if (host) return host.undo(count > 0)
+  if (link.still) return
+  if (hands.busy) {
+    hands.cancel()
+    if (count > 0) return
+  }
+  void rested()
+  // Between what was written before the key and what is written after it.
+  writing = writing.then(async () => {
+    await hands.settled()
+    const back = count > 0
+    const step = (back ? editor.steps.done : editor.steps.undone).at(-1)
+    const gone = editor.steps.go(editor.view, count)
+    say(!gone ? `Nothing to ${back ? 'undo' : 'redo'}` : `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`)
+  })
+}
+
+function revert(): void {
+  void rested()
+  writing = writing.then(async () => {
+    try {
+      await hands.settled()
+      await editor.synced()
+      const { text } = await link.tell({ kind: 'revert' })
+      editor.replace(text, false, false, 'Revert to the saved file')
+      say('Reverted to the saved file; Ctrl+Z takes it back')
+      warn('')
+    } catch (error) {
+      say((error as Error).message)
+    }
+  })
 }
 
 const hidden = new Set<string>(stored<string[]>('hidden', []))
@@ -217,9 +287,14 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   hidden,
   selected: () => selected,
   set: (name, value) => setting.push({ [name]: value }),
-  commit: () => edits('commit'),
-  write: (values) => edits('write', { values }),
-  reset: () => edits('reset'),
+  typed: (text) => typed(text, link),
+  rested,
+  rest(name, run) {
+    if (rests && rests.name !== name) void rested()
+    if (rests) clearTimeout(rests.timer)
+    rests = { name, run, timer: window.setTimeout(() => void rested(), REST) }
+  },
+  write: (list, name) => edits('write', { values: list }, name ?? values(list)),
   say,
   hover(name) {
     if (view.hovered === name) return
@@ -227,6 +302,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     view.settle()
   },
   select(name, from) {
+    if ((from === 'view' || from === 'tree') && making.pick(name)) return
     if (name !== selected) {
       selected = view.selected = name
       const o = model.objects.find((k) => k.name === name)
@@ -238,7 +314,11 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   },
   locate: (name) => locate(name, true),
   show: (place) => editor.show(place, true),
-  apply: (list, version) => editor.apply(list, version),
+  apply: (list, version, name) => editor.apply(list, version, name),
+  async rewrite(kind, fields, name) {
+    await rested()
+    await edits(kind, fields, name)
+  },
   toggle(name) {
     const o = model.objects.find((k) => k.name === name)
     if (o && !o.shown) {
@@ -248,6 +328,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     if (!hidden.delete(name)) hidden.add(name)
     hide()
   },
+  ghost: (on) => view.ghost(on),
   isolate(name) {
     hidden.clear()
     if (name) for (const o of model.objects) if (o.name !== name) hidden.add(o.name)
@@ -267,6 +348,18 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     void link.ask('watch', { expressions }).catch((error) => say(error.message))
   },
 }
+
+/** The control polygons of the selected curve, or of those that the selected point is in. */
+function polygons(): void {
+  const points = new Map([...view.items.values()].filter((i) => i.kind === 'point').map((i) => [i.object, i]))
+  const near = model.objects.filter((o) => (o.class === 'curve' || o.class === 'snake') && o.parents.length > 2 && (o.name === selected || o.parents.includes(selected)))
+  const runs = near.map((o) => o.parents.flatMap((p) => {
+    const item = points.get(p)
+    return item && view.seen(item) ? view.place(item).toArray() : []
+  }))
+  view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
+}
+on(['selection', 'rev'], polygons)
 
 async function locate(name: string, focus: boolean): Promise<void> {
   if (!name || link.still) return editor.show(null)
@@ -289,7 +382,21 @@ view.hidden = hidden
 const editor = new Editor(editorHost, link, nonce.startsWith('__') ? '' : nonce, [
   { key: 'Mod-s', run: () => (void save(), true) },
   { key: 'Mod-k', run: () => (openPalette(), true) },
+  { key: 'Mod-z', run: () => (turn(1), true) },
+  { key: 'Mod-Shift-z', run: () => (turn(-1), true) },
+  { key: 'Mod-y', run: () => (turn(-1), true) },
 ])
+editor.steps.onHeld = ({ name, to }) => {
+  if (to === null) held.delete(name)
+  else held.set(name, to)
+  // The engine gives up all that the text does not state, and takes again what is still held.
+  writing = writing.then(async () => {
+    await editor.synced()
+    if (to === null) await link.ask('reset')
+    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+  }).catch((error) => say(error.message))
+}
+header.querySelector('.history-place')!.replaceWith(link.still ? '' : historyButtons(editor.steps, turn, !host))
 editor.onTrouble = (words) => say(words)
 editor.onPending = () => showSaved()
 let cursorTimer = 0
@@ -308,10 +415,27 @@ const hands = new Hands(view, link, viewHost, {
   hover: actions.hover,
   say,
   status: say,
-  apply: (list, version) => editor.apply(list, version),
+  apply: (list, version, name) => editor.apply(list, version, name),
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
+  place: (at, grain) => making.place(at, grain),
+  corner: (e) => orientation.click(e),
 })
+const making = new Making(right, link, {
+  say, select: (name) => actions.select(name, 'text'), apply: (list, version, name) => editor.apply(list, version, name), synced: () => editor.synced(),
+})
+const start = startPage({
+  begin: (text, name, reach) => {
+    // An empty scene is looked at from where its first points will be.
+    fitted = reach !== undefined
+    if (reach) Object.assign(view.camera, { reach, target: view.camera.target.set(0, 0, 0) })
+    view.draw()
+    editor.replace(text, false, false, name)
+  },
+  add: (kind) => void editor.synced().then(() => making.open(kind)),
+})
+viewHost.parentElement!.append(start)
+editor.steps.onText = () => (start.hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name))
 const board = new Board(link, editor, say)
 const desk = new Desk(link, editor, say, give)
 viewHost.parentElement!.append(board.element, desk.element)
@@ -320,7 +444,13 @@ parametersPanel(params, actions)
 treePanel(tree, actions)
 inspectorPanel(inspector, actions)
 messagesPanel(messagesHost, actions)
-strip(footer, actions)
+strip(footer, actions, (host) => new GivenNumbers(host, link, {
+  say, write: actions.write, typed: actions.typed,
+  reset: async () => {
+    await link.ask('reset')
+    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+  },
+}))
 
 function showSaved(): void {
   const waits = editor.pending
@@ -347,6 +477,8 @@ function keeps(): boolean {
 async function save(force = false): Promise<void> {
   if (host) return host.save()
   try {
+    await rested()
+    await writing
     await editor.synced()
     const answer = await link.tell({ kind: 'save', force })
     if (link.local) return give(new Blob([answer.text], { type: 'text/plain' }), model.name)
@@ -366,7 +498,7 @@ function conflict(text: string): void {
   const lines = (t: string) => t.split('\n').length
   warn(`The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
     $('button', { onclick: () => void save(true).then(() => warn('')) }, 'Keep mine, write the file'),
-    $('button', { onclick: () => void link.tell({ kind: 'revert' }).then(() => warn('')).catch(() => warn('')) }, 'Take theirs'),
+    $('button', { onclick: revert }, 'Take theirs'),
     $('button', { onclick: () => compare() }, 'Show both'))
 }
 
@@ -461,6 +593,7 @@ link.onMessage = (message) => {
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
       else {
         warn('')
+        if (held.size) void link.ask('write', { values: Object.fromEntries(held) }).catch(() => undefined)
         if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
         void foreign.again()
       }
@@ -480,6 +613,7 @@ async function begin(hello: any): Promise<void> {
   document.title = `${hello.name} · Moldloft`
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
+  editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
   if (hello.watched) {
@@ -491,7 +625,7 @@ async function begin(hello: any): Promise<void> {
     tabs.append(tab('board', 'Drawing board'))
     if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
   }
-  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
+  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.')
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
   showSaved()
   try {
@@ -499,9 +633,12 @@ async function begin(hello: any): Promise<void> {
     if (link.local) await link.ask('open')
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
-    const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
+    // A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing.
+    const floats = view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
+    const usual = ![...view.items.values()].some((i) => i.kind === 'patch') ? [] : floats ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt'] : ['mesh.area', 'mesh.volume']
     const watched = stored<string[]>(`watch.${model.name}`, usual)
     if (!link.still) await link.ask('watch', { expressions: watched })
+    if (!again && !link.still) formats = (await link.ask('formats')).head.formats
     if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
@@ -523,7 +660,9 @@ viewHost.addEventListener('drop', (e) => {
 
 // Commands: one table for buttons, keys and the palette.
 
-const openPalette = () => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))])
+/** The formats of the engine: names, and what they hold. */
+let formats: [string, string][] = []
+const openPalette = (words = '') => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))], words)
 
 const looks: [Standard, string, string][] = [
   ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
@@ -578,7 +717,11 @@ function sheet(name: SheetName | 'board' | 'desk'): void {
 function commands(): Command[] {
   return [
     { name: link.local ? 'Download the text' : 'Save', keys: 'Ctrl+S', run: () => void save() },
-    { name: link.local ? 'Take the text as it came: drop changes' : 'Take the file: drop unsaved changes', run: () => void link.tell({ kind: 'revert' }).catch((e) => say(e.message)) },
+    ...(link.still ? [] : [
+      { name: 'Undo', keys: 'Ctrl+Z', run: () => turn(1) },
+      { name: 'Redo', keys: 'Ctrl+Shift+Z', run: () => turn(-1) },
+      { name: link.local ? 'Revert to the text as it came' : 'Revert to the saved file', run: revert },
+    ]),
     { name: 'Fit the model', keys: 'F', run: () => view.fit() },
     ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
     { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
@@ -597,6 +740,12 @@ function commands(): Command[] {
     ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => analysis.paint('field', 'derivative', p.name) })),
     ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
     { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
+    ...(link.still || !model.program ? [] : [
+      { name: 'Add an object', keys: 'Shift+A', run: () => void making.open() },
+      { name: 'Delete the selected object', keys: 'Delete', run: () => selected && void actions.rewrite('delete', { name: selected }, `Delete ${selected}`) },
+      { name: 'Duplicate the selected object', keys: 'Ctrl+D', run: () => selected && void actions.rewrite('duplicate', { name: selected }, `Duplicate ${selected}`) },
+      { name: 'Rename the selected object', keys: 'Shift+R', run: () => inspector.querySelector<HTMLInputElement>('input.title')?.select() },
+    ]),
     { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
     { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
     { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
@@ -620,8 +769,8 @@ function commands(): Command[] {
     { name: 'Go to objects', keys: 'Ctrl+4', run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus() },
     { name: 'Format the program', keys: 'Shift+Alt+F', run: () => void editor.format() },
     { name: 'Rename the name at the cursor', keys: 'F2', run: () => void editor.rename() },
-    { name: 'Picture as PNG', run: () => void download('png') },
-    ...[['svg', 'Lines plan as SVG'], ['stl', 'Mesh as STL'], ['obj', 'Mesh as OBJ'], ['gltf', 'Mesh as glTF'], ['gdf', 'Panels for WAMIT'], ['vtp', 'Mesh for ParaView']].map(([f, w]) => ({ name: `Download: ${w}`, run: () => void download(f) })),
+    { name: 'Export: picture (PNG)', run: () => void download('png') },
+    ...formats.map(([f, about]) => ({ name: `Export: ${f}, ${about}`, run: () => void download(f) })),
     { name: 'Light or dark', run: () => themeButton.click() },
     { name: 'Help', keys: 'F1', run: () => help(commands()) },
   ]
@@ -638,6 +787,7 @@ function buildToolbar(): void {
   const { field, by } = analysis
   const value = view.paint === 'field' ? (field === 'derivative' ? `d:${by}` : field) : view.paint
   toolbar.replaceChildren(
+    link.still ? '' : button('+', 'Add an object (Shift+A)', () => void making.open()),
     button('⤢', 'Fit the model (F)', () => view.fit()),
     choice('view', '', [['', 'View'], ...looks.map(([n, w, k]) => [n, `${w}  ${k}`] as [string, string])], (v) => {
       if (v) look(v as Standard)
@@ -665,27 +815,37 @@ function tab(name: SheetName | 'board' | 'desk', words: string): HTMLElement {
 }
 for (const [name, words] of SHEETS) tabs.append(tab(name, words))
 
-paletteButton.addEventListener('click', openPalette)
+paletteButton.addEventListener('click', () => openPalette())
+exportButton.addEventListener('click', () => openPalette('Export: '))
 helpButton.addEventListener('click', () => help(commands()))
 saveButton.addEventListener('click', () => void save())
 
+/** The texts of fields when the focus came to them. */
+const came = new WeakMap<HTMLInputElement, string>()
+addEventListener('focusin', (e) => {
+  if (e.target instanceof HTMLInputElement && e.target.type !== 'range') came.set(e.target, e.target.value)
+})
 addEventListener('keydown', (e) => {
   const target = e.target as HTMLElement
   const typing = target.closest('input, select, textarea, .cm-editor, dialog') !== null
   const name = `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && e.key.length === 1 && /[a-z]/i.test(e.key) ? 'Shift+' : ''}${e.key.length === 1 ? e.key.toUpperCase() : e.key}`
   if (name === 'Ctrl+K') {
+    if (e.defaultPrevented) return
     e.preventDefault()
     return openPalette()
   }
-  if (name === 'Ctrl+Z' && !typing) {
+  const turns: Record<string, number> = { 'Ctrl+Z': 1, 'Ctrl+Shift+Z': -1, 'Ctrl+Y': -1 }
+  if (name in turns) {
+    // A field with something typed in it takes that back first.
+    const field = target.closest('input')
+    if (e.defaultPrevented || target.closest('dialog') || (field && (came.get(field) ?? field.value) !== field.value)) return
     e.preventDefault()
-    if (host) host.undo()
-    else editor.view.focus()
-    return
+    return turn(turns[name])
   }
   const command = commands().find((c) => c.keys === name)
   if (e.key === 'Escape' && !typing) {
     if (hands.busy) hands.cancel()
+    else if (making.isOpen) making.close()
     else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
     else if (view.clip) analysis.cut(null)
     else if (planes.shown) planes.close()
@@ -733,7 +893,9 @@ Object.assign(window, {
     text: () => editor.text,
     board,
     desk,
+    steps: () => ({ done: [...editor.steps.done], undone: [...editor.steps.undone] }),
     settled: async () => {
+      await rested()
       await hands.settled()
       await editor.synced()
       await setting.settled()

@@ -8,8 +8,10 @@ export interface Command {
   run: () => void
 }
 
-export function palette(all: Command[]): void {
-    const input = h('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
+/** `words`: what is typed there already. */
+export function palette(all: Command[], words = ''): void {
+  if (document.querySelector('dialog[open]')) return
+  const input = h('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
   const list = h('ul', { role: 'listbox', id: 'commands', 'aria-label': 'commands' })
   const dialog = h('dialog', { class: 'palette', 'aria-label': 'commands' }, input, list)
   let found: Command[] = []
@@ -19,8 +21,8 @@ export function palette(all: Command[]): void {
     c?.run()
   }
   const build = () => {
-    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean)
-    found = all.filter((c) => words.every((w) => c.name.toLowerCase().includes(w))).slice(0, 60)
+    const sought = input.value.toLowerCase().split(/\s+/).filter(Boolean)
+    found = all.filter((c) => sought.every((w) => c.name.toLowerCase().includes(w))).slice(0, 60)
     at = Math.max(0, Math.min(at, found.length - 1))
     list.replaceChildren(...found.map((c, k) => h('li', { role: 'option', 'aria-selected': k === at, id: `command-${k}`, onclick: () => run(c) }, c.name, c.keys ? h('kbd', {}, c.keys) : '')))
     list.children[at]?.scrollIntoView({ block: 'nearest' })
@@ -40,6 +42,7 @@ export function palette(all: Command[]): void {
   dialog.addEventListener('click', (e) => e.target === dialog && dialog.close())
   document.body.append(dialog)
   dialog.showModal()
+  input.value = words
   build()
   input.focus()
 }

@@ -1,20 +1,30 @@
 // Parameters, objects, the inspector, messages and the strip of numbers.
 
 import { h, shown, store, stored } from './dom'
+import type { GivenNumbers } from './numbers'
 import { changed, model, on, type Fault, type Obj, type Param } from './state'
 
 export interface Actions {
   set(name: string, value: number): void
-  commit(): Promise<void>
-  write(values: Record<string, number>): Promise<void>
-  reset(): Promise<void>
+  /** Writes values into the text: a step of the history. */
+  write(values: Record<string, number>, name?: string): Promise<void>
+  /** The number that a text means: plain, an expression, with a unit. */
+  typed(text: string): Promise<number>
+  /** Runs when the hand rests; before anything else is done; the last of a name counts. */
+  rest(name: string, run: () => Promise<void>): void
+  /** What waits for the hand to rest runs now. */
+  rested(): Promise<void>
   select(name: string, from: 'tree' | 'view' | 'text' | 'message' | 'graph'): void
   hover(name: string): void
   locate(name: string): Promise<void>
   show(place: [number, number]): void
-  apply(edits: { from: number; to: number; insert: string }[], version?: number): void
+  apply(edits: { from: number; to: number; insert: string }[], version?: number, name?: string): void
+  /** A change of statements by the engine: a step of the history. */
+  rewrite(kind: string, fields: Record<string, unknown>, name: string): Promise<void>
   toggle(name: string): void
   isolate(name: string | null): void
+  /** Shows what was there before, while the hand moves. */
+  ghost(on: boolean): void
   inspect(name: string, by: string | null): Promise<any>
   watch(expressions: string[]): void
   say(words: string): void
@@ -38,7 +48,7 @@ export function stepped(value: number, low: number, high: number, whole: boolean
 }
 
 export function parametersPanel(host: HTMLElement, act: Actions): void {
-  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param; wanted: number | null }>()
+  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param; wanted: number | null; from: number }>()
   let built = ''
   const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
   const box = h('div', { class: 'params' })
@@ -54,28 +64,39 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         type: 'range', min: low, max: high, step: p.whole ? 1 : 'any', 'aria-label': p.name, class: stated ? '' : 'guess', disabled: act.still,
         title: stated ? `${p.name}: ${low} to ${high}` : `${p.name}: no range is declared`,
       })
-      const field = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': `${p.name}, value`, disabled: act.still })
+      const field = h('input', { type: 'text', class: 'number', 'aria-label': `${p.name}, value`, disabled: act.still })
       const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
       const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
       const row = h('div', { class: 'param' }, name, field, reset, slider)
-      const entry = { row, slider, field, reset, p, wanted: null as number | null }
+      const entry = { row, slider, field, reset, p, wanted: null as number | null, from: p.value }
+      /** Keys come one by one: what they do is written when they rest. */
+      let keys = false
       rows.set(p.name, entry)
       const step = (value: number) => {
         const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
         slider.value = String(v)
         field.value = p.whole ? String(v) : shown(v, 7)
         slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        if (entry.wanted === null) entry.from = entry.p.value
         entry.wanted = v
         act.set(p.name, v)
       }
-      const commit = () => {
-        const { wanted } = entry
-        void act.commit().then(() => {
-          if (entry.wanted !== wanted) return
-          entry.wanted = null
-          show(entry)
-        })
+      const write = async () => {
+        const { wanted, from } = entry
+        if (wanted === null) return
+        // With its value: a text that came meanwhile has made the engine forget what was set.
+        await act.write({ [p.name]: wanted }, `${p.name}: ${shown(from)} → ${shown(wanted)}`)
+        if (entry.wanted !== wanted) return
+        entry.wanted = null
+        show(entry)
       }
+      const commit = () => (keys ? act.rest(p.name, write) : void write())
+      slider.addEventListener('pointerdown', () => {
+        keys = false
+        act.ghost(true)
+        addEventListener('pointerup', () => act.ghost(false), { once: true })
+      })
+      slider.addEventListener('blur', () => void act.rested())
       slider.addEventListener('input', () => step(slider.valueAsNumber))
       slider.addEventListener('change', commit)
       slider.addEventListener('keydown', (event) => {
@@ -83,24 +104,33 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         const moves: Record<string, number> = {
           ArrowRight: by / 10, ArrowUp: by / 10, ArrowLeft: -by / 10, ArrowDown: -by / 10, PageUp: by * 10, PageDown: -by * 10,
         }
+        if (!(event.key in moves) && event.key !== 'Home' && event.key !== 'End') return
+        keys = true
         if (!(event.key in moves) || p.whole) return
         event.preventDefault()
         step(slider.valueAsNumber + moves[event.key])
         commit()
       })
-      const enter = () => {
-        const x = Number(field.value.replace('−', '-').replace(',', '.'))
-        if (field.value.trim() === '' || !Number.isFinite(x)) field.value = text(entry.p)
-        else if (x !== entry.p.value) void act.write({ [p.name]: x })
+      const enter = async () => {
+        // The shown digits are not the whole number: what was not typed over is not entered.
+        if (field.value.trim() !== '' && field.value !== text(entry.p)) {
+          try {
+            await act.write({ [p.name]: await act.typed(field.value) })
+          } catch (error) {
+            act.say((error as Error).message)
+          }
+        }
+        // What the model has, whatever was typed.
+        field.value = text(entry.p)
       }
       field.addEventListener('keydown', (event) => {
-        if (event.key === 'Enter') enter()
+        if (event.key === 'Enter') void enter()
         if (event.key === 'Escape') {
           field.value = text(entry.p)
           field.blur()
         }
       })
-      field.addEventListener('blur', enter)
+      field.addEventListener('blur', () => void enter())
       reset.addEventListener('click', () => void act.write({ [p.name]: begin.get(p.name) ?? p.default }))
       name.addEventListener('click', () => p.place && act.show(p.place))
       box.append(row)
@@ -260,7 +290,7 @@ function formRow(f: any, version: number, act: Actions, chips: (names: string[])
   const { written } = f
   if (f.numbers.length && !f.switch) {
     // One that is typed over by an expression becomes it.
-    const other = f.numbers.length === 1 && written?.text ? (text: string) => act.apply([{ from: written.place[0], to: written.place[1], insert: text }], version) : null
+    const other = f.numbers.length === 1 && written?.text ? (text: string) => act.apply([{ from: written.place[0], to: written.place[1], insert: text }], version, `${f.name}: ${text}`) : null
     return row(...f.numbers.map((n: any) => numberField(n, act, other)), unit)
   }
   const plain = f.objects.length ? chips(f.objects) : f.value === null ? '' : shown(f.value)
@@ -273,7 +303,7 @@ function formRow(f: any, version: number, act: Actions, chips: (names: string[])
     if (!now && !quotes) return act.say(`${f.name}: leave it out in the program`)
     if (quotes && /["\n]/.test(now)) return act.say('A text has no quotes in it')
     const spelled = quotes ? `"${now}"` : now
-    act.apply([{ from: written.place[0], to: written.place[1], insert: written.text === null ? `, ${f.name} = ${spelled}` : spelled }], version)
+    act.apply([{ from: written.place[0], to: written.place[1], insert: written.text === null ? `, ${f.name} = ${spelled}` : spelled }], version, `${f.name}: ${spelled}`)
   }
   if (f.switch && /^[01]?$/.test(before)) {
     const box = h('input', { type: 'checkbox', 'aria-label': f.name, checked: (before || String(f.value)) === '1' })
@@ -303,15 +333,41 @@ function formRow(f: any, version: number, act: Actions, chips: (names: string[])
 
 /** A number of the text. */
 function numberField(n: any, act: Actions, other: ((text: string) => void) | null): HTMLInputElement {
-  const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': n.path, title: n.path, disabled: act.still })
-  input.value = shown(n.value, 9)
+  const input = h('input', { type: 'text', class: 'number', 'aria-label': n.path, title: n.path, disabled: act.still })
+  const now = shown(n.value, 9)
+  input.value = now
   input.addEventListener('keydown', (e) => e.key === 'Enter' && (input.blur(), undefined))
-  input.addEventListener('blur', () => {
-    const x = Number(input.value.replace('−', '-'))
+  input.addEventListener('blur', async () => {
     const text = input.value.trim()
-    if (text && Number.isFinite(x) && shown(x, 9) !== shown(n.value, 9)) void act.write({ [n.path]: x })
-    else if (text && !Number.isFinite(x) && other) other(text)
-    else input.value = shown(n.value, 9)
+    if (!text || text === now) return void (input.value = now)
+    const plain = Number(text.replace('−', '-'))
+    // An expression of names is written as it is; one of numbers and units is a number.
+    if (!Number.isFinite(plain) && other && /[A-Za-z_]\w*/.test(text.replace(/\d\s*(mm|cm|dm|km|m|in|ft|yd|rad|deg)\s*$/, '0'))) return other(text)
+    try {
+      await act.write({ [n.path]: await act.typed(text) })
+    } catch (error) {
+      act.say((error as Error).message)
+      input.value = now
+    }
+  })
+  return input
+}
+
+/** An object's name: typed over, it is renamed everywhere. */
+function titled(name: string, act: Actions): HTMLElement {
+  if (act.still) return h('strong', {}, name)
+  const input = h('input', { type: 'text', class: 'title', 'aria-label': 'name of the object', spellcheck: 'false' })
+  input.value = name
+  input.addEventListener('keydown', (e) => {
+    if (e.key === 'Escape') input.value = name
+    if (e.key === 'Enter' || e.key === 'Escape') input.blur()
+  })
+  input.addEventListener('blur', async () => {
+    const now = input.value.trim()
+    input.value = name
+    if (!now || now === name) return
+    await act.rewrite('rename_object', { name, new: now }, `Rename ${name} to ${now}`)
+    act.select(now, 'text')
   })
   return input
 }
@@ -354,7 +410,7 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       void build()
     })
     host.replaceChildren(
-      h('header', { class: 'inspected' }, h('strong', {}, o.name), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
+      h('header', { class: 'inspected' }, titled(o.name, act), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
       h('p', { class: 'quiet' }, o.about),
       ...(o.failure ? [h('p', { class: 'bad' }, o.failure)] : []),
       ...(o.waits ? [h('p', { class: 'bad' }, 'Waits for ', link(o.waits))] : []),
@@ -368,6 +424,10 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       h('div', { class: 'buttons' },
         h('button', { onclick: () => act.toggle(o.name) }, 'Hide or show'),
         h('button', { onclick: () => act.isolate(o.name) }, 'Isolate'),
+        ...(act.still || !model.program ? [] : [
+          h('button', { onclick: () => void act.rewrite('duplicate', { name: o.name }, `Duplicate ${o.name}`) }, 'Duplicate'),
+          h('button', { onclick: () => void act.rewrite('delete', { name: o.name }, `Delete ${o.name}`) }, 'Delete'),
+        ]),
         h('button', { onclick: () => void navigator.clipboard?.writeText(o.name).then(() => act.say(`${o.name} copied`)) }, 'Copy name')),
     )
   }
@@ -388,7 +448,7 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
     })
     const more = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '', ...f.notes, ...f.help].filter(Boolean)
     for (const words of more) item.append(h('div', { class: 'more' }, words))
-    if (f.edit) item.append(h('button', { class: 'fix', onclick: () => act.apply([{ from: f.edit!.place[0], to: f.edit!.place[1], insert: f.edit!.insert }]) }, `Fix: ${f.edit.title}`))
+    if (f.edit) item.append(h('button', { class: 'fix', onclick: () => act.apply([{ from: f.edit!.place[0], to: f.edit!.place[1], insert: f.edit!.insert }], undefined, f.edit!.title) }, `Fix: ${f.edit.title}`))
     return item
   }
   function build(): void {
@@ -404,12 +464,20 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   })
 }
 
-export function strip(host: HTMLElement, act: Actions): void {
+/** Numbers of the whole model: the power of the unit of length, and what they are in full. */
+const KNOWN: Record<string, [number, string]> = {
+  'mesh.area': [2, 'area of one side of all panels'], 'mesh.volume': [3, 'volume that the panels enclose'],
+  'hydrostatics.volume': [3, 'immersed volume, both sides'], 'hydrostatics.wetted_area': [2, 'wetted area, both sides'], 'hydrostatics.waterplane_area': [2, 'area of the waterplane, both sides'],
+  'hydrostatics.lcb': [1, 'longitudinal centre of buoyancy'], 'hydrostatics.vcb': [1, 'vertical centre of buoyancy'], 'hydrostatics.draft': [1, 'draught'], 'hydrostatics.kmt': [1, 'transverse metacentre above the keel'], 'hydrostatics.kb': [1, 'centre of buoyancy above the keel'],
+  'hydrostatics.cb': [0, 'block coefficient'], 'hydrostatics.cp': [0, 'prismatic coefficient'],
+}
+
+export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement) => GivenNumbers): void {
   const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
   const add = h('input', { type: 'text', placeholder: '+ number to watch', 'aria-label': 'watch an expression', class: 'add', list: 'watchable', disabled: act.still })
   const list = h('datalist', { id: 'watchable' })
-  for (const word of ['mesh.area', 'mesh.volume', 'hydrostatics.displacement', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.vcb', 'hydrostatics.wetted_area', 'hydrostatics.waterplane_area', 'hydrostatics.draft', 'hydrostatics.kmt', 'hydrostatics.kb', 'hydrostatics.cb', 'hydrostatics.cp'])
-    list.append(h('option', { value: word }))
+  for (const [word, [, about]] of Object.entries(KNOWN)) list.append(h('option', { value: word, label: about }))
+  const numbers = given(host)
   const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
   host.append(box, add, list, setMark)
   let marked = new Map<string, number>()
@@ -423,15 +491,22 @@ export function strip(host: HTMLElement, act: Actions): void {
     act.watch([...model.watched.map((w) => w.expression), add.value.trim()])
     add.value = ''
   })
+  const unit = (expression: string) => {
+    const power = KNOWN[expression]?.[0] ?? 0
+    return power && model.unit ? `${model.unit}${['', '', '²', '³'][power]}` : ''
+  }
   function build(): void {
+    // A number that is dragged keeps its element.
+    if (numbers.busy) return numbers.follow()
     box.replaceChildren(...model.watched.map((w) => {
       const was = marked.get(w.expression)
       const value = typeof w.value === 'number' ? w.value : null
       if (value !== null && was === undefined) marked.set(w.expression, value)
       const delta = value !== null && was !== undefined && value !== was ? value - was : 0
       const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
-      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? w.expression },
-        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? (KNOWN[w.expression] ? `${w.expression}: ${KNOWN[w.expression][1]}` : w.expression) },
+        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), value !== null && !act.still && model.params.length ? numbers.handle(w.expression, value) : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+        value !== null && unit(w.expression) ? h('span', { class: 'unit' }, unit(w.expression)) : '',
         delta ? h('span', { class: `delta ${delta > 0 ? 'up' : 'down'}` }, `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`) : '',
         act.still ? '' : h('button', { class: 'icon', 'aria-label': `stop watching ${w.expression}`, onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)) }, '×'))
     }))

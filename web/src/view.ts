@@ -107,7 +107,8 @@ export class View {
   selected = ''
   hovered = ''
   onFrame: () => void = () => {}
-  private symmetry = ''
+  /** The axes across which the model is mirrored. */
+  mirrored = ''
   private readonly renderer: WebGLRenderer
   private readonly scene = new Scene()
   private readonly model = new Group()
@@ -167,7 +168,7 @@ export class View {
   /** Takes what is new in a frame; true when there was something. */
   take(frame: Frame): boolean {
     const { head } = frame
-    if (head.mirror !== undefined) this.symmetry = head.mirror
+    if (head.mirror !== undefined) this.mirrored = head.mirror
     for (const key of head.removed ?? []) this.remove(JSON.stringify(key))
     if (head.all) {
       const kept = new Set((head.items ?? []).map((item: any) => JSON.stringify(item.key)))
@@ -303,7 +304,7 @@ export class View {
     let found = this.lineMaterials.get(kind)
     if (!found) {
       const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2, foreign: 0.8 }
-      if (kind === 'edge') found = new LineBasicMaterial({ transparent: true, opacity: 0.22 })
+      if (kind === 'edge' || kind === 'ghost') found = new LineBasicMaterial({ transparent: true, opacity: kind === 'edge' ? 0.22 : 0.5 })
       else found = new LineMaterial({ linewidth: widths[kind] ?? 1.4 })
       if (found instanceof LineMaterial) found.resolution.copy(this.resolution)
       this.lineMaterials.set(kind, found)
@@ -317,7 +318,7 @@ export class View {
     const d = this.dark
     const inks: Record<string, number> = {
       edge: d ? 0xdfe6ee : 0x1b2530, rim: d ? 0xc9d3de : 0x2b3541, curve: d ? 0x7fb0e6 : 0x2a5d9c, wire: d ? 0xe6edf5 : 0x1b2533, contour: d ? 0xe2b66b : 0x8a5a12,
-      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6, foreign: d ? 0x9aa7b4 : 0x4a5560,
+      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6, foreign: d ? 0x9aa7b4 : 0x4a5560, ghost: d ? 0xaab4be : 0x6d7883,
     }
     for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
   }
@@ -387,7 +388,7 @@ export class View {
   /** The halves, or three quarters, that are not in the model. */
   private reflect(): void {
     this.image.clear()
-    const planes = [0, 1, 2].filter((k) => this.symmetry.includes('xyz'[k]))
+    const planes = [0, 1, 2].filter((k) => this.mirrored.includes('xyz'[k]))
     this.image.visible = this.mirror && planes.length > 0
     if (!this.image.visible) return
     const own = this.bounds.clone()
@@ -525,6 +526,21 @@ export class View {
     return span
   }
 
+  /**
+   * The place under a place of the picture where nothing is: on the plane of coordinates that is seen most squarely, through
+   * the middle of what is seen, or the origin while that is near.
+   */
+  placeAt(x: number, y: number): Vector3 {
+    const { ray } = this.ray(x, y)
+    const facing = this.camera.towards.toArray().map(Math.abs)
+    // The ground, unless it is seen too flatly.
+    const axis = facing[2] > 0.3 ? 2 : facing.indexOf(Math.max(...facing))
+    const level = Math.abs(this.camera.target.getComponent(axis)) < this.camera.reach ? 0 : this.camera.target.getComponent(axis)
+    const along = (level - ray.origin.getComponent(axis)) / ray.direction.getComponent(axis)
+    const place = ray.at(along, new Vector3())
+    return place.setComponent(axis, level)
+  }
+
   /** The place of a surface under a place of the picture, but not of an object. */
   surfaceAt(x: number, y: number, but: string): Picked | null {
     const { ray } = this.ray(x, y)
@@ -550,8 +566,31 @@ export class View {
     return best
   }
 
+  /** Curves and rims as they are now, in grey, while the hand moves them; once until it is taken away. */
+  ghost(on: boolean): void {
+    const old = this.extras.children.find((c) => c.name === 'ghost') as LineSegments | undefined
+    if (on === !!old) return
+    if (old) {
+      old.geometry.dispose()
+      this.extras.remove(old)
+    } else {
+      const all = [...this.items.values()].filter((i) => i.group.visible && i.kind !== 'point' && i.kind !== 'contour')
+      const of = (i: Drawn) => (i.kind === 'patch' ? i.rim : i.edge)
+      const flat = new Float32Array(3 * all.reduce((n, i) => n + of(i).length, 0))
+      let at = 0
+      for (const i of all) for (const v of of(i)) for (let c = 0; c < 3; c++) flat[at++] = i.position[3 * v + c] + i.origin.getComponent(c)
+      const geometry = new BufferGeometry()
+      geometry.setAttribute('position', new BufferAttribute(flat, 3))
+      const lines = new LineSegments(geometry, this.line('ghost') as LineBasicMaterial)
+      lines.name = 'ghost'
+      lines.frustumCulled = false
+      this.extras.add(lines)
+    }
+    this.draw()
+  }
+
   /** Lines that are drawn besides: combs, sections, measures, arrows. */
-  overlay(name: string, runs: number[][] | null, colour = 0xc2412d): void {
+  overlay(name: string, runs: number[][] | null, colour = 0xc2412d, width = 1.5): void {
     const old = this.extras.children.find((c) => c.name === name)
     if (old) this.extras.remove(old)
     if (runs && runs.length) {
@@ -560,7 +599,7 @@ export class View {
       if (flat.length) {
         const geometry = new LineSegmentsGeometry()
         geometry.setPositions(flat)
-        const material = new LineMaterial({ linewidth: 1.5, color: colour, depthTest: false, transparent: true })
+        const material = new LineMaterial({ linewidth: width, color: colour, depthTest: false, transparent: true })
         material.resolution.copy(this.resolution)
         const lines = new LineSegments2(geometry, material)
         lines.name = name

@@ -214,7 +214,7 @@ impl Document {
     }
 
     /// The statement of the main file that makes this object and no other, and where it is named.
-    fn sole_statement(&self, name: &str) -> Result<(StmtId, Span), Diagnostic> {
+    pub(crate) fn sole_statement(&self, name: &str) -> Result<(StmtId, Span), Diagnostic> {
         let graph = self.graph();
         let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else {
             if let Some(found) = self.instance_statement(name) {

@@ -2,11 +2,11 @@
 
 use crate::document::{Document, ObjectSource};
 use crate::{degenerate, faired};
-use moldloft_diag::Diagnostic;
+use moldloft_diag::{Diagnostic, Span};
 use moldloft_lang::run::program;
 use moldloft_lang::value::number_path::NumberPath;
 use moldloft_model::{Applied, Extent};
-use moldloft_registry::Class;
+use moldloft_registry::{Class, Value};
 
 impl Document {
     /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates what they
@@ -43,7 +43,7 @@ impl Document {
         // Conditions may have changed.
         rerun |= !self.solved.is_empty();
         for edit in &edits {
-            rerun |= self.must_rerun(edit);
+            rerun |= edit.within || self.must_rerun(edit);
         }
         for edit in &edits {
             self.write_literal(edit).map_err(|d| vec![d])?;
@@ -75,8 +75,103 @@ impl Document {
         }
     }
 
-    /// The literal that `name` (`P21.y`) means.
+    /// The numbers in the expression that `name` (`P21.y`) is given by, with the derivative of the expression by each:
+    /// those by which it, or its reciprocal, is of first degree, such as 5.046 in `5.046 * beam` and 2 in `beam / 2`.
+    pub fn coefficients(&mut self, name: &str) -> Vec<Coefficient> {
+        let Some((span, literals)) = self.literals_within(name) else { return Vec::new() };
+        let program = &self.modules.get(0).program;
+        let text = program.text().clone();
+        let spans: Vec<(Span, f64)> =
+            literals.iter().map(|l| (program[*l].span, program[*l].value)).collect();
+        let spelled = |at: usize, x: f64| {
+            let mut out = String::from("(");
+            let mut from = span.start as usize;
+            for (k, (s, value)) in spans.iter().enumerate() {
+                out.push_str(&text[from..s.start as usize]);
+                out.push_str(&format!("({:?})", if k == at { x } else { *value }));
+                from = s.end as usize;
+            }
+            out.push_str(&text[from..span.end as usize]);
+            out.push(')');
+            out
+        };
+        let mut found = Vec::new();
+        for (k, (s, value)) in spans.iter().enumerate() {
+            let step = if *value == 0.0 { 1.0 } else { value.abs() / 4.0 };
+            let mut at = |share: f64| match self.eval(&spelled(k, value + share * step)) {
+                Ok(Value::Number(x)) => Some(x),
+                _ => None,
+            };
+            let (Some(less), Some(now), Some(more)) = (at(-1.0), at(0.0), at(1.0)) else {
+                continue;
+            };
+            let straight = |a: f64, b: f64, c: f64| {
+                (a - 2.0 * b + c).abs() <= STRAIGHT * (a.abs() + b.abs() + c.abs())
+            };
+            let slope = if straight(less, now, more) {
+                (more - less) / (2.0 * step)
+            } else if straight(1.0 / less, 1.0 / now, 1.0 / more) {
+                -now * now * (1.0 / more - 1.0 / less) / (2.0 * step)
+            } else {
+                continue;
+            };
+            if slope != 0.0 && slope.is_finite() {
+                let name = format!("{name}#{}", k + 1);
+                found.push(Coefficient { name, value: *value, slope, span: *s });
+            }
+        }
+        found
+    }
+
+    /// The place of the expression that a number of an object is given by, and the numbers in it.
+    fn literals_within(&self, name: &str) -> Option<(Span, Vec<moldloft_syntax::sdl::LiteralId>)> {
+        if !matches!(self.source, ObjectSource::Program) {
+            return None;
+        }
+        let (key, path) = self.number_path(name)?;
+        let object = self.plain.graph.get(key)?;
+        program::literals_within(&self.modules, &self.plain.env, object, &path)
+    }
+
+    /// The object and the argument that `P21.y` means.
+    fn number_path(&self, name: &str) -> Option<(moldloft_num::trace::Key, NumberPath)> {
+        let graph = &self.plain.graph;
+        // The object's own name may contain dots: the longest that is one wins.
+        let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
+        let (key, path) =
+            split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)))?;
+        Some((key, NumberPath::parse(&graph.get(key)?.row, path)?))
+    }
+
+    /// The value and range of a number of an object, or of one in its expression.
+    pub(crate) fn object_number(&self, name: &str) -> Option<(f64, Option<(f64, f64)>)> {
+        if let Some((base, at)) = coefficient_name(name) {
+            let (_, literals) = self.literals_within(base)?;
+            return Some((self.modules.get(0).program[*literals.get(at)?].value, None));
+        }
+        let (key, path) = self.number_path(name)?;
+        let object = self.plain.graph.get(key)?;
+        let field = &object.row.fields[path.field];
+        let range = field.min.zip(field.max).filter(|(a, b)| a.is_finite() && b.is_finite());
+        let mut value = None;
+        path.change(&mut object.args.clone(), |x| {
+            value = Some(x);
+            x
+        })?;
+        Some((value?, range))
+    }
+
+    /// The literal that `name` (`P21.y`) means, or the one in its expression that `P21.y#1` means.
     pub(crate) fn literal(&self, name: &str, value: f64) -> Result<LiteralEdit, Diagnostic> {
+        if let Some((base, at)) = coefficient_name(name)
+            && value.is_finite()
+            && let Some((key, path)) = self.number_path(base)
+            && let Some((_, literals)) = self.literals_within(base)
+            && let Some(literal) = literals.get(at)
+        {
+            let place = LiteralPlace::Program((0, *literal));
+            return Ok(LiteralEdit { key, path, place, value, within: true });
+        }
         if !value.is_finite() {
             return Err(Diagnostic::error("not-finite", format!("`{name}` cannot be {value}"))
                 .expected("a finite number")
@@ -137,11 +232,14 @@ impl Document {
             ObjectSource::None => unreachable!("there are objects"),
         };
         let place = place.map_err(|why| self.not_literal(name, why))?;
-        Ok(LiteralEdit { key, path, place, value })
+        Ok(LiteralEdit { key, path, place, value, within: false })
     }
 
     /// The edit, when a run of the edited text would take the number.
     fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
+        if edit.within {
+            return Ok(edit);
+        }
         let object = self.plain.graph.get(edit.key).expect("the object of an edit");
         if let LiteralPlace::Program((module, _)) = edit.place
             && module != 0
@@ -250,12 +348,36 @@ impl Document {
     }
 }
 
+/// A number in the expression of another, such as 5.046 in `y = 5.046 * beam`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coefficient {
+    /// Its name: that of the number, `#`, and its place in the expression from 1, as in `P21.y#1`.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// The derivative of the expression by it.
+    pub slope: f64,
+    /// Its place in the text.
+    pub span: Span,
+}
+
+/// Second differences below this share of the values are rounding.
+const STRAIGHT: f64 = 1e-12;
+
+/// `P21.y#1` is the first number in the expression of `P21.y`.
+pub(crate) fn coefficient_name(name: &str) -> Option<(&str, usize)> {
+    let (base, at) = name.rsplit_once('#')?;
+    Some((base, at.parse::<usize>().ok()?.checked_sub(1)?))
+}
+
 /// A change of one number in the text.
 pub(crate) struct LiteralEdit {
     pub key: moldloft_num::trace::Key,
     pub path: NumberPath,
     pub place: LiteralPlace,
     pub value: f64,
+    /// True for a number in the expression of an argument.
+    pub within: bool,
 }
 
 /// Where a number stands.

@@ -12,7 +12,8 @@ use moldloft::budget::Budget;
 use moldloft::diag::Sources;
 use moldloft::document::searches::Searches;
 use moldloft::document::{
-    Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
+    Adjustable, Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
+    Target,
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft::host::FileWorld;
@@ -422,6 +423,24 @@ impl PyDocument {
         let expression = expression.to_owned();
         let value = self.long_checked(py, move |d| d.eval(&expression))?;
         to_python(py, &value)
+    }
+
+    /// Adjustments (name, before, after, share), the values reached and the number of steps.
+    #[allow(clippy::type_complexity)]
+    fn solve_for(
+        &self,
+        py: Python<'_>,
+        targets: Vec<(String, f64)>,
+        by: Vec<(String, f64)>,
+    ) -> PyResult<(Vec<(String, f64, f64, f64)>, Vec<f64>, usize)> {
+        let target = |(expression, value)| Target { expression, value };
+        let targets: Vec<Target> = targets.into_iter().map(target).collect();
+        let adjustable = |(name, weight)| Adjustable { name, weight, home: None };
+        let by: Vec<Adjustable> = by.into_iter().map(adjustable).collect();
+        let found = self.long_checked(py, move |d| d.solve_for(&targets, &by))?;
+        let rows = found.adjustments.into_iter();
+        let rows = rows.map(|a| (a.name, a.before, a.after, a.share)).collect();
+        Ok((rows, found.reached, found.steps))
     }
 
     fn derivatives<'py>(

@@ -1,12 +1,12 @@
 //! Dragging: the numbers that bring a place of the model to where the hand is.
 //!
-//! The place is an expression of the model; its derivatives by numbers of the text are exact. A step is a
-//! damped least-squares solution, each number scaled by the width of its range; the true place is
-//! evaluated after it, and what is left is done by the next.
+//! The place is an expression of the model; its derivatives by numbers of the text are exact. The numbers follow by the
+//! least change ([`moldloft_document::follow`]), from what they were when the drag began.
 
-use moldloft_document::Document;
+use moldloft_document::follow::{Conditions, Follower, Search, follow};
+use moldloft_document::{Document, round_to};
 use moldloft_num::Vec3;
-use moldloft_registry::Value;
+use moldloft_registry::{Class, Value};
 
 /// A drag under way.
 #[derive(Clone, Debug)]
@@ -15,10 +15,27 @@ pub struct Drag {
     pub object: String,
     /// The place as an expression.
     pub expression: String,
-    /// The numbers of the object itself that move it.
-    pub own: Vec<String>,
+    /// What moves it.
+    pub handles: Vec<Handle>,
+    /// True for what is on a curve or surface by its own numbers: only a choice takes that along.
+    carried: bool,
+    /// Where it was.
+    start: Vec3,
     /// Every number that was moved, and its value before.
-    pub moved: Vec<(String, f64)>,
+    moved: Vec<(String, f64)>,
+}
+
+/// What a number is to the object that is dragged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HandleKind {
+    /// A number of the object itself.
+    Own,
+    /// A number in the expression of one of its numbers, such as 5.046 in `5.046 * beam`.
+    Coefficient,
+    /// A parameter.
+    Parameter,
+    /// A whole number in such an expression: mostly part of a rule, as in `beam / 2`.
+    WholeCoefficient,
 }
 
 /// A number that moves the place.
@@ -26,8 +43,8 @@ pub struct Drag {
 pub struct Handle {
     /// Its name.
     pub name: String,
-    /// True for a number of the object itself.
-    pub own: bool,
+    /// What it is.
+    pub kind: HandleKind,
     /// The derivative of the place by it.
     pub direction: Vec3,
     /// Its value.
@@ -43,26 +60,53 @@ pub struct Reached {
     pub place: Vec3,
     /// What is left of the way, along the directions that count.
     pub left: f64,
-    /// The numbers.
+    /// The numbers that follow.
     pub values: Vec<(String, f64)>,
+    /// Those of them that are at an end of their range.
+    pub ended: Vec<String>,
 }
 
 /// Steps for one place of the hand.
-const ROUNDS: usize = 4;
+const MOST_STEPS: usize = 12;
 
-/// Damping for numbers of the object itself, and for parameters, which may be insensitive.
-const DAMPING: [f64; 2] = [1e-12, 1e-3];
+/// A number moves the place in the picture when at least this share of its motion is seen there.
+const SEEN: f64 = 0.05;
+
+/// A part of the motion that is smaller than this share needs no further number.
+const FOLLOWED: f64 = 1e-3;
+
+/// The dragged place, as conditions on the numbers.
+struct Aim<'a> {
+    document: &'a mut Document,
+    expression: &'a str,
+    names: &'a [String],
+    target: Vec3,
+    basis: &'a [Vec3],
+}
+
+impl Conditions for Aim<'_> {
+    fn at(&mut self, x: &[f64]) -> Result<Vec<f64>, String> {
+        let values: Vec<(String, f64)> =
+            self.names.iter().cloned().zip(x.iter().copied()).collect();
+        self.document
+            .set(&values)
+            .map_err(|d| d.first().map_or(String::new(), |d| d.message.clone()))?;
+        let place = place(self.document, self.expression)?;
+        Ok(self.basis.iter().map(|b| b.dot(place - self.target)).collect())
+    }
+
+    fn slopes(&mut self) -> Result<Vec<Vec<f64>>, String> {
+        let directions = directions(self.document, self.expression, self.names)?;
+        Ok(self.basis.iter().map(|b| directions.iter().map(|d| b.dot(*d)).collect()).collect())
+    }
+}
 
 impl Drag {
     /// What is to be dragged, and what moves it.
     ///
     /// # Errors
     /// Why it cannot be dragged.
-    pub fn begin(
-        document: &mut Document,
-        object: &str,
-        at: &[f64],
-    ) -> Result<(Self, Vec<Handle>), String> {
+    pub fn begin(document: &mut Document, object: &str, at: &[f64]) -> Result<Self, String> {
         let expression = match at {
             [] => object.to_string(),
             _ => {
@@ -70,31 +114,94 @@ impl Drag {
                 format!("{object}({})", at.join(", "))
             }
         };
-        let own = if at.is_empty() { own_numbers(document, object) } else { Vec::new() };
-        let mut drag = Self { object: object.into(), expression, own, moved: Vec::new() };
-        drag.place(document)?;
-        let params: Vec<String> = document.params().iter().map(|p| p.name.clone()).collect();
-        let names: Vec<String> = drag.own.iter().cloned().chain(params).collect();
-        let directions = drag.directions(document, &names)?;
-        let count = drag.own.len();
+        let start = place(document, &expression)?;
+        let mut names: Vec<(String, HandleKind)> = Vec::new();
+        if at.is_empty() {
+            for (name, literal) in numbers_of(document, object) {
+                if literal {
+                    names.push((name, HandleKind::Own));
+                } else {
+                    let found = document.coefficients(&name).into_iter();
+                    names.extend(found.map(|c| {
+                        let whole = c.value.fract() == 0.0;
+                        let kind = if whole {
+                            HandleKind::WholeCoefficient
+                        } else {
+                            HandleKind::Coefficient
+                        };
+                        (c.name, kind)
+                    }));
+                }
+            }
+        }
+        let params = document.params().iter().filter(|p| !p.is_int);
+        names.extend(params.map(|p| (p.name.clone(), HandleKind::Parameter)));
+        let by: Vec<String> = names.iter().map(|(name, _)| name.clone()).collect();
+        let found = directions(document, &expression, &by)?;
         let handles: Vec<Handle> = names
             .into_iter()
-            .zip(directions)
-            .enumerate()
-            .filter(|(_, (_, d))| d.is_finite() && d.norm() > 0.0)
-            .filter_map(|(k, (name, direction))| {
-                let (value, range) = state(document, &name)?;
-                Some(Handle { own: k < count, direction, value, range, name })
+            .zip(found)
+            .filter(|(_, d)| d.is_finite() && d.norm() > 0.0)
+            .filter_map(|((name, kind), direction)| {
+                let (value, range) = document.number_state(&name)?;
+                Some(Handle { name, kind, direction, value, range })
             })
             .collect();
-        drag.own.retain(|n| handles.iter().any(|h| h.name == *n));
         if handles.is_empty() {
             return Err(format!("`{object}` cannot be dragged: no number of this text moves it"));
         }
-        Ok((drag, handles))
+        let own = handles.iter().any(|h| h.kind == HandleKind::Own);
+        let carried = own
+            && document
+                .graph()
+                .find(object)
+                .and_then(|key| document.graph().get(key))
+                .is_some_and(|o| matches!(o.row.class, Class::Bead | Class::Magnet | Class::Ring));
+        Ok(Self { object: object.into(), expression, handles, carried, start, moved: Vec::new() })
     }
 
-    /// Moves the place as near to `target` as the numbers take it.
+    /// The numbers that follow a motion: those of the object itself, as far as the view shows what they do, and the
+    /// chosen ones. Where none are chosen, for what is left of the motion the coefficients in its expressions, then the
+    /// parameters that take most of it within their ranges, then whole coefficients.
+    pub fn followers(&self, target: Vec3, basis: &[Vec3], chosen: &[String]) -> Vec<String> {
+        let seen = |h: &Handle| -> Vec<f64> { basis.iter().map(|b| b.dot(h.direction)).collect() };
+        let motion: Vec<f64> = basis.iter().map(|b| b.dot(target - self.start)).collect();
+        let mut left = Left { whole: norm(&motion), motion, followed: Vec::new() };
+        let mut names = Vec::new();
+        let of = |kind: HandleKind| self.handles.iter().filter(move |h| h.kind == kind);
+        for h in of(HandleKind::Own) {
+            if left.take(&seen(h), h.direction.norm()) {
+                names.push(h.name.clone());
+            }
+        }
+        if !chosen.is_empty() {
+            names.extend(
+                chosen.iter().filter(|c| self.handles.iter().any(|h| h.name == **c)).cloned(),
+            );
+            names.dedup();
+            return names;
+        }
+        if self.carried {
+            return names;
+        }
+        for kind in [HandleKind::Coefficient, HandleKind::Parameter, HandleKind::WholeCoefficient] {
+            let width = |h: &Handle| h.range.map_or(h.value.abs().max(1e-3), |(a, b)| b - a);
+            let mut rest: Vec<&Handle> = of(kind).collect();
+            while !left.is_followed() && !rest.is_empty() {
+                let pull = |h: &&Handle| left.pull(&seen(h)) * width(h);
+                let at = (0..rest.len())
+                    .max_by(|a, b| pull(&rest[*a]).total_cmp(&pull(&rest[*b])))
+                    .unwrap_or_default();
+                let best = rest.remove(at);
+                if left.pull(&seen(best)) > 0.0 && left.take(&seen(best), best.direction.norm()) {
+                    names.push(best.name.clone());
+                }
+            }
+        }
+        names
+    }
+
+    /// Moves the place as near to `target` as [`Drag::followers`] take it.
     ///
     /// # Errors
     /// Why nothing moves.
@@ -103,77 +210,65 @@ impl Drag {
         document: &mut Document,
         target: Vec3,
         basis: &[Vec3],
-        names: &[String],
+        chosen: &[String],
         grain: f64,
     ) -> Result<Reached, String> {
-        let names = if names.is_empty() { self.own.clone() } else { names.to_vec() };
-        if names.is_empty() {
-            return Err("choose a parameter to move".into());
-        }
-        let direct = names.iter().all(|n| self.own.contains(n));
+        let names = self.followers(target, basis, chosen);
         for name in &names {
             self.keep(document, name)?;
         }
-        let left = |place: Vec3| basis.iter().map(|b| b.dot(target - place)).collect::<Vec<_>>();
-        let size = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let mut place = self.place(document)?;
-        let mut refused = None;
-        for _ in 0..ROUNDS {
-            let residual = left(place);
-            if size(&residual) <= (1e-3 * grain).max(1e-12 * (1.0 + target.norm())) {
-                break;
-            }
-            let states: Vec<_> =
-                names.iter().map(|n| state(document, n)).collect::<Option<_>>().ok_or("gone")?;
-            let directions = self.directions(document, &names)?;
-            let widths: Vec<f64> =
-                states.iter().map(|(_, r)| r.map_or(1.0, |(a, b)| b - a)).collect();
-            let rows: Vec<Vec<f64>> = directions
-                .iter()
-                .zip(&widths)
-                .map(|(d, w)| basis.iter().map(|b| b.dot(*d) * w).collect())
-                .collect();
-            let Some(step) = damped(&rows, &residual, DAMPING[usize::from(!direct)]) else { break };
-            let before: Vec<f64> = states.iter().map(|(x, _)| *x).collect();
-            let mut share = 1.0;
-            let mut better = false;
-            for _ in 0..5 {
-                let next = states.iter().zip(&step).zip(&widths).zip(&names);
-                let values: Vec<(String, f64)> = next
-                    .map(|((((x, range), s), w), name)| {
-                        let new = x + share * s * w;
-                        (name.clone(), range.map_or(new, |(a, b)| new.clamp(a, b)))
-                    })
-                    .collect();
-                match document.set(&values) {
-                    Ok(_) => match self.place(document) {
-                        Ok(now) if size(&left(now)) < size(&residual) => {
-                            place = now;
-                            better = true;
-                        }
-                        _ => refused = None,
-                    },
-                    Err(diagnostics) => refused = diagnostics.first().map(|d| d.message.clone()),
-                }
-                if better {
-                    break;
-                }
-                share *= 0.5;
-            }
-            if !better {
-                let back: Vec<_> = names.iter().cloned().zip(before).collect();
-                let _ = document.set(&back);
-                break;
-            }
+        // What followed another motion goes back.
+        let back: Vec<(String, f64)> =
+            self.moved.iter().filter(|(n, _)| !names.contains(n)).cloned().collect();
+        let value = |document: &Document, name: &str| document.number_state(name).map(|(x, _)| x);
+        if back.iter().any(|(n, x)| value(document, n) != Some(*x)) {
+            document
+                .set(&back)
+                .map_err(|d| d.first().map_or(String::new(), |d| d.message.clone()))?;
         }
-        let place = self.rounded(document, &names, grain).unwrap_or(place);
-        let reached = size(&left(place));
-        let values: Vec<(String, f64)> =
-            names.iter().filter_map(|n| Some((n.clone(), state(document, n)?.0))).collect();
-        match refused {
-            Some(why) if values.iter().zip(&self.moved).all(|(a, b)| a == b) => Err(why),
-            _ => Ok(Reached { place, left: reached, values }),
+        if names.is_empty() {
+            let moves = basis.iter().any(|b| b.dot(target - self.start).abs() > grain);
+            if moves {
+                return Err(format!(
+                    "`{}` does not move that way in this view: no number of the text does that",
+                    self.object
+                ));
+            }
+            let place = place(document, &self.expression)?;
+            return Ok(Reached { place, left: 0.0, values: Vec::new(), ended: Vec::new() });
         }
+        let home = |name: &String| self.moved.iter().find(|(n, _)| n == name).map(|(_, x)| *x);
+        let mut followers = Vec::new();
+        let mut begin = Vec::new();
+        for name in &names {
+            let (x, range) = document.number_state(name).ok_or("gone")?;
+            followers.push(Follower { home: home(name).unwrap_or(x), range, weight: 1.0 });
+            begin.push(x);
+        }
+        let mut aim = Aim { document, expression: &self.expression, names: &names, target, basis };
+        let equal = vec![1.0; basis.len()];
+        let enough = (1e-3 * grain).max(1e-12 * (1.0 + target.norm()));
+        let how = Search { importance: &equal, enough, steps: MOST_STEPS };
+        let found = follow(&mut aim, &followers, &begin, how)?;
+        let still = found.x == begin && found.left.iter().any(|l| l.abs() > grain);
+        if let Some(why) = found.refused.filter(|_| still) {
+            return Err(why);
+        }
+        let place = match self.rounded(document, &names, grain) {
+            Some(place) => place,
+            None => place(document, &self.expression)?,
+        };
+        let left = basis.iter().map(|b| b.dot(target - place)).map(|x| x * x).sum::<f64>().sqrt();
+        let mut values = Vec::new();
+        let mut ended = Vec::new();
+        for name in names {
+            let Some((x, range)) = document.number_state(&name) else { continue };
+            if range.is_some_and(|(low, high)| x <= low || x >= high) {
+                ended.push(name.clone());
+            }
+            values.push((name, x));
+        }
+        Ok(Reached { place, left, values, ended })
     }
 
     /// Rounds the numbers to what a picture point is worth; one that has hardly moved stays as it was.
@@ -181,10 +276,10 @@ impl Drag {
         if grain.is_nan() || grain <= 0.0 {
             return None;
         }
-        let directions = self.directions(document, names).ok()?;
+        let directions = directions(document, &self.expression, names).ok()?;
         let mut values = Vec::new();
         for (name, direction) in names.iter().zip(directions) {
-            let (now, range) = state(document, name)?;
+            let (now, range) = document.number_state(name)?;
             let (_, begin) = self.moved.iter().find(|(n, _)| n == name)?;
             let worth = grain / direction.norm().max(f64::MIN_POSITIVE);
             let rounded = round_to(now, worth);
@@ -193,7 +288,7 @@ impl Drag {
             values.push((name.clone(), value));
         }
         document.set(&values).ok()?;
-        self.place(document).ok()
+        place(document, &self.expression).ok()
     }
 
     /// Remembers what a number was before the drag, so that its end finds what has changed.
@@ -202,7 +297,7 @@ impl Drag {
     /// That there is no such number.
     pub fn keep(&mut self, document: &Document, name: &str) -> Result<(), String> {
         if !self.moved.iter().any(|(n, _)| n == name) {
-            let (value, _) = state(document, name).ok_or(format!("no number `{name}`"))?;
+            let (value, _) = document.number_state(name).ok_or(format!("no number `{name}`"))?;
             self.moved.push((name.into(), value));
         }
         Ok(())
@@ -210,27 +305,75 @@ impl Drag {
 
     /// The numbers that are not what they were before the drag, and their values.
     pub fn changed(&self, document: &Document) -> Vec<(String, f64)> {
-        let now = |name: &str| state(document, name).map(|(x, _)| x);
+        let now = |name: &str| document.number_state(name).map(|(x, _)| x);
         let changed = self.moved.iter().filter_map(|(name, before)| {
             let x = now(name).filter(|x| x != before)?;
             Some((name.clone(), x))
         });
         changed.collect()
     }
+}
 
-    fn place(&self, document: &mut Document) -> Result<Vec3, String> {
-        let value = document.eval(&self.expression);
-        position(value.map_err(|d| d.first().map_or("no value".into(), |d| d.message.clone()))?)
-            .ok_or_else(|| format!("`{}` is not at a place", self.object))
+/// What is left of a motion in the picture, and the directions that are followed, at right angles to each other.
+struct Left {
+    whole: f64,
+    motion: Vec<f64>,
+    followed: Vec<Vec<f64>>,
+}
+
+impl Left {
+    fn is_followed(&self) -> bool {
+        norm(&self.motion) <= FOLLOWED * self.whole
     }
 
-    fn directions(&self, document: &mut Document, by: &[String]) -> Result<Vec<Vec3>, String> {
-        let derived = document.derivatives(std::slice::from_ref(&self.expression), by);
-        let mut derived =
-            derived.map_err(|d| d.first().map_or("no derivative".into(), |d| d.message.clone()))?;
-        let column = derived.pop().unwrap_or_default();
-        Ok(column.into_iter().map(|v| position(v).unwrap_or(Vec3::zero())).collect())
+    /// How far a number that moves the place by `seen` follows what is left.
+    fn pull(&self, seen: &[f64]) -> f64 {
+        let along: f64 = seen.iter().zip(&self.motion).map(|(a, b)| a * b).sum::<f64>().abs();
+        if along > SEEN * norm(seen) * norm(&self.motion) { along } else { 0.0 }
     }
+
+    /// Follows a direction of that length in space, if the picture shows it and it is a new one.
+    fn take(&mut self, seen: &[f64], length: f64) -> bool {
+        let new = self.without(seen);
+        if norm(seen) < SEEN * length || norm(&new) < SEEN * norm(seen) {
+            return false;
+        }
+        let size = norm(&new);
+        self.followed.push(new.iter().map(|x| x / size).collect());
+        self.motion = self.without(&self.motion);
+        true
+    }
+
+    fn without(&self, v: &[f64]) -> Vec<f64> {
+        let mut v = v.to_vec();
+        for q in &self.followed {
+            let dot: f64 = v.iter().zip(q).map(|(a, b)| a * b).sum();
+            v.iter_mut().zip(q).for_each(|(a, b)| *a -= dot * b);
+        }
+        v
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn place(document: &mut Document, expression: &str) -> Result<Vec3, String> {
+    let value = document.eval(expression);
+    position(value.map_err(|d| d.first().map_or("no value".into(), |d| d.message.clone()))?)
+        .ok_or_else(|| format!("`{expression}` is not at a place"))
+}
+
+fn directions(
+    document: &mut Document,
+    expression: &str,
+    by: &[String],
+) -> Result<Vec<Vec3>, String> {
+    let derived = document.derivatives(&[expression.to_string()], by);
+    let mut derived =
+        derived.map_err(|d| d.first().map_or("no derivative".into(), |d| d.message.clone()))?;
+    let column = derived.pop().unwrap_or_default();
+    Ok(column.into_iter().map(|v| position(v).unwrap_or(Vec3::zero())).collect())
 }
 
 fn position(value: Value<f64>) -> Option<Vec3> {
@@ -242,25 +385,8 @@ fn position(value: Value<f64>) -> Option<Vec3> {
     .filter(|p| p.is_finite())
 }
 
-/// A number near `x` with as few digits as `worth` allows: a multiple of a power of ten.
-pub fn round_to(x: f64, worth: f64) -> f64 {
-    if !(worth > 0.0 && worth.is_finite() && x.is_finite()) {
-        return x;
-    }
-    let decimals = (-libm::log10(worth)).ceil();
-    if !(-15.0..=15.0).contains(&decimals) {
-        return x;
-    }
-    // Through its decimal spelling, so that the nearest number to it comes out.
-    if decimals >= 0.0 {
-        return format!("{x:.*}", decimals as usize).parse().map_or(x, |y: f64| y + 0.0);
-    }
-    let unit = 10f64.powi(-decimals as i32);
-    (x / unit).round() * unit + 0.0
-}
-
-/// The numbers of an object that a hand may change, by their names.
-pub fn own_numbers(document: &Document, object: &str) -> Vec<String> {
+/// The numbers of an object by their names, and whether the text states them as numbers.
+fn numbers_of(document: &Document, object: &str) -> Vec<(String, bool)> {
     let graph = document.graph();
     let Some(found) = graph.find(object).and_then(|key| graph.get(key)) else { return Vec::new() };
     let mut names = Vec::new();
@@ -272,90 +398,18 @@ pub fn own_numbers(document: &Document, object: &str) -> Vec<String> {
             _ => {}
         }
     }
-    names.retain(|name| document.settable(name).is_ok());
     names
+        .into_iter()
+        .map(|name| (document.settable(&name).is_ok(), name))
+        .map(|(l, n)| (n, l))
+        .collect()
 }
 
-/// The value and range of a parameter or a number of an object.
-pub fn state(document: &Document, name: &str) -> Option<(f64, Option<(f64, f64)>)> {
-    if let Some(p) = document.params().iter().find(|p| p.name == name) {
-        return Some((p.value, p.range));
-    }
-    let graph = document.graph();
-    let dots = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| name.split_at(k));
-    let (object, path) =
-        dots.filter_map(|(o, path)| Some((graph.get(graph.find(o)?)?, &path[1..]))).next()?;
-    let (field, component) = path.split_once('.').map_or((path, None), |(f, c)| (f, Some(c)));
-    let at = object.row.field(field)?;
-    let row = &object.row.fields[at];
-    let range = row.min.zip(row.max).filter(|(a, b)| a.is_finite() && b.is_finite());
-    let value = match (&object.args[at], component) {
-        (Value::Number(x), None) => *x,
-        (Value::Vector(v), Some("x")) => v.x,
-        (Value::Vector(v), Some("y")) => v.y,
-        (Value::Vector(v), Some("z")) => v.z,
-        _ => return None,
-    };
-    Some((value, range))
-}
-
-/// The step y of least |rows^T y - residual|^2 + damping |y|^2; `None` when nothing moves anything.
-fn damped(rows: &[Vec<f64>], residual: &[f64], damping: f64) -> Option<Vec<f64>> {
-    let n = rows.len();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let trace: f64 = rows.iter().map(|r| dot(r, r)).sum();
-    if trace.is_nan() || trace <= 0.0 {
-        return None;
-    }
-    let mut a: Vec<Vec<f64>> = (0..n)
-        .map(|i| {
-            let mut row: Vec<f64> = (0..n).map(|j| dot(&rows[i], &rows[j])).collect();
-            row[i] += damping * trace;
-            row.push(dot(&rows[i], residual));
-            row
-        })
-        .collect();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;
-        a.swap(k, pivot);
-        if a[k][k] == 0.0 {
-            return None;
-        }
-        for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            for j in k..=n {
-                a[i][j] -= factor * a[k][j];
-            }
-        }
-    }
-    let mut y = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| a[k][j] * y[j]).sum();
-        y[k] = (a[k][n] - known) / a[k][k];
-    }
-    y.iter().all(|x| x.is_finite()).then_some(y)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_rounded_to_what_matters() {
-        assert_eq!(round_to(1.200_000_000_000_2, 0.02), 1.2);
-        assert_eq!(round_to(1234.4, 30.0), 1230.0);
-        assert_eq!(round_to(-0.004, 0.02), 0.0);
-        assert_eq!(round_to(0.123_456, 0.0), 0.123_456);
-    }
-
-    #[test]
-    fn the_step_is_that_of_least_squares() {
-        // Two directions in the plane: exact without damping.
-        let y = damped(&[vec![2.0, 0.0], vec![1.0, 1.0]], &[3.0, 1.0], 0.0).unwrap();
-        assert!((y[0] - 1.0).abs() < 1e-12 && (y[1] - 1.0).abs() < 1e-12);
-        // One number along one axis: the other part is left.
-        let y = damped(&[vec![0.0, 4.0]], &[7.0, 2.0], 0.0).unwrap();
-        assert!((y[0] - 0.5).abs() < 1e-12);
-        assert!(damped(&[vec![0.0, 0.0]], &[1.0, 1.0], 1e-3).is_none());
-    }
+/// The numbers of an object that a hand may change, by their names.
+pub fn own_numbers(document: &Document, object: &str) -> Vec<String> {
+    numbers_of(document, object)
+        .into_iter()
+        .filter(|(_, literal)| *literal)
+        .map(|(n, _)| n)
+        .collect()
 }

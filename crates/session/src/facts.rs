@@ -1,12 +1,12 @@
 //! Facts of a document as data: parameters, objects, diagnostics, all about one object.
 
-use crate::drag::{own_numbers, state};
+use crate::drag::own_numbers;
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_document::{ArgumentInText, Document};
 use moldloft_model::Object;
 use moldloft_num::Vec3;
-use moldloft_registry::{Class, Unit, Value as Quantity};
+use moldloft_registry::{Class, DefaultValue, FieldSpec, Registry, Row, Unit, Value as Quantity};
 use rustc_hash::FxHasher;
 use serde_json::{Value, json};
 use std::hash::{Hash, Hasher};
@@ -156,6 +156,38 @@ pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>)
     expressions.iter().map(&mut one).collect()
 }
 
+/// The kinds of objects as rows of a form: what each argument may be.
+pub fn kinds(registry: &Registry) -> Value {
+    let field = |f: &FieldSpec| {
+        let accepts = Class::ALL.iter().filter(|c| **c != Class::Any && f.class.accepts(**c));
+        json!({
+            "name": f.name,
+            "help": f.help,
+            "class": f.class.name(),
+            "accepts": accepts.map(|c| c.name()).collect::<Vec<_>>(),
+            "many": f.many,
+            "least": f.min_items,
+            "required": f.default.is_none(),
+            "default": match f.default {
+                Some(DefaultValue::Number(x)) => number(x),
+                Some(DefaultValue::Text(text)) => json!(text),
+                _ => Value::Null,
+            },
+            "words": if f.class == Class::Text { quoted(f.help) } else { Vec::new() },
+        })
+    };
+    let row = |row: &Row| {
+        json!({
+            "name": row.name,
+            "class": row.class.name(),
+            "about": row.summary(),
+            "also": row.doc.lines().find_map(|l| l.trim().strip_prefix("Also looked for as: ")),
+            "fields": row.fields.iter().map(field).collect::<Vec<_>>(),
+        })
+    };
+    registry.rows().filter(|r| r.kind).map(|r| row(r)).collect()
+}
+
 /// The words in double quotes of a line of help: what a text may be.
 fn quoted(help: &str) -> Vec<&str> {
     help.split('"').skip(1).step_by(2).collect()
@@ -197,7 +229,7 @@ pub fn inspected(
             .iter()
             .filter(|p| **p == base || p.strip_prefix(&*base).is_some_and(|r| r.starts_with('.')))
         {
-            if let Some((value, range)) = state(document, path) {
+            if let Some((value, range)) = document.number_state(path) {
                 let range = range.map(|(a, b)| [a, b]);
                 numbers.push(json!({"path": path, "value": value, "range": range}));
             }

@@ -36,7 +36,6 @@ mod session;
 mod text;
 mod volume;
 
-pub use drag::round_to;
 pub use fields::FIELDS;
 pub use reply::Reply;
 pub use request::{Ask, Request};

@@ -1,7 +1,7 @@
 //! What a viewer draws of a patch of a mesh: its own vertices, normals, triangles, panel edges and rim.
 //!
 //! Vertices are those of the patch alone, so that shades and colours do not run across its rim. A vertex
-//! at a crease has a copy for each panel on the other side of it.
+//! at a crease has a copy for each normal of the panels beside it.
 
 use moldloft_mesh::{Mesh, Patch, is_triangle};
 use moldloft_num::Vec3;
@@ -10,6 +10,9 @@ use std::sync::Arc;
 
 /// Cosine of 40 degrees: a sharper turn between panels is a crease.
 const CREASE: f64 = 0.766;
+
+/// Cosine of 20 degrees: panels that turn no more from one normal turn no more than a crease from each other.
+const HALF_CREASE: f64 = 0.94;
 
 /// What stays the same while a patch moves.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -146,6 +149,7 @@ impl Prepared {
             (c - a).cross(d - b)
         };
         let flat: Vec<Vec3> = self.faces.iter().map(turned).collect();
+        let unit: Vec<Option<Vec3>> = flat.iter().map(|n| n.normalized()).collect();
         let mut sums = vec![Vec3::zero(); self.count];
         for (face, normal) in self.faces.iter().zip(&flat) {
             for &v in corners(face) {
@@ -157,19 +161,47 @@ impl Prepared {
             .iter()
             .map(|&v| sums[v as usize].normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0)))
             .collect();
+        // Where the panels around a vertex turn little, they share its normal.
+        let mut creased = vec![false; self.count];
+        for (face, unit) in self.faces.iter().zip(&unit) {
+            for &v in corners(face) {
+                let sharp = unit.is_some_and(|n| n.dot(normals[v as usize]) < HALF_CREASE);
+                creased[self.identity[v as usize] as usize] |= sharp;
+            }
+        }
+        let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.count];
+        for (k, face) in self.faces.iter().enumerate() {
+            for &v in corners(face) {
+                let at = self.identity[v as usize] as usize;
+                if creased[at] {
+                    around[at].push(k as u32);
+                }
+            }
+        }
+        let unit_at = |k: u32| unit[k as usize];
         let own = points.len() as u32;
-        let mut copies = Vec::new();
+        let mut copies: Vec<u32> = Vec::new();
+        let mut made: FxHashMap<(u32, [u64; 3]), u32> = FxHashMap::default();
         let mut triangles = Vec::with_capacity(6 * self.faces.len());
-        for (face, flat) in self.faces.iter().zip(&flat) {
-            let unit = flat.normalized();
+        for (face, unit) in self.faces.iter().zip(&unit) {
             let mut drawn = *face;
             for v in &mut drawn[..corners(face).len()] {
-                let at = *v as usize;
-                let Some(unit) = unit.filter(|n| n.dot(normals[at]) < CREASE) else { continue };
-                *v = own + copies.len() as u32;
-                copies.push(at as u32);
-                points.push(points[at]);
-                normals.push(unit);
+                let at = *v;
+                let near = &around[self.identity[at as usize] as usize];
+                let Some(unit) = unit.filter(|_| !near.is_empty()) else { continue };
+                // Of the panels there those that turn little from this one.
+                let sum = near
+                    .iter()
+                    .filter(|&&k| unit_at(k).is_some_and(|n| n.dot(unit) >= CREASE))
+                    .fold(Vec3::zero(), |sum, &k| sum + flat[k as usize]);
+                let normal = sum.normalized().unwrap_or(unit);
+                let bits = normal.to_array().map(f64::to_bits);
+                *v = *made.entry((at, bits)).or_insert_with(|| {
+                    copies.push(at);
+                    points.push(points[at as usize]);
+                    normals.push(normal);
+                    own + copies.len() as u32 - 1
+                });
             }
             let [a, b, c, d] = drawn;
             triangles.extend([a, b, c]);
@@ -272,6 +304,31 @@ mod tests {
             }
         }
         assert_eq!((drawn.connections.edges.len(), drawn.connections.rim.len()), (24, 0));
+    }
+
+    #[test]
+    fn planes_that_meet_at_a_crease_are_even() {
+        // A long slab and a low step at its end: the large plane outweighs the small one, and neither is tilted.
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(6).unwrap();
+        builder.add_faces(PatchInfo::new("step"), vec![[0, 1, 3, 2], [2, 3, 5, 4]]).unwrap();
+        let points = [
+            Vec3::of(0.0, 0.0, 0.0),
+            Vec3::of(0.0, 1.0, 0.0),
+            Vec3::of(100.0, 0.0, 0.0),
+            Vec3::of(100.0, 1.0, 0.0),
+            Vec3::of(100.0, 0.0, 0.1),
+            Vec3::of(100.0, 1.0, 0.1),
+        ];
+        let step = Mesh::new(builder.build().into(), points.to_vec()).unwrap();
+        let mut patch = PreparedPatch::new(&step, &step.patches()[0]);
+        let drawn = patch.drawn(&patch.points(&step));
+        let p = &drawn.points;
+        for t in drawn.connections.triangles.chunks(3) {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|v| v as usize);
+            let flat = (p[b] - p[a]).cross(p[c] - p[a]).normalized().unwrap();
+            assert!([a, b, c].iter().all(|&v| drawn.normals[v].distance(flat) < 1e-12));
+        }
     }
 
     #[test]

@@ -21,6 +21,21 @@ pub struct Request {
     pub ask: Ask,
 }
 
+/// How a number may change.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct Adjusted {
+    /// How much a change of it counts beside the others'.
+    #[serde(default = "one")]
+    pub weight: f64,
+    /// The value from which changes are counted.
+    #[serde(default)]
+    pub home: Option<f64>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
 /// The requests. Places in the text count UTF-16 units.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -46,6 +61,13 @@ pub enum Ask {
         /// By name.
         values: BTreeMap<String, f64>,
     },
+    /// Gives numbers of the model values by the least change of others, before these are written into the text.
+    SolveFor {
+        /// Values by expression.
+        targets: BTreeMap<String, f64>,
+        /// The numbers that may change, by name.
+        by: BTreeMap<String, Adjusted>,
+    },
     /// Writes what was set into the text; the reply has the edits.
     Commit,
     /// Takes back what was set and not written.
@@ -69,7 +91,7 @@ pub enum Ask {
         target: [f64; 3],
         /// Orthogonal unit vectors: only the distance along these counts.
         basis: Vec<[f64; 3]>,
-        /// The numbers that may change; those of the object itself by default.
+        /// Numbers that follow besides the object's own; by default what the motion needs.
         #[serde(default)]
         names: Vec<String>,
         /// A length that does not matter, such as that of a picture point: numbers are rounded to it.
@@ -211,6 +233,30 @@ pub enum Ask {
         /// The new name.
         new: String,
     },
+    /// The kinds of objects, with their arguments.
+    Kinds,
+    /// Writes a statement where it belongs; the reply has the edits.
+    Add {
+        /// A statement that makes one object or parameter.
+        statement: String,
+    },
+    /// Deletes an object and its statement; the reply has the edits.
+    Delete {
+        /// Its name.
+        name: String,
+    },
+    /// Writes a statement like that of an object behind it; the reply has the edits and the new name.
+    Duplicate {
+        /// The object.
+        name: String,
+    },
+    /// Gives an object another name everywhere; the reply has the edits.
+    RenameObject {
+        /// Its name.
+        name: String,
+        /// The new name.
+        new: String,
+    },
     /// The edit that formats the text.
     Format,
     /// The words of the language, for highlighting.
@@ -232,8 +278,13 @@ impl Ask {
                 | Ask::Commit
                 | Ask::Reset
                 | Ask::Write { .. }
+                | Ask::SolveFor { .. }
                 | Ask::DragTo { .. }
                 | Ask::DragEnd { .. }
+                | Ask::Add { .. }
+                | Ask::Delete { .. }
+                | Ask::Duplicate { .. }
+                | Ask::RenameObject { .. }
                 | Ask::Show { .. }
         )
     }

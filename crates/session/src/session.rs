@@ -1,17 +1,17 @@
 //! The session: requests one after the other, each with its reply.
 
-use crate::drag::Drag;
+use crate::drag::{Drag, HandleKind};
 use crate::facts;
 use crate::fields::field;
 use crate::frame::{ReplyFrame, ViewerCache};
 use crate::overlay::Overlays;
-use crate::request::{Ask, Request};
+use crate::request::{Adjusted, Ask, Request};
 use crate::scene::Scene;
 use crate::text::{byte, changed, difference, unit};
 use crate::volume::{self, GridPlane};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
-use moldloft_document::{CompletionKind, Document, World, registry};
+use moldloft_document::{Adjustable, CompletionKind, Document, Target, World, registry};
 use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
 use moldloft_mesh::{closure, qualities};
 use moldloft_num::{Order, Vec3};
@@ -246,7 +246,9 @@ impl Session {
                 frame.put("left", facts::number(reached.left));
                 let values = reached.values.into_iter().map(|(n, x)| (n, facts::number(x)));
                 frame.put("values", Value::Object(values.collect()));
+                frame.put("ended", reached.ended);
             }
+            Ask::SolveFor { targets, by } => self.solve_for(targets, by, frame)?,
             Ask::DragEnd { commit } => {
                 if let Some(drag) = self.drag.take() {
                     let changed = drag.changed(&self.document);
@@ -356,6 +358,16 @@ impl Session {
                 };
                 frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
             }
+            Ask::Kinds => frame.put("kinds", facts::kinds(self.document.registry())),
+            Ask::Add { statement } => self.rewrite(|d| d.add(&statement), frame)?,
+            Ask::Delete { name } => self.rewrite(|d| d.delete(&name).map(drop), frame)?,
+            Ask::Duplicate { name } => {
+                let new = self.rewrite(|d| d.duplicate(&name), frame)?;
+                frame.put("name", new);
+            }
+            Ask::RenameObject { name, new } => {
+                self.rewrite(|d| d.rename(&name, &new).map(drop), frame)?;
+            }
             Ask::Format => {
                 let formatted = moldloft_syntax::sdl::format(&self.text);
                 let formatted = formatted
@@ -411,6 +423,19 @@ impl Session {
         frame.put("kept", self.kept.clone());
     }
 
+    /// A change of the text by the document; the page makes its edits and sends the text back.
+    fn rewrite<A>(
+        &mut self,
+        change: impl FnOnce(&mut Document) -> Result<A, Diagnostic>,
+        frame: &mut ReplyFrame,
+    ) -> Result<A, Refusal> {
+        self.rev += 1;
+        let made = change(&mut self.document)?;
+        let text = self.document.text();
+        self.put_edits(frame, &text);
+        Ok(made)
+    }
+
     fn put_edits(&self, frame: &mut ReplyFrame, new: &str) {
         let edit = difference(&self.text, new);
         let edits =
@@ -419,19 +444,55 @@ impl Session {
     }
 
     fn drag_begin(&mut self, object: &str, at: &[f64], frame: &mut ReplyFrame) -> Answer {
-        let (drag, handles) = Drag::begin(&mut self.document, object, at)?;
-        let rows = handles.iter().map(|h| {
+        let drag = Drag::begin(&mut self.document, object, at)?;
+        let rows = drag.handles.iter().map(|h| {
+            let own = h.kind == HandleKind::Own;
             json!({
                 "name": h.name,
-                "own": h.own,
+                "own": own,
+                "parameter": h.kind == HandleKind::Parameter,
                 "direction": h.direction.to_array(),
                 "value": h.value,
                 "range": h.range.map(|(a, b)| [a, b]),
             })
         });
         frame.put("handles", rows.collect::<Vec<_>>());
-        frame.put("own", drag.own.clone());
+        let own = drag.handles.iter().filter(|h| h.kind == HandleKind::Own);
+        frame.put("own", own.map(|h| h.name.clone()).collect::<Vec<_>>());
         self.drag = Some(drag);
+        Ok(())
+    }
+
+    /// Gives numbers of the model the values that are wished, until they are committed or reset.
+    fn solve_for(
+        &mut self,
+        targets: BTreeMap<String, f64>,
+        by: BTreeMap<String, Adjusted>,
+        frame: &mut ReplyFrame,
+    ) -> Answer {
+        let one = |(expression, value)| Target { expression, value };
+        let targets: Vec<Target> = targets.into_iter().map(one).collect();
+        let one =
+            |(name, a): (String, Adjusted)| Adjustable { name, weight: a.weight, home: a.home };
+        let by: Vec<Adjustable> = by.into_iter().map(one).collect();
+        self.rev += 1;
+        let found = self.document.solve_for(&targets, &by).map_err(|faults| {
+            // How far it goes is the answer that a hand wants.
+            let one = |d: &Diagnostic| {
+                let data = d.to_data(self.document.sources());
+                let far = data.expected.map(|e| format!(": {e}")).unwrap_or_default();
+                let found = data.found.map(|f| format!(", found {f}")).unwrap_or_default();
+                format!("{}{far}{found}", d.message)
+            };
+            Refusal::Words(faults.iter().map(one).collect::<Vec<_>>().join("; "))
+        })?;
+        let values = found.adjustments.iter().map(
+            |a| json!({"name": a.name, "before": a.before, "after": a.after, "share": a.share}),
+        );
+        frame.put("adjustments", values.collect::<Vec<_>>());
+        let reached = targets.iter().zip(&found.reached);
+        frame.put("reached", reached.map(|(t, x)| json!([t.expression, x])).collect::<Vec<_>>());
+        frame.put("steps", found.steps);
         Ok(())
     }
 

@@ -150,7 +150,8 @@ class Panel {
       case "save":
         return this.document.save();
       case "undo":
-        return this.undo();
+      case "redo":
+        return this.history(message.kind);
       case "read":
         this.watched = [...new Map([...this.watched, ...message.files].map((one) => [JSON.stringify(one), one])).values()];
         return this.files(message.files);
@@ -170,9 +171,9 @@ class Panel {
     if (!done) this.tell(true);
   }
 
-  async undo() {
+  async history(command) {
     await vscode.window.showTextDocument(this.document, { viewColumn: this.column() });
-    await vscode.commands.executeCommand("undo");
+    await vscode.commands.executeCommand(command);
   }
 
   column() {

@@ -25,7 +25,9 @@ _POLICY = (
     "img-src data: blob:; base-uri 'none'; form-action 'none'"
 )
 #: What a page watches at first of a model that has panels.
-_WATCHED = ["mesh.area", "hydrostatics.displacement", "hydrostatics.lcb", "hydrostatics.kmt"]
+_WATCHED = ["mesh.area", "mesh.volume"]
+#: The same of one that is mirrored in its middle plane.
+_WATCHED_AFLOAT = ["mesh.area", "hydrostatics.volume", "hydrostatics.lcb", "hydrostatics.kmt"]
 
 _ENGINE_POLICY = " 'wasm-unsafe-eval' blob:; worker-src blob:"
 
@@ -103,8 +105,9 @@ def page_of(
         asked(kind="set", values=dict(values))
     objects = head_of(asked(kind="sync")).get("objects", [])
     shown = any(o["class"] in ("surface", "mesh") for o in objects)
-    watched = _WATCHED if shown else []
     frames = {"open": asked(kind="sync", tab=1)}
+    afloat = "y" in head_of(frames["open"]).get("mirror", "")
+    watched = (_WATCHED_AFLOAT if afloat else _WATCHED) if shown else []
     hello = {
         "kind": "hello",
         "name": name,

@@ -31,8 +31,8 @@ __all__ = ["Hub", "Tab"]
 
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
-    "set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs",
-    "deviation", "measure", "blocks",
+    "set", "solve_for", "drag_to", "sync", "hover", "complete", "inspect", "section", "field",
+    "combs", "deviation", "measure", "blocks",
 }  # fmt: skip
 
 #: What a page may ask of the engine.
@@ -40,10 +40,14 @@ ASKED = NEWEST | {
     "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
     "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay", "export",
     "formats", "definition", "locate", "rename", "format", "words", "ping",
+    "kinds", "add", "delete", "duplicate", "rename_object",
 }  # fmt: skip
 
 #: After these other tabs have something new, too.
-CHANGING = {"set", "drag_to", "commit", "reset", "write", "drag_end", "show"}
+CHANGING = {
+    "set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show",
+    "add", "delete", "duplicate", "rename_object",
+}  # fmt: skip
 
 MOST_TABS = 32
 #: Bytes of a frame that says no more than what is wrong.
@@ -395,10 +399,13 @@ class Hub:
                 stamp = None
 
     async def _revert(self, tab: Tab, number: int) -> None:
-        """The file's text instead of what was typed; a step that the page can undo."""
+        """The file's text for a page, which takes it as a step of its own history."""
         try:
-            await self._outside(read(self.path))
-            reply = {"kind": "reverted", "id": number, "version": self.version}
+            now = read(self.path)
+            self.stored, self._noted = now, now.digest
+            if now.text == self.text:
+                await self._outside(now)
+            reply = {"kind": "reverted", "id": number, "text": now.text}
         except (OSError, Error) as error:
             reply = {"kind": "refused", "id": number, "error": str(error)}
         self.recovered = False

@@ -2,6 +2,7 @@
 
 use crate::document::{Document, ObjectSource};
 use crate::measures::bodied::{Numbers, Whole};
+use crate::set::coefficient_name;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::USUAL_ACCURACY;
@@ -13,7 +14,7 @@ use moldloft_lang::source::fault_location::unplaced;
 use moldloft_lang::value::variables::Called as _;
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{CallError, Scalar, Value};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 impl Document {
     /// The value of an expression in the model's names. Besides these it knows `mesh.area`,
@@ -131,8 +132,13 @@ impl Document {
     ) -> Result<Vec<Vec<Value<f64>>>, Vec<Diagnostic>> {
         let mut columns: Vec<Vec<Value<f64>>> = vec![Vec::new(); expressions.len()];
         self.passes(by, |document, evaluation, count| {
+            // The numbers of the whole model are found once for all expressions.
+            let mut known: HashMap<&str, Vec<(&'static str, Value<Dual4>)>> = HashMap::new();
             for (text, column) in expressions.iter().zip(&mut columns) {
                 let value = match document.whole_name(text) {
+                    Some((group, number)) if known.contains_key(group) => {
+                        one_of(known[group].clone(), group, number).map_err(|d| vec![d])?
+                    }
                     Some((group, number)) => {
                         let panelled = document.entire_panels().map_err(|d| vec![d])?;
                         let found = if group == "mesh" {
@@ -147,6 +153,7 @@ impl Document {
                             body_numbers(&body, &bodied.skin, &symmetry, partial)
                                 .map_err(|d| vec![d])?
                         };
+                        known.insert(group, found.clone());
                         one_of(found, group, number).map_err(|d| vec![d])?
                     }
                     // What failed with derivatives alone is known here only: the reason goes along.
@@ -202,20 +209,30 @@ impl Document {
     ) -> Result<(), Vec<Diagnostic>> {
         self.complete()?;
         let mut seeded_objects = HashSet::new();
+        // What is seeded, and by how much: a coefficient by what it does to its number.
+        let mut seeds: Vec<(&str, f64)> = Vec::with_capacity(by.len());
         for name in by {
             if self.params().iter().any(|p| p.name == *name) {
+                seeds.push((name, 1.0));
                 continue;
             }
+            seeds.push(match coefficient_name(name) {
+                Some((base, _)) => {
+                    let found = self.coefficients(base).into_iter().find(|c| c.name == *name);
+                    (base, found.map_or(0.0, |c| c.slope))
+                }
+                None => (name, 1.0),
+            });
             let edit = self.literal(name, 0.0).map_err(|d| vec![d])?;
             let object = self.plain.graph.get(edit.key).expect("found just now");
             seeded_objects.insert(object.name.to_string());
         }
         let mut evaluation = self.dual.take().unwrap_or_default();
         let mut outcome = Ok(());
-        for pass in by.chunks(4) {
+        for pass in seeds.chunks(4) {
             let seed = |name: &str, mut x: Dual4| {
-                for (eps, _) in x.eps.iter_mut().zip(pass).filter(|(_, p)| *p == name) {
-                    *eps = 1.0;
+                for (eps, (_, size)) in x.eps.iter_mut().zip(pass).filter(|(_, p)| p.0 == name) {
+                    *eps = *size;
                 }
                 x
             };

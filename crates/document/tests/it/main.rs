@@ -7,6 +7,7 @@ mod components;
 mod contours;
 mod diagnostics;
 mod faults;
+mod follow;
 mod functions;
 mod fused;
 mod grid_writers;

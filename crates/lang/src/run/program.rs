@@ -16,7 +16,7 @@ use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Graph, Object};
 use moldloft_registry::{CallError, Registry, Scalar, Value};
-use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
+use moldloft_syntax::sdl::{self, ExprId, ExprKind, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
 /// Context of a run.
@@ -245,6 +245,49 @@ pub fn literal<T: Scalar>(
     object: &Object<T>,
     path: &NumberPath,
 ) -> Result<(usize, LiteralId), NotLiteral> {
+    let (module, expr, repeated) = expression(modules, env, object, path)?;
+    let m = modules.get(module);
+    let Some(literal) = m.program.as_literal(expr) else {
+        return Err(computed(m, expr));
+    };
+    if repeated {
+        return Err(NotLiteral::Shared { span: m.program[expr].span });
+    }
+    Ok((module, literal))
+}
+
+/// The numbers in the expression of the main text that a number of an object is computed by, in the order of the text, and
+/// the place of the expression; nothing for objects that share their statement with others.
+pub fn literals_within<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+    path: &NumberPath,
+) -> Option<(Span, Vec<LiteralId>)> {
+    let (module, expr, repeated) = expression(modules, env, object, path).ok()?;
+    let m = modules.get(module);
+    if repeated || module != 0 || m.program.as_literal(expr).is_some() {
+        return None;
+    }
+    let mut found = Vec::new();
+    let mut stack = vec![expr];
+    while let Some(expr) = stack.pop() {
+        match m.program[expr].kind {
+            ExprKind::Number(literal) => found.push(literal),
+            _ => stack.extend(crate::run::parts::of_expression(m, expr)),
+        }
+    }
+    found.sort_by_key(|literal| m.program[*literal].span.start);
+    Some((m.program[expr].span, found))
+}
+
+/// The expression that gives a number of an object: its module, and whether its statement may be executed more than once.
+fn expression<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+    path: &NumberPath,
+) -> Result<(usize, ExprId, bool), NotLiteral> {
     let Some(origin) = env.origins.get(object.origin as usize) else {
         return Err(NotLiteral::Default);
     };
@@ -261,13 +304,7 @@ pub fn literal<T: Scalar>(
             None => return Err(computed(m, expr)),
         }
     }
-    let Some(literal) = m.program.as_literal(expr) else {
-        return Err(computed(m, expr));
-    };
-    if origin.repeated {
-        return Err(NotLiteral::Shared { span: m.program[expr].span });
-    }
-    Ok((origin.module as usize, literal))
+    Ok((origin.module as usize, expr, origin.repeated))
 }
 
 /// Position of an object's argument in the main text, or for its insertion; `None` for objects that

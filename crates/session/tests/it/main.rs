@@ -4,4 +4,5 @@
 mod drags;
 mod overlays;
 mod scenes;
+mod statements;
 mod viewer;

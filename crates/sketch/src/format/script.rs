@@ -162,13 +162,15 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
             for (step, count) in &hole.copies {
                 let [a, b] = hole.axis.others().map(CoordinateAxis::index);
                 text += &match step {
-                    Placement::Rotate { through, angle, .. } => format!(
-                        " POLAR {} {} THROUGH {} {}",
-                        own_value(count),
-                        own_value(angle),
-                        own_value(&through[a]),
-                        own_value(&through[b])
-                    ),
+                    Placement::Rotate { through, angle, .. } => {
+                        let origin = [a, b].iter().all(|&k| through[k].literal() == Some(0.0));
+                        let (p, q) = (own_value(&through[a]), own_value(&through[b]));
+                        let place = match origin {
+                            true => String::new(),
+                            false => format!(" THROUGH {p} {q}"),
+                        };
+                        format!(" POLAR {} {}{place}", own_value(count), own_value(angle))
+                    }
                     Placement::Move(by) => format!(
                         " LINEAR {} {} {}",
                         own_value(count),

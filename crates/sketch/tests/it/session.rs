@@ -418,7 +418,7 @@ fn errors_say_what_where_and_next() {
         ("VIEW INSIDE", "no view"),
         ("AXES FISHEYE", "no projection"),
         ("SPLIT 1 7", "not inside"),
-        ("CUBIC LINES 1 1 1", "does not go on"),
+        ("CUBIC LINES 1 1 1", "does not continue"),
     ] {
         let reply = refused(&mut s, line);
         assert!(reply.text.contains(says), "{line}: {}", reply.text);

@@ -1,0 +1,319 @@
+//! Numbers that follow: the least change of chosen numbers that brings conditions to zero.
+//!
+//! A step solves, with exact derivatives, the linear least-squares problem in which a condition counts [`CONDITION`]
+//! times as much as the change of a number over its whole range, within the ranges (Stark and Parker, Computational
+//! Statistics 10, 1995). Where the conditions can be met within the ranges they are, by Newton's convergence; where they
+//! cannot, what comes out is the place that misses them least.
+
+/// How a condition weighs against the change of a number over its range.
+const CONDITION: f64 = 1e5;
+
+/// A condition counts as met when it is off by less, as a share of what the numbers do to it over their ranges.
+const MET: f64 = 1e-9;
+
+/// A step smaller than this share of the ranges ends the search.
+const SMALL_STEP: f64 = 1e-9;
+
+/// Where the conditions are met, a step smaller than this share of the ranges would not lessen the change noticeably.
+const SMALL_GAIN: f64 = 1e-3;
+
+/// A step is halved at most that many times.
+const HALVINGS: usize = 10;
+
+/// Steps that only lessen the change, once the conditions are met.
+const LESSENING: usize = 4;
+
+/// A number that may change.
+#[derive(Clone, Debug)]
+pub struct Follower {
+    /// Where changes are counted from.
+    pub home: f64,
+    /// The least and the largest value.
+    pub range: Option<(f64, f64)>,
+    /// How much a change of it counts beside the others'.
+    pub weight: f64,
+}
+
+impl Follower {
+    /// The change that counts as one.
+    fn size(&self) -> f64 {
+        match self.range {
+            Some((low, high)) if high > low => high - low,
+            _ if self.home != 0.0 => self.home.abs(),
+            _ => 1.0,
+        }
+    }
+}
+
+/// What the numbers do.
+pub trait Conditions {
+    /// Gives the numbers these values; the conditions there, which are to be zero.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn at(&mut self, x: &[f64]) -> Result<Vec<f64>, String>;
+
+    /// The derivatives at the values that were given last: `[condition][number]`.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn slopes(&mut self) -> Result<Vec<Vec<f64>>, String>;
+}
+
+/// How a search is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Search<'a> {
+    /// How much each condition counts: where not all can be met, one of a smaller importance gives way.
+    pub importance: &'a [f64],
+    /// Conditions that are off by no more are met.
+    pub enough: f64,
+    /// Steps at most.
+    pub steps: usize,
+}
+
+/// Where the search ended.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    /// The numbers.
+    pub x: Vec<f64>,
+    /// The conditions there.
+    pub left: Vec<f64>,
+    /// How many steps were taken.
+    pub steps: usize,
+    /// What the numbers do to each condition over their ranges, at the start.
+    pub reach: Vec<f64>,
+    /// Why the last values that were tried have no conditions, if they had none.
+    pub refused: Option<String>,
+}
+
+/// Brings the conditions to zero by the least change from `home`, beginning at `start`.
+///
+/// # Errors
+/// Why there is nothing at the start.
+pub fn follow(
+    conditions: &mut dyn Conditions,
+    followers: &[Follower],
+    start: &[f64],
+    how: Search<'_>,
+) -> Result<Followed, String> {
+    let n = followers.len();
+    let sizes: Vec<f64> = followers.iter().map(Follower::size).collect();
+    let mut x = start.to_vec();
+    let mut left = conditions.at(&x)?;
+    let mut reach: Vec<f64> = Vec::new();
+    let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
+    let mut refused = None;
+    let (mut steps, mut lessening) = (0, 0);
+    while steps < how.steps {
+        let slopes = conditions.slopes()?;
+        if reach.is_empty() {
+            reach = slopes
+                .iter()
+                .map(|row| row.iter().zip(&sizes).map(|(d, s)| (d * s).abs()).sum::<f64>())
+                .collect();
+        }
+        // A condition that nothing moves is left out: it would only add what is not finite.
+        let scale = |i: usize| {
+            if reach[i] > 0.0 { CONDITION * how.importance[i] / reach[i] } else { 0.0 }
+        };
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(left.len() + n);
+        let mut aims: Vec<f64> = Vec::with_capacity(left.len() + n);
+        for (i, row) in slopes.iter().enumerate() {
+            rows.push(row.iter().zip(&sizes).map(|(d, s)| d * s * scale(i)).collect());
+            aims.push(-left[i] * scale(i));
+        }
+        for (j, follower) in followers.iter().enumerate() {
+            let mut row = vec![0.0; n];
+            row[j] = follower.weight;
+            rows.push(row);
+            aims.push(-follower.weight * (x[j] - follower.home) / sizes[j]);
+        }
+        let bounds: Vec<(f64, f64)> = followers
+            .iter()
+            .zip(&x)
+            .zip(&sizes)
+            .map(|((f, x), s)| match f.range {
+                Some((low, high)) => ((low - x) / s, (high - x) / s),
+                None => (f64::NEG_INFINITY, f64::INFINITY),
+            })
+            .collect();
+        let Some(step) = bounded_least_squares(&rows, &aims, &bounds) else { break };
+        let length = step.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+        let missed = |left: &[f64]| {
+            let share = |(l, r): (&f64, &f64)| if *r > 0.0 { (l / r) * (l / r) } else { 0.0 };
+            left.iter().zip(&reach).map(share).sum::<f64>().sqrt()
+        };
+        let changed = |x: &[f64]| {
+            let one = |((f, x), s): ((&Follower, &f64), &f64)| f.weight * (x - f.home) / s;
+            followers.iter().zip(x).zip(&sizes).map(one).map(|y| y * y).sum::<f64>()
+        };
+        let merit = |left: &[f64], x: &[f64]| {
+            let one = |(i, l): (usize, &f64)| (l * scale(i)) * (l * scale(i));
+            left.iter().enumerate().map(one).sum::<f64>() + changed(x)
+        };
+        let met = missed(&left) <= MET || left.iter().all(|l| l.abs() <= how.enough);
+        if met {
+            let worth = changed(&x);
+            if best.as_ref().is_none_or(|(w, ..)| worth < *w) {
+                best = Some((worth, x.clone(), left.clone()));
+            }
+            if lessening == LESSENING || length <= SMALL_GAIN {
+                break;
+            }
+            lessening += 1;
+        }
+        if length <= SMALL_STEP {
+            break;
+        }
+        let now = merit(&left, &x);
+        let hoped = now - rest(&rows, &aims, &step).iter().map(|r| r * r).sum::<f64>();
+        let mut share = 1.0;
+        let mut accepted = None;
+        for _ in 0..HALVINGS {
+            let next: Vec<f64> = (0..n)
+                .map(|j| {
+                    let next = x[j] + share * step[j] * sizes[j];
+                    followers[j].range.map_or(next, |(low, high)| next.clamp(low, high))
+                })
+                .collect();
+            match conditions.at(&next) {
+                // On the conditions a step may leave them by its square: the next one comes back.
+                Ok(found)
+                    if found.iter().all(|c| c.is_finite())
+                        && (merit(&found, &next) <= now - 0.1 * share * hoped
+                            || (met && missed(&found) < 0.1)) =>
+                {
+                    accepted = Some((next, found));
+                    break;
+                }
+                Ok(_) => {}
+                Err(why) => refused = Some(why),
+            }
+            share *= 0.5;
+        }
+        let Some((next, found)) = accepted else { break };
+        (x, left) = (next, found);
+        steps += 1;
+    }
+    if let Some((_, met, there)) = best
+        && met != x
+    {
+        (x, left) = (met, there);
+    }
+    conditions.at(&x)?;
+    Ok(Followed { x, left, steps, reach, refused })
+}
+
+/// The x of least |a x - b| within bounds; `None` where something is not finite.
+fn bounded_least_squares(a: &[Vec<f64>], b: &[f64], bounds: &[(f64, f64)]) -> Option<Vec<f64>> {
+    let n = bounds.len();
+    let within = |x: &[f64]| x.iter().zip(bounds).all(|(x, (low, high))| low <= x && x <= high);
+    let all: Vec<usize> = (0..n).collect();
+    let whole = least_squares(a, b, &all)?;
+    if within(&whole) {
+        return Some(whole);
+    }
+    let mut x: Vec<f64> = bounds.iter().map(|(low, high)| 0f64.clamp(*low, *high)).collect();
+    let mut free = vec![false; n];
+    // Each turn frees one number, and every set of free numbers is met once at most.
+    for _ in 0..8 * n + 8 {
+        let residual = rest(a, b, &x);
+        let pull: Vec<f64> =
+            (0..n).map(|j| a.iter().zip(&residual).map(|(row, r)| row[j] * r).sum()).collect();
+        let inward = |j: usize| {
+            let size = a.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt();
+            let width = residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+            let (low, high) = bounds[j];
+            let open = if pull[j] > 0.0 { x[j] < high } else { x[j] > low };
+            if open && pull[j].abs() > 1e-12 * size * width { pull[j].abs() / size } else { 0.0 }
+        };
+        let best = (0..n).filter(|j| !free[*j]).max_by(|i, j| inward(*i).total_cmp(&inward(*j)));
+        let Some(j) = best.filter(|j| inward(*j) > 0.0) else { break };
+        free[j] = true;
+        loop {
+            let set: Vec<usize> = (0..n).filter(|j| free[*j]).collect();
+            if set.is_empty() {
+                break;
+            }
+            // The others stay where they are.
+            let mut fixed = x.clone();
+            set.iter().for_each(|j| fixed[*j] = 0.0);
+            let wish = least_squares(a, &rest(a, b, &fixed), &set)?;
+            let mut share = 1.0f64;
+            for (&j, wish) in set.iter().zip(&wish) {
+                let (low, high) = bounds[j];
+                let end = if *wish > high {
+                    high
+                } else if *wish < low {
+                    low
+                } else {
+                    continue;
+                };
+                share = share.min((end - x[j]) / (wish - x[j]));
+            }
+            for (&j, wish) in set.iter().zip(&wish) {
+                let (low, high) = bounds[j];
+                x[j] = (x[j] + share * (wish - x[j])).clamp(low, high);
+                let at_end = (*wish > high && x[j] >= high - 1e-15 * high.abs())
+                    || (*wish < low && x[j] <= low + 1e-15 * low.abs());
+                if share < 1.0 && at_end {
+                    x[j] = if *wish > high { high } else { low };
+                    free[j] = false;
+                }
+            }
+            if share >= 1.0 {
+                break;
+            }
+            if set.iter().all(|j| free[*j]) {
+                // Rounding hides which one is at its end.
+                break;
+            }
+        }
+    }
+    Some(x)
+}
+
+fn rest(a: &[Vec<f64>], b: &[f64], x: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(row, b)| b - row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>()).collect()
+}
+
+/// Least squares in some of the columns, by Householder reflections; a column that depends on those before it is zero.
+fn least_squares(a: &[Vec<f64>], b: &[f64], columns: &[usize]) -> Option<Vec<f64>> {
+    let (m, n) = (a.len(), columns.len());
+    let mut r: Vec<Vec<f64>> =
+        a.iter().map(|row| columns.iter().map(|&j| row[j]).collect()).collect();
+    let mut b = b.to_vec();
+    let largest = r.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    let mut pivots = Vec::new();
+    let mut row = 0;
+    for k in 0..n {
+        if row == m {
+            break;
+        }
+        let norm = (row..m).map(|i| r[i][k] * r[i][k]).sum::<f64>().sqrt();
+        if !norm.is_finite() {
+            return None;
+        }
+        if norm <= 1e-14 * largest {
+            continue;
+        }
+        let alpha = if r[row][k] > 0.0 { -norm } else { norm };
+        let mut v: Vec<f64> = (row..m).map(|i| r[i][k]).collect();
+        v[0] -= alpha;
+        let length = v.iter().map(|x| x * x).sum::<f64>();
+        for j in k..n {
+            let dot: f64 = (row..m).map(|i| v[i - row] * r[i][j]).sum();
+            (row..m).for_each(|i| r[i][j] -= 2.0 * dot / length * v[i - row]);
+        }
+        let dot: f64 = (row..m).map(|i| v[i - row] * b[i]).sum();
+        (row..m).for_each(|i| b[i] -= 2.0 * dot / length * v[i - row]);
+        pivots.push(k);
+        row += 1;
+    }
+    let mut x = vec![0.0; n];
+    for (i, &k) in pivots.iter().enumerate().rev() {
+        let known: f64 = (k + 1..n).map(|j| r[i][j] * x[j]).sum();
+        x[k] = (b[i] - known) / r[i][k];
+    }
+    x.iter().all(|x| x.is_finite()).then_some(x)
+}

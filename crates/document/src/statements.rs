@@ -1,0 +1,158 @@
+//! New statements, where they belong in the text.
+
+use crate::document::{Document, ObjectSource};
+use moldloft_diag::{Diagnostic, FileId};
+use moldloft_syntax::sdl::{self, StmtId, StmtKind};
+
+impl Document {
+    /// Writes a statement into the text: behind the last statement of its kind and those that it reads, or at the end.
+    ///
+    /// # Errors
+    /// When it is no statement of the language, makes an object that fails or has a name that is taken; the model is as
+    /// before then.
+    pub fn add(&mut self, statement: &str) -> Result<(), Diagnostic> {
+        let statement = statement.trim();
+        let (parsed, faults) = sdl::parse(statement.to_string(), FileId(0));
+        if let Some(fault) = faults.into_iter().next() {
+            return Err(Diagnostic::error("not-a-statement", fault.message.clone()));
+        }
+        let made: Vec<StmtId> = parsed[parsed.body()].to_vec();
+        let named = |id: &StmtId| match parsed[*id].kind {
+            StmtKind::Object { kind, name, .. } => {
+                Some((Some(parsed.name(kind.symbol)), parsed.name(name.symbol)))
+            }
+            StmtKind::Param { name, .. } => Some((None, parsed.name(name.symbol))),
+            _ => None,
+        };
+        let [Some((kind, name))] = made.iter().map(named).collect::<Vec<_>>()[..] else {
+            return Err(Diagnostic::error(
+                "not-a-statement",
+                "one object or parameter is added at a time",
+            )
+            .expected("a statement such as `AbsPoint P(1, 2, 3);`")
+            .found(statement.to_string()));
+        };
+        if !matches!(self.source, ObjectSource::Program | ObjectSource::None) {
+            return Err(Diagnostic::error("not-here", "objects are added to programs only")
+                .help("convert the model to a program (`moldloft convert`)"));
+        }
+        let before = self.text();
+        if self.is_taken(name) {
+            return Err(Diagnostic::error("duplicate-name", format!("`{name}` is used already"))
+                .help("choose another name"));
+        }
+        if self.modules.get(0).program.is_edited() {
+            self.set_text(&before);
+        }
+        let text = self.with(statement, kind, name);
+        self.set_text(&text);
+        let fault = match self.graph().find(name).and_then(|key| self.graph().get(key)) {
+            Some(object) => object.fault().map(|f| f.message.to_string()),
+            None if kind.is_some() => {
+                let said = self.diagnostics().first().map(|d| d.message.clone());
+                Some(said.unwrap_or_else(|| format!("the program does not come to `{name}`")))
+            }
+            None => None,
+        };
+        if let Some(why) = fault {
+            self.set_text(&before);
+            return Err(Diagnostic::error("cannot-add", why));
+        }
+        Ok(())
+    }
+
+    /// Writes a statement like that of an object, under a new name, behind it; the new name.
+    ///
+    /// # Errors
+    /// When its statement makes others too, or stands elsewhere.
+    pub fn duplicate(&mut self, name: &str) -> Result<String, Diagnostic> {
+        let (stmt, _) = self.sole_statement(name)?;
+        if self.modules.get(0).program.is_edited() {
+            let text = self.text();
+            self.set_text(&text);
+            return self.duplicate(name);
+        }
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let new = (1..)
+            .map(|k| format!("{stem}{k}"))
+            .find(|n| !self.is_taken(n))
+            .expect("there are more numbers than names");
+        let (_, at) = self.sole_statement(name)?;
+        let program = &self.modules.get(0).program;
+        let span = program[stmt].span;
+        let mut text = program.text().to_string();
+        let (from, to) = (span.start as usize, span.end as usize);
+        let copy = format!("{}{new}{}", &text[from..at.start as usize], &text[at.end as usize..to]);
+        insert_behind(&mut text, to, &copy);
+        self.set_text(&text);
+        Ok(new)
+    }
+
+    fn is_taken(&self, name: &str) -> bool {
+        let program = &self.modules.get(0).program;
+        self.registry.get(name).is_some()
+            || self.graph().find(name).is_some()
+            || program.symbol(name).is_some()
+    }
+
+    /// The text with a statement where it belongs.
+    fn with(&self, statement: &str, kind: Option<&str>, name: &str) -> String {
+        let program = &self.modules.get(0).program;
+        let mut text = program.text().to_string();
+        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let read = statement.split_once(name).map_or("", |(_, rest)| rest);
+        let words: Vec<&str> =
+            read.split(|c| !word(c)).filter(|w| !w.is_empty() && *w != "in").collect();
+        let behind = program[program.body()].iter().rev().find(|id| match program[**id].kind {
+            StmtKind::Object { kind: k, name, .. } => {
+                kind == Some(program.name(k.symbol)) || words.contains(&program.name(name.symbol))
+            }
+            StmtKind::Param { name, .. } => {
+                kind.is_none() || words.contains(&program.name(name.symbol))
+            }
+            // The header comes first.
+            _ => {
+                let inside = program[**id].span.range();
+                text[inside].split(|c| !word(c)).any(|w| words.contains(&w))
+            }
+        });
+        match behind {
+            Some(id) => insert_behind(&mut text, program[*id].span.end as usize, statement),
+            // Parameters come before what reads them.
+            None if kind.is_none() => {
+                let first = program[program.body()].iter().find(|id| {
+                    !matches!(program[**id].kind, StmtKind::Object { kind, .. } if program.name(kind.symbol) == "Model")
+                });
+                match first {
+                    Some(id) => {
+                        let at = program[*id].span.start as usize;
+                        let line = text[..at].rfind('\n').map_or(0, |k| k + 1);
+                        text.insert_str(line, &format!("{statement}\n"));
+                    }
+                    None => append(&mut text, statement),
+                }
+            }
+            None => append(&mut text, statement),
+        }
+        text
+    }
+}
+
+/// On a line of its own where nothing else follows on that of the statement before.
+fn insert_behind(text: &mut String, at: usize, statement: &str) {
+    let line = text[at..].find('\n').map_or(text.len(), |k| at + k);
+    let rest = text[at..line].trim_start();
+    if rest.is_empty() || rest.starts_with('#') {
+        text.insert_str(line, &format!("\n{statement}"));
+    } else {
+        text.insert_str(at, &format!(" {statement}"));
+    }
+}
+
+fn append(text: &mut String, statement: &str) {
+    if !text.is_empty() && !text.ends_with('\n') {
+        text.push('\n');
+    }
+    text.push_str(statement);
+    text.push('\n');
+}

@@ -1,0 +1,179 @@
+"""Making: the start page, objects of kinds, handles; by the pointer and keys of a person."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from page_in_browser import Bench, needs_page
+
+pytestmark = needs_page
+
+POINTS = (
+    "AbsPoint A(0, 0, 0);\nAbsPoint B(4, 0, 0);\nAbsPoint C(4, 3, 0);\nAbsPoint D(0, 3, 1);\n"
+    "BCurve c({A, B, C}, degree = 2);\n"
+)
+
+
+def opened(make: Callable[..., Bench], text: str = POINTS) -> Bench:
+    b = make(text, "made.sdl")
+    b.page.evaluate("() => window.moldloft.camera_set(-90, 90)")
+    b.page.wait_for_timeout(200)
+    return b
+
+
+def form(b: Bench, kind: str) -> Any:
+    """Opens the form of a kind by the keyboard."""
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("Shift+A")
+    search = b.page.get_by_role("searchbox", name="search kinds")
+    search.fill(kind)
+    search.press("Enter")
+    return b.page.get_by_role("region", name="add an object")
+
+
+def click(b: Bench, name: str) -> None:
+    x, y = b.hand(f"project('{name}')")
+    b.page.mouse.click(x, y)
+
+
+def test_parents_are_picked_in_the_picture(bench: Callable[..., Bench]) -> None:
+    b = opened(bench)
+    panel = form(b, "Line")
+    assert panel.get_by_text("Line", exact=True).is_visible()
+    for name in ("A", "C"):
+        click(b, name)
+    panel.get_by_role("button", name="Add", exact=True).click()
+    b.until(lambda: "Line c1(A, C);" in b.text())
+    # What is no point is refused where a point is wanted, and the text stays.
+    b.page.keyboard.press("Escape")
+    panel = form(b, "Line")
+    b.page.get_by_role("treeitem", name=re.compile("^c ")).click()
+    b.page.locator(".status").get_by_text("takes").wait_for()
+    panel.get_by_role("button", name="Add", exact=True).click()
+    panel.get_by_role("alert").get_by_text("is missing").wait_for()
+    text = b.text()
+    # Several, one taken out again, with an option.
+    b.page.keyboard.press("Escape")
+    panel = form(b, "CCurve")
+    for name in ("A", "B", "B", "C", "D"):
+        click(b, name)
+    panel.get_by_text("Options").click()
+    panel.get_by_role("textbox", name="degree").fill("1")
+    panel.get_by_role("button", name="Add", exact=True).click()
+    b.until(lambda: b.text() != text)
+    assert "CCurve c2({A, C, D}, degree = 1);" in b.text(), b.text()
+    assert b.hand("steps().done") == ["Add c1", "Add c2"]
+    for _ in range(2):
+        b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == POINTS)
+    assert not b.faults
+
+
+def test_a_fault_of_the_engine_stays_in_the_form(bench: Callable[..., Bench]) -> None:
+    b = opened(bench)
+    panel = form(b, "AbsPoint")
+    for axis, value in zip("xyz", ("1", "nobody", "2"), strict=True):
+        panel.get_by_role("textbox", name=axis, exact=True).fill(value)
+    panel.get_by_role("textbox", name="z", exact=True).press("Enter")
+    panel.get_by_role("alert").get_by_text("nobody").wait_for()
+    assert b.text() == POINTS
+    panel.get_by_role("textbox", name="y", exact=True).fill("1.5")
+    panel.get_by_role("textbox", name="y", exact=True).press("Enter")
+    b.until(lambda: "D(0, 3, 1);\nAbsPoint P1(1, 1.5, 2);" in b.text())
+
+
+def test_objects_are_renamed_duplicated_and_deleted(bench: Callable[..., Bench]) -> None:
+    b = opened(bench)
+    click(b, "D")
+    name = b.page.get_by_role("textbox", name="name of the object")
+    name.fill("tip")
+    name.press("Enter")
+    b.until(lambda: "AbsPoint tip(0, 3, 1);" in b.text())
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("Control+d")
+    b.until(lambda: "AbsPoint tip1(0, 3, 1);" in b.text())
+    b.page.keyboard.press("Delete")
+    b.until(lambda: "AbsPoint tip(" not in b.text())
+    # What others are built on stays, and the reason is given.
+    click(b, "A")
+    b.page.evaluate("() => window.moldloft.settled()")
+    b.page.keyboard.press("Delete")
+    b.page.locator(".status").get_by_text("cannot be deleted").wait_for()
+    assert "AbsPoint A(" in b.text()
+    done = ["Rename D to tip", "Duplicate tip", "Delete tip"]
+    assert b.hand("steps().done") == done and not b.faults
+    for _ in done:
+        b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == POINTS)
+
+
+def test_a_handle_moves_along_its_axis_or_plane(bench: Callable[..., Bench]) -> None:
+    b = opened(bench)
+    b.page.evaluate("() => window.moldloft.camera_set(-128, 24)")
+    b.page.wait_for_timeout(200)
+    click(b, "C")
+    begin = b.hand("project('C')")
+
+    def pull(handle: str, dx: float, dy: float) -> tuple[float, ...]:
+        box = b.page.locator(f'[data-handle="{handle}"]').last.bounding_box()
+        assert box
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        b.page.mouse.move(x, y)
+        b.page.mouse.down()
+        before = b.text()
+        for k in range(1, 6):
+            b.page.mouse.move(x + dx * k / 5, y + dy * k / 5)
+        b.until(lambda: b.page.locator(".tip").is_visible())
+        b.page.mouse.up()
+        b.until(lambda: b.text() != before)
+        found = re.search(r"C\(([-\d.]+), ([-\d.]+), ([-\d.]+)", b.text())
+        assert found
+        return tuple(float(x) for x in found.groups())
+
+    x, y, z = pull("along z", 0, -40)
+    assert (x, y) == (4, 3) and z > 0
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == POINTS and b.hand("project('C')") == begin)
+    b.page.wait_for_timeout(200)
+    x, y, z = pull("in the plane xy", 30, 8)
+    assert z == 0 and x != 4 and y != 3
+    assert not b.faults
+
+
+def test_a_shape_is_made_from_nothing_by_the_pointer(bench: Callable[..., Bench]) -> None:
+    b = bench("", "new.sdl")
+    start = b.page.get_by_role("region", name="start")
+    start.get_by_role("button", name="Begin with points").click()
+    panel = b.page.get_by_role("region", name="add an object")
+    panel.get_by_text("or click in the picture").wait_for()
+    b.page.evaluate("() => window.moldloft.camera_set(-90, 90)")
+    canvas = b.page.get_by_role("application", name="model").bounding_box()
+    assert canvas and not start.is_visible()
+    middle = (canvas["x"] + canvas["width"] * 0.6, canvas["y"] + canvas["height"] / 2)
+    for k, (dx, dy) in enumerate([(-150, 100), (150, 100), (-150, -100), (150, -100)], 1):
+        b.page.mouse.click(middle[0] + dx, middle[1] + dy)
+        b.until(lambda k=k: f"AbsPoint P{k}(" in b.text())
+    b.page.keyboard.press("Escape")
+    for first, second in (("P1", "P2"), ("P3", "P4")):
+        panel = form(b, "Line")
+        click(b, first)
+        click(b, second)
+        panel.get_by_role("button", name="Add", exact=True).click()
+        b.until(lambda s=second: f", {s});" in b.text())
+        b.page.keyboard.press("Escape")
+    panel = form(b, "RuledSurf")
+    for name in ("c1", "c2"):
+        b.page.get_by_role("treeitem", name=re.compile(f"^{name} ")).click()
+    panel.get_by_role("button", name="Add", exact=True).click()
+    b.until(lambda: "RuledSurf s1(c1, c2);" in b.text())
+    b.until(lambda: any(i["kind"] == "patch" for i in b.hand("items()")))
+    for _ in b.hand("steps().done"):
+        b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == "")
+    b.until(start.is_visible)
+    # An example is a step of the history, too.
+    start.get_by_role("button", name=re.compile("^Bottle")).click()
+    b.until(lambda: any(i["kind"] == "patch" for i in b.hand("items()")))
+    assert not start.is_visible() and not b.faults

@@ -1,0 +1,134 @@
+// One history of all that a hand changes: typing, slides, drags, forms, reverts.
+//
+// Each step is a step of the program's own history, because each becomes text; what it changes besides, a value that the
+// text does not state, travels with it as an effect.
+
+import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands'
+import { Annotation, StateEffect, type Extension, type Transaction } from '@codemirror/state'
+import type { EditorView, ViewUpdate } from '@codemirror/view'
+import { h } from './dom'
+
+/** What a step is called in the list. */
+export const called = Annotation.define<string>()
+
+/** A value of a parameter that the text computes from others: null is that of the text. */
+export interface Held {
+  name: string
+  from: number | null
+  to: number | null
+}
+export const holding = StateEffect.define<Held>()
+
+const MOST_STEPS = 2000
+
+/** The extension of an editor that keeps the steps. */
+export function keptSteps(): Extension {
+  return [
+    history({ minDepth: MOST_STEPS }),
+    invertedEffects.of((tr) => tr.effects.filter((e) => e.is(holding)).map((e) => holding.of({ name: e.value.name, from: e.value.to, to: e.value.from }))),
+  ]
+}
+
+/** Annotations of a step of its own. */
+export const stepOf = (name: string) => [isolateHistory.of('full'), called.of(name)]
+
+function word(tr: Transaction): string {
+  const given = tr.annotation(called)
+  if (given) return given
+  let line = 1
+  tr.changes.iterChangedRanges((_a, _b, from) => (line = tr.newDoc.lineAt(from).number))
+  const what = tr.isUserEvent('delete') ? 'Deletion' : tr.isUserEvent('input.paste') ? 'Paste' : tr.isUserEvent('input.type') ? 'Typing' : 'Edit'
+  return `${what}, line ${line}`
+}
+
+/** The names of the steps, beside the editor's own record of them. */
+export class Steps {
+  done: string[] = []
+  undone: string[] = []
+  onChange: () => void = () => {}
+  /** The text is another one, whoever changed it. */
+  onText: () => void = () => {}
+  /** A value that is held goes with a step that was taken back or done again. */
+  onHeld: (held: Held) => void = () => {}
+
+  follow(update: ViewUpdate): void {
+    if (!update.transactions.length) return
+    if (update.docChanged) this.onText()
+    let name = 'Edit'
+    for (const tr of update.transactions) {
+      const back = tr.isUserEvent('undo')
+      if (back || tr.isUserEvent('redo')) {
+        const step = (back ? this.done : this.undone).pop()
+        if (step !== undefined) (back ? this.undone : this.done).push(step)
+        for (const e of tr.effects) if (e.is(holding)) this.onHeld(e.value)
+      } else if (tr.docChanged || tr.effects.some((e) => e.is(holding))) name = word(tr)
+    }
+    const [depth, ahead] = [undoDepth(update.state), redoDepth(update.state)]
+    while (this.done.length < depth) this.done.push(name)
+    this.done.splice(0, this.done.length - depth)
+    this.undone.splice(0, this.undone.length - ahead)
+    this.onChange()
+  }
+
+  /** Takes steps back, or does them again when the count is negative; how many there were. */
+  go(view: EditorView, count: number): number {
+    let gone = 0
+    while (gone < Math.abs(count) && (count > 0 ? undo : redo)(view)) gone++
+    return gone
+  }
+}
+
+const icon = (path: string) => {
+  const box = h('span', { class: 'sign', 'aria-hidden': 'true' })
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg')
+  svg.setAttribute('viewBox', '0 0 16 16')
+  const line = document.createElementNS('http://www.w3.org/2000/svg', 'path')
+  line.setAttribute('d', path)
+  svg.append(line)
+  box.append(svg)
+  return box
+}
+
+/** Buttons and the list. `go` takes that many steps back, or does them again when it is negative. */
+export function historyButtons(steps: Steps, go: (count: number) => void, listed: boolean): HTMLElement {
+  const back = h('button', { class: 'icon', 'aria-label': 'undo', onclick: () => go(1) }, icon('M6 3 2.5 6.5 6 10M2.5 6.5H10a3.5 3.5 0 0 1 0 7H7'))
+  const again = h('button', { class: 'icon', 'aria-label': 'redo', onclick: () => go(-1) }, icon('M10 3l3.5 3.5L10 10M13.5 6.5H6a3.5 3.5 0 0 0 0 7h3'))
+  const open = h('button', { class: 'icon', 'aria-label': 'history', title: 'History', 'aria-expanded': false, 'aria-haspopup': 'true', onclick: () => show(!!list.hidden) }, '▾')
+  const list = h('div', { class: 'history', role: 'group', 'aria-label': 'steps', hidden: true })
+  const box = h('div', { class: 'steps' }, back, again, listed ? open : '', list)
+  function show(on: boolean): void {
+    list.hidden = !on
+    open.setAttribute('aria-expanded', String(on))
+    if (on) build()
+  }
+  function build(): void {
+    // An editor around the page has its own history, which is not known here.
+    const [last, next] = listed ? [steps.done.at(-1), steps.undone.at(-1)] : []
+    back.disabled = listed && last === undefined
+    again.disabled = listed && next === undefined
+    back.title = last ? `Undo: ${last} (Ctrl+Z)` : 'Undo (Ctrl+Z)'
+    again.title = next ? `Redo: ${next} (Ctrl+Shift+Z)` : 'Redo (Ctrl+Shift+Z)'
+    if (list.hidden) return
+    const row = (name: string, count: number, state: string) => h('button', { class: state, onclick: () => (count ? go(count) : undefined), 'aria-current': count === 0 ? 'step' : null }, name)
+    const later = steps.undone.map((name, k) => row(name, k - steps.undone.length, 'undone'))
+    const before = steps.done.map((name, k) => row(name, steps.done.length - 1 - k, k === steps.done.length - 1 ? 'now' : '')).reverse()
+    // The focus stays in the list that it came from: Escape closes that.
+    const within = list.contains(document.activeElement)
+    list.replaceChildren(...later, ...before, row('As opened', steps.done.length, steps.done.length ? '' : 'now'))
+    const now = list.querySelector<HTMLElement>('.now')
+    now?.scrollIntoView({ block: 'nearest' })
+    if (within) now?.focus({ preventScroll: true })
+  }
+  addEventListener('pointerdown', (e) => {
+    if (!list.hidden && !box.contains(e.target as Node)) show(false)
+  })
+  box.addEventListener('keydown', (e) => {
+    if (e.key !== 'Escape' || list.hidden) return
+    e.stopPropagation()
+    show(false)
+    open.focus()
+  })
+  steps.onChange = build
+  build()
+  return box
+}
