@@ -389,7 +389,6 @@ OFFICE_FORMS = {
         1,
         None,
     ),
-    "a sheer": (as_matrix("station", [*NUMBERS, "sheer"]).replace("0.9\n", "0.9,1\n"), 1, None),
     "from bow to stern": (
         as_list("station,waterline,half-breadth", PLAIN).replace("\n", "\r\n"),
         1,
@@ -416,6 +415,15 @@ def test_forms_of_one_table_are_the_same_offsets(form, tmp_path):
     assert file.offsets and file.unit == unit
     assert np.abs(np.array(sorted(map(tuple, file.table / scale))) - wanted).max() < 1e-12
     assert len(file.blocks) == len(STATIONS) + len(LEVELS)
+
+
+def test_a_sheer_beside_waterlines_is_a_line_of_its_own(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text(as_matrix("station", [*NUMBERS, "sheer"]).replace("0.9\n", "0.9,1\n"))
+    file = read_points(path)
+    assert file.table.shape == (26, 3) and len(file.blocks) == len(STATIONS) + len(LEVELS)
+    assert any("sheer (plan)" in note for note in file.notes)
+    assert file.point_names[0] == "station 0, waterline 0.5"
 
 
 @pytest.mark.parametrize(

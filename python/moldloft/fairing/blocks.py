@@ -24,7 +24,7 @@ from moldloft.fairing.matrix import (
     place_at,
     rows_are_stations,
 )
-from moldloft.fairing.tables import MISSING, spans, unit_named
+from moldloft.fairing.tables import MISSING, names_axes, spans, unit_named
 
 __all__ = ["blocks"]
 
@@ -107,7 +107,9 @@ def _grid(rows: list[list[_Cell]], comma: bool, above: str) -> _Grid | None:
     if stations and (blocks or positions):
         return _by_lines(rows, comma)
     by_rows = rows_are_stations(corner.text, above)
-    if by_rows is None or not all(row[0].text for row in rows):
+    # Columns that name axes have an offset in each row.
+    long = names_axes(",".join(cell.text for cell in head))
+    if long or by_rows is None or not all(row[0].text for row in rows):
         return None
     if by_rows:
         odd = [c for c in heads if c.text and place_at(c.text, comma) is None]

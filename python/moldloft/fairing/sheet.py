@@ -72,7 +72,8 @@ _STYLE = (
     "td:first-child,th:first-child,.facts td{text-align:left}th{background:#f3f4f6}"
     "td.moved{background:#dbe8f8;font-weight:bold}td.moved small{display:block;color:#c2571a;"
     "font-weight:normal}td.limit{background:#fde3cf}p{margin:.3em 0;max-width:60em}"
-    "svg{display:block;margin:.4em 0;background:#fff;max-width:100%}.sign td{height:12mm}"
+    "svg{display:block;margin:.4em 0;background:#fff;max-width:100%}"
+    ".sign td{height:12mm;min-width:55mm}"
     "@media print{@page{size:A4 landscape;margin:10mm}body{margin:0;max-width:none;"
     "padding:0}"
     "h2{break-after:avoid}svg,tr{break-inside:avoid}}"
@@ -250,7 +251,7 @@ def _facts(
         ("tolerance", _tolerance(lines, details.unit)),
         ("options", f"mode {result.mode}, goal {result.goal}, measure {result.measure}"),
         ("moved", told),
-        ("bends", f"{before} before, {after} after, in {len(lines.pairs)} curves"),
+        ("bends", f"{before} before, {after} after, over all curves"),
         ("certified", f"{far}; {proved}"),
         ("program", f"Moldloft {__version__}"),
     ]
@@ -518,7 +519,9 @@ def _findings(result: Fairing | NetworkFairing) -> list[str]:
 
     if isinstance(result, NetworkFairing):
         return [f"{result.name(k)}: {result.text(f)}" for k, f in result.findings]
-    return [f.text for f in result.findings]
+    kept = ", ".join(str(k + 1) for k in result.breaks)
+    said = [f"corners are kept at points {kept}"] if kept else []
+    return said + [f.text for f in result.findings]
 
 
 def _parts(result: Fairing | NetworkFairing, details: SheetDetails) -> list[_Part]:

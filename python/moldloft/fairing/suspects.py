@@ -41,11 +41,14 @@ _KNUCKLE = 0.35
 #: Errors of the prediction within which a reading is one that was meant.
 _WITHIN = 2.5
 
+#: Deviations of fewer tolerances are noise.
+_BEYOND = 2.0
+
 #: Two neighbours are swapped where this share of the measure beside them is gone so.
 _SWAPPED = 0.9
 
 #: Suspects whose deviation is below so many errors are not listed.
-_WORTH = 1.5
+_WORTH = 0.8
 
 #: Cost of a slip beside the squared deviation, in squared errors: less of likelier ones.
 _COSTS = {
@@ -78,7 +81,7 @@ class Suspect:
     error: float
     """The error of that prediction."""
     score: float
-    """The deviation as a multiple of its error: the rank."""
+    """The deviation as a multiple of its error; the rank is by this times the deviation."""
     meant: float | None
     """The reading that was probably meant; ``None`` where no slip of the pen explains it."""
     reading: str
@@ -254,8 +257,10 @@ class _Search:
                 for cell, prediction in own.items():
                     each.setdefault(cell, []).append(prediction)
             combined = [(cell, *_combined(own)) for cell, own in each.items()]
-            combined = [c for c in combined if abs(c[1]) >= _WORTH * c[2]]
-            combined.sort(key=lambda c: (-abs(c[1]) / c[2], c[0]))
+            least = _BEYOND * self.floor
+            combined = [c for c in combined if abs(c[1]) >= max(_WORTH * c[2], least)]
+            # A large slip at a steep end comes before a small one where all is flat.
+            combined.sort(key=lambda c: (-(c[1] ** 2) / c[2], c[0]))
             # Where the measure rises without it the point is not what spoils its lines.
             gains = (c for c in combined if self.gain(c[0][0], {c[0]: self.data[c[0]] - c[1]}) > 0)
             best = next(gains, None)

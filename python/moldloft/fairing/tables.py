@@ -293,14 +293,14 @@ def _lengths(lines: list[str], out: Plain) -> list[str]:
 
 
 def names_axes(line: str) -> bool:
-    """Whether a line names two columns or more.
+    """Whether a line names columns of two axes or more.
 
     Parameters
     ----------
     line
         A line of a table.
     """
-    return sum(_axis(n) is not None for n in _cells(line.lstrip("# "))) >= 2
+    return len({_axis(n) for n in _cells(line.lstrip("# "))} - {None}) >= 2
 
 
 def _axis(name: str) -> str | None:

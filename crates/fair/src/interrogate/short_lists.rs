@@ -1,14 +1,15 @@
 //! Knuckles of short lists, and neighbours in the wrong order.
 //!
-//! A station of a boat has seven to twelve points, too few for a scale from other points. A hinge
-//! in a cubic is compared with a cubic by their residuals, and with a polynomial of two degrees
-//! more, which follows a smooth curve better than a hinge does.
+//! A station of a boat has seven to twelve points, a line along it up to forty: too few for a scale
+//! from other points. A hinge in a cubic is compared with a cubic by their residuals, and with a
+//! polynomial of two degrees more, which follows a smooth curve better than a hinge does.
 
 use crate::interrogate::outliers::{DOUBLES_BACK, DataFinding, STANDS_OUT, ThinQr};
 use moldloft_num::{Real, Vec3};
 
-/// Points that such a list has, at least and at most.
-pub(super) const SHORT: [usize; 2] = [7, 20];
+/// Points that such a list has, at least and at most: of more the windows have more chances than the
+/// scores allow for.
+pub(super) const SHORT: [usize; 2] = [7, 44];
 
 /// Maximum number of points used for a hinge, and minimum on either side.
 const WINDOW: usize = 11;
