@@ -540,10 +540,11 @@ class Model(Floating, Writable, Adapted):
         >>> round(m["b"], 9), round(found.adjustments["b"].share, 6)
         (4.0, 1.0)
         """
-        weights = by if isinstance(by, Mapping) else dict.fromkeys(names_of(by), 1.0)
+        # A name that is given twice is the engine's to refuse.
+        weights = by.items() if isinstance(by, Mapping) else [(n, 1.0) for n in names_of(by)]
         rows, reached, steps = self._document.solve_for(
             [(text, float(x)) for text, x in targets.items()],
-            [(name, float(x)) for name, x in weights.items()],
+            [(name, float(x)) for name, x in weights],
         )
         adjustments = {name: Adjustment(*row) for name, *row in rows}
         return Solution(adjustments, dict(zip(targets, reached, strict=True)), steps)

@@ -141,6 +141,14 @@ mod tests {
     }
 
     #[test]
+    fn a_power_of_zero_does_not_change_with_its_exponent() {
+        let power = D::from(0.0).powf(D::seeded(2.2, 0));
+        assert_eq!((power.re, power.eps[0]), (0.0, 0.0));
+        // By the base it is as with a constant exponent.
+        assert_eq!(D::seeded(0.0, 0).powf(D::seeded(1.0, 0)).eps[0], 1.0);
+    }
+
+    #[test]
     fn functions_have_the_bits_of_the_plain_ones() {
         for k in 1..400 {
             let x = f64::from(k) * 0.0173;

@@ -372,7 +372,8 @@ macro_rules! real_by_chain {
             }
             fn powf(self, exponent: Self) -> Self {
                 let x = self.value();
-                if exponent.is_constant() {
+                // x^p ln x, the derivative by the exponent, goes to 0 with x.
+                if exponent.is_constant() || (x.re() == 0.0 && exponent.re() > 0.0) {
                     let e = exponent.value();
                     let slope = |k: $base, value: $base| if k.re() == 0.0 { <$base>::from(0.0) } else { value };
                     let d1 = slope(e, e * Real::powf(x, e - 1.0));
