@@ -169,7 +169,16 @@ _HOMES = {
 }
 
 # Submodules that may be named after `import moldloft` alone.
-_MODULES = ("deformation", "fairing", "functions", "grids", "implicit", "kinds", "overlays", "study")
+_MODULES = (
+    "deformation",
+    "fairing",
+    "functions",
+    "grids",
+    "implicit",
+    "kinds",
+    "overlays",
+    "study",
+)
 
 
 def __getattr__(name: str) -> object:
