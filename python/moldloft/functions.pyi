@@ -65,24 +65,25 @@ def fair(
     mode: _Text | None = ...,
     closed: _Integer | None = ...,
 ) -> AnyShape:
-    """A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
+    """Faired points, each within a tolerance of the original.
 
-    On uniform points the same steps fair the points themselves: interpolation and fourth
-    differences commute. Open rows keep their first and last two points. Points on a line, conic,
-    plane cubic or helix stay.
+    The points are faired as control points of a uniform cubic; on uniform points this is the same
+    as fairing the interpolated points, because interpolation and fourth differences commute. Open
+    rows keep their first and last two points. Points on a line, conic, plane cubic or helix do not
+    move.
 
     Parameters
     ----------
     points : list of vector
-        Points, five or more (closed: eight or more).
+        Points, at least 5 (closed: 8).
     tolerance : number
-        Largest move of each point. At least 0.
+        Largest move of each point, in units of length; 0: unchanged. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`. Default second.
+        Measure to minimise; see `FairCurve`. Default second.
     mode : text, optional
-        "optimum" or "faithful". Default optimum.
+        "optimum" or "faithful"; see `FairCurve`. Default optimum.
     closed : integer, optional
-        1 for a closed row, whose first point is not repeated. 0 to 1, default 0.
+        1: closed row; the first point is not repeated. 0 to 1, default 0.
 
     Returns
     -------
@@ -99,17 +100,17 @@ def jumps(
     points: _Vectors,
     closed: _Integer | None = ...,
 ) -> AnyShape:
-    """The unfairness of a row of points: the length of the jump of the third derivative at each knot of
-    the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
+    """Jumps of the third derivative of the uniform cubic with given control points, a measure of
+    unfairness: `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|` at each knot.
 
-    An open row has four fewer jumps than points.
+    An open row of n points has n - 4 jumps, a closed one n.
 
     Parameters
     ----------
     points : list of vector
-        Points, five or more (closed: eight or more).
+        Control points, at least 5 (closed: 8).
     closed : integer, optional
-        1 for a closed row, whose first point is not repeated. 0 to 1, default 0.
+        1: closed row; the first point is not repeated. 0 to 1, default 0.
 
     Returns
     -------
@@ -126,14 +127,14 @@ def curvature(
     curve: _Curve,
     t: object,
 ) -> AnyShape:
-    """The curvature of a curve at a parameter or a row of parameters: |C' x C''| / |C'|^3.
+    """Curvature |C' x C''| / |C'|^3 of a curve at a parameter or an array of parameters.
 
     Parameters
     ----------
     curve : curve
         The curve.
     t : value
-        A parameter, or a row of them.
+        A parameter, from 0 to 1, or an array of them.
 
     Returns
     -------
@@ -722,7 +723,7 @@ def translated(
     shape : set
         The field or set to move.
     by : point
-        By how much.
+        Translation vector.
 
     Returns
     -------
@@ -3227,7 +3228,7 @@ def interp(
     Parameters
     ----------
     x : value
-        Where.
+        Positions.
     xs : list of number
         Ascending.
     ys : list of number
@@ -3858,7 +3859,7 @@ def curvatures(
 
     For curves with a parameter use `curvc` and `curvature`.
 
-    `curvature(c)` of a curve of points is the same; `curvature(c, t)` asks a parametric curve.
+    `curvature(c)` of a curve of points is the same; `curvature(c, t)` is for a parametric curve.
 
     Parameters
     ----------
@@ -4139,8 +4140,8 @@ def elliptic(
     inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
     1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one
     on the surface `on`, by default on the spline surface through its own points. The iteration ends
-    after `n` sweeps, or once no point moves by more than `tol` of the size and the walls have the
-    requested spacing and angle; without convergence a remark gives the residual. For "sorenson"
+    after `n` sweeps, or when no point moves by more than `tol` of the size and the walls have the
+    requested spacing and angle; without convergence a note gives the residual. For "sorenson"
     `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
     height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
     error, unless `folded` is "allow".
@@ -4250,7 +4251,8 @@ def elliptic_block(
     `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
     `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
     lines are perpendicular with the first cell height `spacing` (by the iteration of Hilgenstock
-    1988). Without convergence in `n` sweeps a remark gives the residual; folded cells are an error.
+    1988). Without convergence in `n` sweeps a note gives the residual; folded cells are an
+    error.
 
     Parameters
     ----------
@@ -4366,8 +4368,8 @@ def h_grid(
     and `behind`, with `n` cells each that grow from the section's own at nose and tail. Both
     surfaces have identical points there; both are right-handed, so the lower one is directed
     upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
-    first height, at right angles; without convergence in `sweeps` a remark gives the residual. With
-    `sweeps` 0 the grid is that of `tfi`.
+    first height, at right angles; without convergence in `sweeps` a note gives the residual.
+    With `sweeps` 0 the grid is that of `tfi`.
 
     Parameters
     ----------
@@ -5446,7 +5448,7 @@ def refined(
 def refined_step(
     *args: object,
 ) -> Expr:
-    """A step per index consistent with refined(n): halved at each refinement; of d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
+    """A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
 
     Called as `refined_step(ds)`.
 
@@ -5525,7 +5527,7 @@ def write_vts(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
 
     Returns
     -------
@@ -5568,7 +5570,7 @@ def plot(
 def write_stl(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; "flip" reverses the normals.
+    """Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; "flip" reverses the normals.
 
     Called as `write_stl(name, words, s1, s2, ...)`.
 
@@ -5579,7 +5581,7 @@ def write_stl(
     words : text, optional
         "flip" reverses the normals.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
 
     Returns
     -------
@@ -5595,7 +5597,7 @@ def write_stl(
 def write_cgns(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.
+    """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.
 
     Called as `write_cgns(name, s1, s2, ...), write_cgns(name, b1, "k1 = hull wall", b2, ...)`.
 
@@ -5604,7 +5606,7 @@ def write_cgns(
     name : text
         Name of the file, beside the program.
     s : list of curve, surface or block
-        Arrays to write; a list stands for its members.
+        Arrays to write; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
         faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
@@ -5633,7 +5635,7 @@ def write_su2(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5653,7 +5655,7 @@ def write_su2(
 def write_gmsh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, of surfaces one physical curve.
+    """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.
 
     Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
@@ -5662,7 +5664,7 @@ def write_gmsh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
@@ -5691,7 +5693,7 @@ def write_blockmesh(
     name : text
         Name of the file, beside the program.
     b : list of block or surface
-        Blocks, or surfaces in one plane; a list stands for its members.
+        Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
         a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,

@@ -222,7 +222,7 @@ def FramePoint(
     Type 0: Cartesian offset (a, b, c). Type 1: cylindrical, with a the distance from the z axis, b
     the angle from x toward y, c the height. Type 2: spherical, with a the distance, b the
     longitude, c the latitude. The point defaults to the frame's origin. A point given as `frame`
-    stands for world axes at that point.
+    means the world axes at that point.
 
     Parameters
     ----------
@@ -699,8 +699,8 @@ def IntPoint(
     """The point that three planes, surfaces or zero sets of fields have in common.
 
     With magnets instead of surfaces it is the point found by Newton's method from there. Without
-    them all points are sought: the one nearest to `near`, by default nearest to the middle of the
-    surfaces' parameters, is the result, and the others are reported.
+    them all points are searched: the result is the one nearest to `near`, by default to the middle
+    of the surfaces' parameters, and the others are reported.
 
     Parameters
     ----------
@@ -1981,8 +1981,8 @@ def CCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """An interpolating spline: the twice differentiable piecewise cubic through the points, with
-    knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
+    """The twice differentiable piecewise cubic interpolating spline through points, with knots at the
+    cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
 
     With the default ends two points give a line, three a parabola, four or more a spline without
     knots at the second and the last but one point (not-a-knot). Neighbouring points must differ.
@@ -1992,12 +1992,15 @@ def CCurve(
     name : str
         The name of the object.
     points : list of point
-        The points it passes through, two or more.
+        Points of the curve, at least 2; neighbouring points must differ.
     degree : integer, optional
-        3 for the cubic spline, 1 for a polyline. 1 to 3, default 3.
+        3: cubic spline. 1: polyline, without end conditions. 2: the same as 3, for at most
+        three points. 1 to 3, default 3.
     ends : text, optional
-        End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
-        Default notaknot.
+        Conditions at both ends: "notaknot", "natural" (zero second derivative), "bessel" (slope
+        of the parabola through the three nearest points), "quadratic" (the end piece is a
+        parabola), "clamped" (slopes `start` and `end`) or "periodic" (closed; the last point
+        equals the first, at least 4 points). Default notaknot.
     start : vector, optional
         Slope dC/dt at the start, for clamped ends.
     end : vector, optional
@@ -2217,12 +2220,12 @@ def FoilCurve(
     """A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
     between 3, 4 or 5 points.
 
-    Three points: nose, thickness point and tail of half a section, which runs from nose to
-    tail. Four: tail, thickness point, nose and lower tail of a symmetric section. Five: a lower
-    thickness point before the lower tail; the camber is half the sum of the two signed
-    thicknesses. Sections of four and five points run from the tail along the upper side to the
-    nose at t = 1/2, and back along the lower side. Only the distance of a thickness point from
-    the chord matters: it is half the nominal thickness.
+    Three points: nose, thickness point and tail of half a section, from nose to tail. Four:
+    tail, thickness point, nose and lower tail of a symmetric section. Five: a lower thickness
+    point before the lower tail; the camber is half the sum of the two signed thicknesses.
+    Sections of four and five points extend from the tail along the upper side to the nose at t
+    = 1/2, and back along the lower side. Only the distance of a thickness point from the chord
+    matters: it is half the nominal thickness.
 
     The parameter is the square root of the position along the chord, so that the nose is smooth; the
     speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the
@@ -3121,7 +3124,7 @@ def IntCurve(
     target : target
         The plane, the other surface (or a magnet on it), or the field with the zero set.
     start : magnet, optional
-        Start: a magnet or ring of the intersection.
+        Start: a magnet or ring on the intersection. Default: the start of the branch.
     end : magnet, optional
         End.
     point : point, optional
@@ -3363,7 +3366,7 @@ def UVSnake(
     surface : surface
         The surface.
     parameter : text
-        Constant parameter, "u" or "v"; the snake runs along the other.
+        Constant parameter, "u" or "v".
     value : number
         Value of the constant parameter.
     relabel : relabel, optional
@@ -3904,20 +3907,21 @@ def IntSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """The intersection of a surface with a plane or another surface, as a snake on the first; its
-    parameter is the fraction of its length.
+    """The intersection of a surface with a plane, another surface or the zero set of a field, as a
+    snake on the surface. Its parameter is the fraction of its length.
 
-    A magnet selects the branch nearest to it; a bare surface, the branch nearest to its middle (of
-    the surface declared first). Other branches are reported. The snake has the direction n1 x n2,
-    the product of both normals, from edge to edge; or runs from the magnet `start` to the magnet
-    `end`, which must be on the intersection and keep their identity, so that patches join. A closed
-    branch begins at the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface
-    declared first: cuts of two surfaces by each other are one curve. Each of its points is on both
-    shapes, to rounding. It crosses the seam of a closed surface, where its parameter on the surface
-    changes from u = 1 to u = 0.
+    A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of its
+    parameters (of the surface declared first). Other branches are reported. The direction of the
+    snake is n1 x n2, the product of both normals. It extends from edge to edge, or from the magnet
+    `start` to the magnet `end`, which must be on the intersection and keep their identity, so that
+    patches join. A closed branch begins at the point nearest to the magnet or, without one, to
+    S(0.3, 0.4) of the surface declared first: the cuts of two surfaces by each other are the same
+    curve. Each point is on both shapes to rounding. At the seam of a closed surface the parameter
+    jumps between 0 and 1.
 
-    All branches longer than 2 % of the size with a transversal point are found. Shapes that only
-    touch have no intersection.
+    All branches are found that are longer than 2 % of the size and somewhere cross at an angle
+    larger than the shapes turn within that length; of two branches closer than that all along, one
+    may be missed. Shapes that only touch have no intersection.
 
     Parameters
     ----------
@@ -3928,7 +3932,7 @@ def IntSnake(
     target : target
         The plane, the other surface (or a magnet on it), or the field with the zero set.
     start : magnet, optional
-        Start: a magnet or ring of the intersection.
+        Start: a magnet or ring on the intersection. Default: the start of the branch.
     end : magnet, optional
         End.
     point : point, optional
@@ -3976,8 +3980,8 @@ def GeoSnake(
     Of several geodesics it is the one found by Newton's method from the straight line of the
     parameter plane: on surfaces with little curvature between the magnets, the shortest. On a
     closed surface those across its seam are tried too, and the shortest is the result (of equal
-    ones, the one inside the seam); `turns_u` and `turns_v` select another. Its parameter on the
-    surface changes from 1 to 0 at the seam.
+    ones, the one inside the seam); `turns_u` and `turns_v` select another. At the seam the
+    parameter on the surface jumps between 0 and 1.
 
     Parameters
     ----------
@@ -3991,7 +3995,7 @@ def GeoSnake(
         Number of forward crossings of the seam u = 0; negative: backward. Default: the shortest
         path with 0, 1 or -1. -10 to 10.
     turns_v : integer, optional
-        The same for the seam v = 0. -10 to 10.
+        Number of forward crossings of the seam v = 0; see `turns_u`. -10 to 10.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -4451,7 +4455,7 @@ def NURBSurf(
     sum w_ij N_i(u) N_j(v) (Piegl and Tiller 1997, equation 4.11).
 
     Knot vectors list every knot, end knots included: nu + degree_u + 1 of them, ascending; they are
-    scaled to run from 0 to 1. Without them they are clamped and uniform, without weights all are 1.
+    scaled to [0, 1]. By default knots are clamped and uniform, and weights are 1.
 
     Parameters
     ----------
@@ -4518,11 +4522,11 @@ def FoilLoftSurf(
     """Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
     laid between the points of the curves at u. A wing, a keel, a blade.
 
-    With three curves (nose, thickness, tail) v runs from nose to tail; with four (upper tail,
+    With three curves (nose, thickness, tail) v goes from nose to tail; with four (upper tail,
     thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the
     upper tail to the nose at v = 1/2, and back. Sections of the 6-series have the form of the
-    thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose
-    and tail must be distinct.
+    thickness ratio at u. If all curves meet in a point, the wing ends in it; elsewhere nose and
+    tail must be distinct.
 
     Parameters
     ----------
@@ -4888,7 +4892,7 @@ def DevSurf(
     rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
     = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 
-    The rulings run from the ruling of both starts to that of both ends; cones about an end of a
+    The rulings extend from the ruling of both starts to that of both ends; cones about an end of a
     curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and
     no edge has the divisions of its curve: build neighbours on an EdgeSnake of this surface. With
     `along` = "c1" (or "c2") u is the parameter of that curve and meshes join along it; a fan about
@@ -5059,16 +5063,15 @@ def RollFillet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
-    the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
+    """The fillet of a ball that rolls along two surfaces: circular arcs from its contact with the
+    first, at v = 0, to its contact with the second, at v = 1; tangent to both.
 
-    The centre of the ball is on the intersection of both surfaces offset by the radius; it runs
-    from edge to edge or round a closed path, and u is the fraction of the length of that path. The
-    direction and the choice among several paths follow IntSnake: a magnet selects the ball with the
-    nearest contact. With `radii` the radius is a function of u (coefficients of a clamped uniform
-    B-spline of degree at most 3): the centre is then in the plane across the path of a ball of
-    `radius`, and arcs pass through both points of contact, tangent to both surfaces. A ball larger
-    than a radius of curvature of either surface on its side is an error.
+    The centre of the ball is on the intersection of both surfaces offset by `radius`, which extends
+    from edge to edge or is closed; u is the fraction of its length. The direction and the selection
+    among several paths follow IntSnake: a magnet selects the ball with the nearest contact. With
+    `radii` the radius is a function of u: the centre is in the normal plane of the path for the
+    constant `radius`, and the arcs pass through both contacts, tangent to both surfaces. A radius
+    larger than a radius of curvature of either surface on its side is an error.
 
     `ContactSnake` gives the lines of contact on both surfaces, which are the edges v = 0 and v = 1.
     Parts of the surfaces bounded by them (`SubSurf`, `TrimSurf`) join the fillet exactly.
@@ -5080,16 +5083,17 @@ def RollFillet(
     surface1 : surface or magnet
         The first surface, or a magnet on it near the intended contact.
     surface2 : surface or magnet
-        The second surface, or a magnet of it.
+        The second surface, or a magnet on it near the intended contact.
     radius : number
-        The radius of the ball. At least 0.
+        Radius of the ball, greater than 0. At least 0.
     side1 : integer, optional
         Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the
         other. -1 to 1, default 1.
     side2 : integer, optional
-        The same for the second surface. -1 to 1, default 1.
+        Side of the ball for the second surface; see `side1`. -1 to 1, default 1.
     radii : list of number, optional
-        Radii along u: the coefficients of a B-spline.
+        Radii along u, greater than 0: coefficients of a clamped uniform B-spline of degree 3
+        (for n < 4 coefficients: n - 1). Default: constant `radius`.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5641,8 +5645,8 @@ def PolySurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """Surfaces side by side as one: piece k of N is run from u = (k - 1) / N to k / N (from v, with
-    `along` = "v"), or between the breaks given.
+    """Adjacent surfaces as one: piece k of N has u from (k - 1) / N to k / N (v, with `along` = "v"),
+    or between the given breaks.
 
     Each piece begins where the one before ends: edge u = 1 of the one is edge u = 0 of the other,
     point by point at equal v, within the model's tolerance. A piece is never reversed. Meshes join
@@ -7628,155 +7632,163 @@ def FairCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A fair B-spline curve within a tolerance of the one through its points.
+    """A fair B-spline curve within a tolerance of its points.
 
-    Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
-    which is taken; members say how it came out: `deviation` (the greatest distance of a point from it),
-    `value` and `gap` (its measure, and how much less any other has at most), `active` (tolerances that
-    are reached), `used` (squared residuals as a multiple of those of noise that fills the tolerance),
-    `fairest_used` (the same of the fairest) and `findings` (points that do not fit their neighbours).
-    Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
-    not move. The result is continuous in the points. Points can be control points
-    (`as = "control"`); these, curves that join others, the bounds "curve" and "points" and the modes of single steps
-    move control points, and take the number of a point for its parameter, as the report of 1991 does, unless
-    `spacing` names another. Their members are `deviation`
-    (how far control points, or the points themselves, moved; of fits with `knots` or a `count` the greatest distance of a
-    point), `value`, `gap`, of optima `active`, and of the others `steps`.
-    Points on a line, conic, plane cubic or helix stay in any case, unless `goal` is "fairest". In mode "faithful" the
-    worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
-    point, and which knot comes first may change with the points.
+    The curve minimises `measure` among all splines with knots at the points, within the
+    tolerance of each point; `goal` selects how far the data are smoothed. Data that are as
+    fair as the tolerance allows are interpolated unchanged. Parameters and knots follow the
+    spacing of the points, and the result depends continuously on the points.
 
-    What Python has besides: `breaks` and `release` are numbers here, never "auto", so that a small move of a point makes no
-    corner; `ends` are words; the log of single steps comes from the command (`moldloft fair model.sdl:name --log`);
-    optima are solved to rounding, so that derivatives are known, and have no `accuracy`; a model's points are
-    those that were read, so that there is no `original`.
+    Members: `deviation` (largest distance of a point from the curve), `value` (the
+    measure), `gap` (upper bound on how much lower the measure of any admissible curve can
+    be), `active` (number of tolerances reached), `used` (mean squared residual relative to
+    noise that fills the tolerance), `fairest_used` (the same for the fairest curve) and
+    `findings` (number of points that do not fit their neighbours).
+
+    Control points are moved instead of data with `as = "control"`, `joins`, `knots`,
+    `weights`, `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
+    Members are then `deviation` (largest move of a control point or point; with `knots`,
+    `weights` or `count` the largest distance of a point), `value`, `gap`, and `active` for
+    the optimum or `steps` for the other modes.
+
+    Points on a line, conic, plane cubic or helix do not move, unless `goal` is "fairest".
+    Mode "faithful" repeats the removal and re-insertion of the worst knot (Farin and
+    Sapidis 1989), one step per point; its result may jump where two knots are equally bad.
+
+    Differences from the Python function: `breaks` and `release` are numbers, never "auto";
+    `ends` are words; the log of single steps is available from the command (`moldloft fair
+    model.sdl:name --log`); there are no `accuracy` (optima are solved to rounding, so that
+    derivatives exist) and no `original`.
 
     Parameters
     ----------
     name : str
         The name of the object.
     points : list of point
-        Points, at least degree + 2 of them (closed: 2 degree + 2).
+        Points, at least degree + 2 (closed: 2 degree + 2).
     tolerance : number
-        How far the curve may be from each of the points; 0 passes through all. At least 0.
+        Largest distance of each point from the curve, in units of length; 0: interpolation. At
+        least 0.
     measure : text, optional
-        The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
-        "variation". Without it "variation" of points that the curve is near ("bending" below
-        degree 3), and "second" where control points move.
+        Measure to minimise: "second" or "third" (squared differences of control points),
+        "jumps" or "jump-lengths" (squares or lengths of the jumps of the highest derivative),
+        "bending" or "variation" (integral of the squared second or third derivative). Default:
+        "variation" for data ("bending" below degree 3), "second" where control points move.
     as : text, optional
-        Meaning of the points: "fit" (the curve passes through them before it is faired),
-        "control" (its control points) or "points" (they are faired and then interpolated: of
-        optima the same as "fit" unless the spacing is "index"). Default fit.
+        Role of the points: "fit" (interpolated, then faired), "control" (control points) or
+        "points" (faired, then interpolated; for the optimum the same as "fit", except with
+        `spacing = "index"`). Default fit.
     breaks : list of integer, optional
-        Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
-        across them. A curve through its points has corners there; a closed one begins at the
+        Numbers of points, from 1, that are intended breaks: they do not move, nothing is
+        smoothed across them, and the curve has corners there. A closed curve starts at the
         first of them.
     ends : text, optional
-        What open ends keep of the curve through the points: "free" (within the tolerance),
-        "position", "tangent", "curvature" or a number of control points. Without it "free" of
-        points that the curve is near, "tangent" of fits whose control points move, and else
-        "2".
+        Condition at open ends, relative to the curve through the points: "free" (within the
+        tolerance), "position", "tangent", "curvature" or a number of fixed control points.
+        Default: "free" for data, "tangent" for fits whose control points move, otherwise "2".
     mode : text, optional
-        "optimum", or steps of the report of 1991: "faithful" (knots removed and re-inserted,
-        the longest achievable move first), "literal" (the largest jump first; may stall),
-        "vertex" (one control point at a time to its own best place), "sweeps" (all points in
-        order) or "levels" (waves of all lengths). The last two have no derivatives. Default
-        optimum.
+        "optimum", or stepwise: "faithful" (removal and re-insertion of knots, longest
+        achievable move first), "literal" (largest jump first; may stall), "vertex" (each
+        control point to its own minimum), "sweeps" (all points in order) or "levels"
+        (multilevel cycles). "sweeps" and "levels" have no derivatives. Default optimum.
     degree : integer, optional
         Polynomial degree. 2 to 9, default 3.
     closed : integer, optional
         1 for a closed curve, whose first point is not repeated. 0 to 1, default 0.
     joins : list of curve, optional
-        Curves that it runs on from, or into, with the same tangent direction and curvature:
-        each begins or ends where this one does. They stay as they are; `ends` is for the other
-        end.
+        Curves to continue with the same tangent direction and curvature; each begins or ends at
+        the first or last point. They are not changed. `ends` applies to an end without a
+        neighbour.
     weights : list of number, optional
-        Positive weights of the control points (`as = "control"`, or of a fit with as many
-        points), which make it rational and stay as they are. They count as constants:
-        derivatives do not go through them.
+        Positive weights of the control points, constant (`as = "control"`, or a fit with as
+        many control points as points): the curve is rational. No derivatives with respect to
+        them.
     knots : list of number, optional
-        Knots of the control points (`as = "control"`) or of a fit, whose number gives that of
-        the control points: degree + 1 more, non-decreasing; of a closed curve as many,
-        increasing. Constants too.
+        Knots of the control points (`as = "control"`) or of a fit, constant. Open: number of
+        control points + degree + 1, non-decreasing; closed: as many as control points,
+        increasing. For a fit they determine the number of control points.
     spacing : text, optional
-        How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z",
-        for offsets at stations), "index", or "curvature" (lengths, longer where the curve
-        turns). "auto" is "curvature" for the goals "near" and "budget" where nothing but these
-        is asked for and ends keep no tangents, else "chord"; of single steps and joins "index".
+        Parametrisation of the points: "chord", "centripetal", a coordinate ("x", "y" or "z",
+        for offsets at stations), "index", or "curvature" (chord lengths, extended where the
+        curve turns). "auto" is "curvature" for the goals "near" and "budget" without further
+        conditions, otherwise "chord"; with control points, joins or single steps it is "index".
         Default auto.
     goal : text, optional
-        Which of the results within the tolerance: "near" (no fairer than noise of the
-        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
-        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
-        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
-        of curves, "closest" (the nearest of the `shape`). Default near.
+        Selects the result within the tolerance: "near" (residuals up to the level of noise that
+        fills the tolerance; data with little to gain do not move), "budget" (the same, without
+        the exception), "fairest" (minimum of the measure), "nearest" (nearest to the points
+        with a measure at most `share` above the minimum), "energy" (nearest with a measure of
+        at most `share`) or, for curves, "closest" (nearest with the given `shape`). Default
+        near.
     along : vector, optional
-        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
-        stations; any direction without it.
+        Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+        Default: any direction.
     motion : text, optional
-        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
-        by itself); without it points move along `along`, or in any direction.
+        "across" (points move in the plane perpendicular to `along`) or "box" (each coordinate
+        is bounded separately). Default: along `along`, or in any direction without it.
     share : number, optional
-        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
-        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
-        the measure of "energy".
+        Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
+        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
+        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
+        of the measure, default 0.1. "energy": the largest measure, required.
     shape : list of text, optional
-        The shape that it has to have, points from 1: "convex=4-10", "concave=1-4", "one-
+        Shape conditions, with numbers of points from 1: "convex=4-10", "concave=1-4", "one-
         way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
-        "arc=9-15", "pieces=2" (of monotone curvature), "within=0,1:4.6" (the largest value
-        along a direction), "side=0,-1" (the points are left only against it). A word alone is
-        about the whole curve. No derivatives.
+        "arc=9-15", "pieces=2" (number of pieces with monotone curvature), "within=0,1:4.6"
+        (largest coordinate along a direction), "side=0,-1" (points may be left only against
+        this direction). A word without numbers applies to the whole curve. No derivatives.
     tolerances : list of number, optional
-        Tolerances of the points one by one, instead of `tolerance`.
+        Tolerances of the individual points, instead of `tolerance`.
     fixed : list of integer, optional
-        Numbers of points, from 1, through which it passes.
+        Numbers, from 1, of points that do not move.
     release : list of integer, optional
-        Numbers of points, from 1, that are wrong: they may be left.
+        Numbers, from 1, of faulty points: the curve may leave them.
     through_at : list of number, optional
-        Parameters, from 0 to 1, of `through`.
+        Parameters of `through`, from 0 to 1.
     tangents : list of vector, optional
-        Directions that it has at `tangents_at`. No derivatives.
+        Tangent directions at `tangents_at`. No derivatives.
     tangents_at : list of number, optional
-        Parameters, from 0 to 1, of `tangents`.
+        Parameters of `tangents`, from 0 to 1.
     bends : integer, optional
-        1 to allow more inflections and monotone pieces of the curvature than the fairest within
-        the tolerances has. With 0 derivatives are known where none had to be taken away. 0 to
-        1, default 0.
+        1 allows more inflections and monotone pieces of curvature than the fairest curve within
+        the tolerances has; 0 removes them. With 0, derivatives exist where there is nothing to
+        remove. 0 to 1, default 0.
     at : list of number, optional
-        Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
-        curve less than 1 apart).
+        Parameters of the individual points, increasing, instead of `spacing` (closed: within a
+        range of less than 1).
     last_end : text, optional
-        What the end keeps, if it is something else than the start (`ends`).
+        Condition at the end, if different from the start (`ends`).
     bound : text, optional
-        What the tolerance bounds: "data", the distance of each point (the default of fits);
-        "curve", that of the curve from the one before, everywhere (the default of control
-        points); "points", the move of each control point. "curve" and "points" have derivatives
-        where parameters do not follow the points (`spacing = "index"`).
+        Quantity that the tolerance bounds: "data" (distance of each point from the curve;
+        default for fits), "curve" (distance of the curve from the initial one, everywhere;
+        default for control points) or "points" (move of each control point). "curve" and
+        "points" have derivatives if the parameters are constant (`spacing = "index"`).
     count : integer, optional
-        Control points of a fit by least squares, fewer than points; no derivatives. At least 3.
+        Number of control points of a least-squares fit, less than the number of points. No
+        derivatives. At least 3.
     period : number, optional
-        How far the first knot of a closed curve with `knots` is from itself, once round (1).
+        Period of the `knots` of a closed curve. Default: 1.
     steps : integer, optional
-        Steps of the modes "faithful", "literal" and "vertex" (one per point), sweeps (10) or
-        cycles of levels (2). 0 to 1e+07.
+        Number of steps in the modes "faithful", "literal" and "vertex" (default: one per
+        point), of sweeps (10) or of multilevel cycles (2). 0 to 1e+07.
     least_move : number, optional
-        Single steps end when a move is shorter than this share of the tolerance. At least 0,
-        default 0.
+        Single steps stop when the next move is shorter than this fraction of the tolerance; 0:
+        never. At least 0, default 0.
     least_drop : number, optional
-        Single steps end when one lowers the measure by less than this share. At least 0,
-        default 0.
+        Single steps stop when a step reduces the measure by less than this fraction; 0: never.
+        At least 0, default 0.
     stop_gap : number, optional
-        Single steps end when the certified gap is below this share of the measure. At least 0,
-        default 0.
+        Single steps stop when the certified gap is below this fraction of the measure; 0:
+        never. At least 0, default 0.
     stop_pieces : integer, optional
-        1 to end single steps when as many as there are points bring no fewer monotone pieces of
-        curvature. 0 to 1, default 0.
+        1: single steps stop when n of them, for n points, have not reduced the number of
+        monotone pieces of curvature. 0 to 1, default 0.
     through : list of point, optional
-        Points that the curve passes through at `through_at`. No derivatives.
+        Points on the curve at `through_at`. No derivatives.
     keep : list of text, optional
-        What it keeps of the curve before, to first order: "area" (swept about the origin in the
-        plane of x and y), "volume" (of revolution about x) or "centroid" (of the control
-        points). No derivatives.
+        Quantities of the initial curve that are preserved to first order: "area" (swept about
+        the origin in the plane of x and y), "volume" (of revolution about x) or "centroid" (of
+        the control points). No derivatives.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -7844,116 +7856,119 @@ def FairSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
+    """A fair curve on a surface near magnets: its path in the parameter plane is faired.
 
-    The path passes through the magnets' parameters before it is faired; the tolerance is a
-    distance in the parameter plane, and so are its members. Its options are those of `FairCurve`, in that plane:
-    directions are {u, v, 0}, "x" is u and "y" is v. It joins no other curves, which are in space and not
-    in the plane, and keeps no area or volume, which would be those of the plane. See `FairCurve`.
+    The tolerance and the members are distances in the parameter plane. The options are
+    those of `FairCurve`, applied to the path: directions are {u, v, 0}, "x" is u and "y" is
+    v. There are no `joins` and no `keep`, which refer to space.
 
     Parameters
     ----------
     name : str
         The name of the object.
     magnets : list of magnet
-        Magnets of one surface, at least degree + 2 of them (closed: 2 degree + 2).
+        Magnets on one surface, at least degree + 2 (closed: 2 degree + 2).
     tolerance : number
-        Largest distance from the path through the magnets, in u and v. At least 0.
+        Largest distance of each magnet from the path, in u and v; 0: interpolation. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`.
+        Measure to minimise; see `FairCurve`.
     ends : text, optional
-        Kept at the ends: "position" (the default), "tangent" or "curvature".
+        Condition at the ends: "position", "tangent" or "curvature". Default: "position".
     mode : text, optional
-        "optimum", or a mode of single steps; see `FairCurve`. Default optimum.
+        "optimum", or a stepwise mode; see `FairCurve`. Default optimum.
     degree : integer, optional
         Polynomial degree of the path. 2 to 9, default 3.
     spacing : text, optional
-        How magnets get their parameters along the path, as for `FairCurve`: "chord",
-        "centripetal", "x" (u) or "y" (v) where it rises, "index" or "curvature"; "auto" is
-        "chord", of single steps "index". Default auto.
+        Parametrisation of the magnets along the path, as for `FairCurve`: "chord",
+        "centripetal", "x" (u) or "y" (v) if monotone, "index" or "curvature". "auto" is
+        "chord", for single steps "index". Default auto.
     goal : text, optional
-        Which of the results within the tolerance: "near" (no fairer than noise of the
-        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
-        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
-        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
-        of curves, "closest" (the nearest of the `shape`). Default near.
+        Selects the result within the tolerance: "near" (residuals up to the level of noise that
+        fills the tolerance; data with little to gain do not move), "budget" (the same, without
+        the exception), "fairest" (minimum of the measure), "nearest" (nearest to the points
+        with a measure at most `share` above the minimum), "energy" (nearest with a measure of
+        at most `share`) or, for curves, "closest" (nearest with the given `shape`). Default
+        near.
     share : number, optional
-        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
-        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
-        the measure of "energy".
+        Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
+        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
+        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
+        of the measure, default 0.1. "energy": the largest measure, required.
     breaks : list of integer, optional
-        Numbers of magnets, from 1, that are intended breaks: the path has corners there.
+        Numbers of magnets, from 1, that are intended breaks: they do not move, and the path has
+        corners there.
     shape : list of text, optional
-        The shape that it has to have, points from 1: "convex=4-10", "concave=1-4", "one-
+        Shape conditions, with numbers of points from 1: "convex=4-10", "concave=1-4", "one-
         way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
-        "arc=9-15", "pieces=2" (of monotone curvature), "within=0,1:4.6" (the largest value
-        along a direction), "side=0,-1" (the points are left only against it). A word alone is
-        about the whole curve. No derivatives.
+        "arc=9-15", "pieces=2" (number of pieces with monotone curvature), "within=0,1:4.6"
+        (largest coordinate along a direction), "side=0,-1" (points may be left only against
+        this direction). A word without numbers applies to the whole curve. No derivatives.
     tolerances : list of number, optional
-        Tolerances of the points one by one, instead of `tolerance`.
+        Tolerances of the individual points, instead of `tolerance`.
     fixed : list of integer, optional
-        Numbers of points, from 1, through which it passes.
+        Numbers, from 1, of points that do not move.
     release : list of integer, optional
-        Numbers of points, from 1, that are wrong: they may be left.
+        Numbers, from 1, of faulty points: the curve may leave them.
     through_at : list of number, optional
-        Parameters, from 0 to 1, of `through`.
+        Parameters of `through`, from 0 to 1.
     tangents : list of vector, optional
-        Directions that it has at `tangents_at`. No derivatives.
+        Tangent directions at `tangents_at`. No derivatives.
     tangents_at : list of number, optional
-        Parameters, from 0 to 1, of `tangents`.
+        Parameters of `tangents`, from 0 to 1.
     bends : integer, optional
-        1 to allow more inflections and monotone pieces of the curvature than the fairest within
-        the tolerances has. With 0 derivatives are known where none had to be taken away. 0 to
-        1, default 0.
+        1 allows more inflections and monotone pieces of curvature than the fairest curve within
+        the tolerances has; 0 removes them. With 0, derivatives exist where there is nothing to
+        remove. 0 to 1, default 0.
     at : list of number, optional
-        Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
-        curve less than 1 apart).
+        Parameters of the individual points, increasing, instead of `spacing` (closed: within a
+        range of less than 1).
     last_end : text, optional
-        What the end keeps, if it is something else than the start (`ends`).
+        Condition at the end, if different from the start (`ends`).
     bound : text, optional
-        What the tolerance bounds: "data", the distance of each point (the default of fits);
-        "curve", that of the curve from the one before, everywhere (the default of control
-        points); "points", the move of each control point. "curve" and "points" have derivatives
-        where parameters do not follow the points (`spacing = "index"`).
+        Quantity that the tolerance bounds: "data" (distance of each point from the curve;
+        default for fits), "curve" (distance of the curve from the initial one, everywhere;
+        default for control points) or "points" (move of each control point). "curve" and
+        "points" have derivatives if the parameters are constant (`spacing = "index"`).
     count : integer, optional
-        Control points of a fit by least squares, fewer than points; no derivatives. At least 3.
+        Number of control points of a least-squares fit, less than the number of points. No
+        derivatives. At least 3.
     period : number, optional
-        How far the first knot of a closed curve with `knots` is from itself, once round (1).
+        Period of the `knots` of a closed curve. Default: 1.
     steps : integer, optional
-        Steps of the modes "faithful", "literal" and "vertex" (one per point), sweeps (10) or
-        cycles of levels (2). 0 to 1e+07.
+        Number of steps in the modes "faithful", "literal" and "vertex" (default: one per
+        point), of sweeps (10) or of multilevel cycles (2). 0 to 1e+07.
     least_move : number, optional
-        Single steps end when a move is shorter than this share of the tolerance. At least 0,
-        default 0.
+        Single steps stop when the next move is shorter than this fraction of the tolerance; 0:
+        never. At least 0, default 0.
     least_drop : number, optional
-        Single steps end when one lowers the measure by less than this share. At least 0,
-        default 0.
+        Single steps stop when a step reduces the measure by less than this fraction; 0: never.
+        At least 0, default 0.
     stop_gap : number, optional
-        Single steps end when the certified gap is below this share of the measure. At least 0,
-        default 0.
+        Single steps stop when the certified gap is below this fraction of the measure; 0:
+        never. At least 0, default 0.
     stop_pieces : integer, optional
-        1 to end single steps when as many as there are points bring no fewer monotone pieces of
-        curvature. 0 to 1, default 0.
+        1: single steps stop when n of them, for n points, have not reduced the number of
+        monotone pieces of curvature. 0 to 1, default 0.
     along : vector, optional
-        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
-        stations; any direction without it.
+        Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+        Default: any direction.
     motion : text, optional
-        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
-        by itself); without it points move along `along`, or in any direction.
+        "across" (points move in the plane perpendicular to `along`) or "box" (each coordinate
+        is bounded separately). Default: along `along`, or in any direction without it.
     weights : list of number, optional
-        Positive weights of the control points (`as = "control"`, or of a fit with as many
-        points), which make it rational and stay as they are. They count as constants:
-        derivatives do not go through them.
+        Positive weights of the control points, constant (`as = "control"`, or a fit with as
+        many control points as points): the curve is rational. No derivatives with respect to
+        them.
     knots : list of number, optional
-        Knots of the control points (`as = "control"`) or of a fit, whose number gives that of
-        the control points: degree + 1 more, non-decreasing; of a closed curve as many,
-        increasing. Constants too.
+        Knots of the control points (`as = "control"`) or of a fit, constant. Open: number of
+        control points + degree + 1, non-decreasing; closed: as many as control points,
+        increasing. For a fit they determine the number of control points.
     through : list of magnet, optional
-        Magnets of the surface that the path passes through at `through_at`. No derivatives.
+        Magnets on the path at `through_at`. No derivatives.
     as : text, optional
-        Meaning of the magnets; see `FairCurve`. Default fit.
+        Role of the magnets; see `FairCurve`. Default fit.
     closed : integer, optional
-        1 for a closed path, whose first magnet is not repeated. 0 to 1, default 0.
+        1: closed path; the first magnet is not repeated. 0 to 1, default 0.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -8018,110 +8033,108 @@ def FairSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A fair B-spline surface within a tolerance of the one through a grid of points.
+    """A fair B-spline surface within a tolerance of a grid of points.
 
-    All rows and columns of the net are faired at once: the sum of the measure over both
-    directions is the least within the tolerance. The four corners keep position, tangents and
-    twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
-    constant v, then those of constant u, `passes` times over, three steps per point: its result
-    depends on that order and may jump where two knots tie.
+    All rows and columns of the control net are faired together: the sum of the measure over
+    both directions is minimal within the tolerance. The four corners keep position,
+    tangents and twist. Mode "faithful" fairs curve after curve, those of constant v first,
+    then those of constant u, in `passes` passes of three steps per point; its result
+    depends on this order and may jump where two knots are equally bad.
 
     Parameters
     ----------
     name : str
         The name of the object.
     points : curve or surface
-        A grid of points, at least degree + 2 in each direction.
+        Grid of points, at least degree + 2 in each direction.
     tolerance : number
-        Largest distance of each point from the surface (`as = "control"`, of the surface from
-        the one with these control points); 0 leaves it unchanged. At least 0.
+        Largest distance of each point from the surface (`as = "control"`: of the surface from
+        the initial one), in units of length; 0: unchanged. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`. Default second.
+        Measure to minimise; see `FairCurve`. Default second.
     as : text, optional
-        Meaning of the points: "fit" or "control". Default fit.
+        Role of the points: "fit" (interpolated, then faired) or "control" (control points).
+        Default fit.
     degree : integer, optional
-        Polynomial degree, in both directions or along u. 2 to 9, default 3.
+        Polynomial degree along u, and along v without `degree_v`. 2 to 9, default 3.
     breaks_u : list of integer, optional
-        Rows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
-        nothing is smoothed across them. A surface through its points has a sharp edge there.
+        Rows (numbers of points along u, from 1) that are knuckle lines: their points do not
+        move, nothing is smoothed across them, and the surface has a sharp edge there.
     breaks_v : list of integer, optional
-        The same along v.
+        Columns that are knuckle lines; see `breaks_u`.
     mode : text, optional
         "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for
         nets too large for the optimum. Sweeps have no derivatives. Default optimum.
     passes : integer, optional
-        Passes of the faithful mode. 1 to 100, default 1.
+        Passes of the mode "faithful". 1 to 100, default 1.
     rims : value, optional
-        Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
-        "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
-        Default corners.
+        Condition at the rims: "corners" (only these are kept), "position", "tangent" or
+        "curvature", or a list of four for v = 0, u = 1, v = 1 and u = 0. Default corners.
     weights : farray, optional
-        Positive weights of the control points (`as = "control"`), a grid like the points, which
-        make it rational and stay as they are. They count as constants: derivatives do not go
-        through them.
+        Positive weights of the control points (`as = "control"`), constant, a grid of the same
+        shape as the points: the surface is rational. No derivatives with respect to them.
     knots_u : list of number, optional
-        Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
-        decreasing; constants too.
+        Knots along u of the control points (`as = "control"`), constant, non-decreasing: number
+        of control points + degree + 1.
     knots_v : list of number, optional
-        The same along v.
+        Knots along v; see `knots_u`.
     spacing : text, optional
-        How points get their parameters, as for `FairCurve`: the mean over all lines of the grid
-        in each direction. The mode "faithful" takes "index", and so do control points. Default
-        chord.
+        Parametrisation, as for `FairCurve`: the mean over all lines of the grid in each
+        direction. The mode "faithful" and control points use "index". Default chord.
     goal : text, optional
-        Which of the results within the tolerance: "near" (no fairer than noise of the
-        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
-        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
-        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
-        of curves, "closest" (the nearest of the `shape`). Default near.
+        Selects the result within the tolerance: "near" (residuals up to the level of noise that
+        fills the tolerance; data with little to gain do not move), "budget" (the same, without
+        the exception), "fairest" (minimum of the measure), "nearest" (nearest to the points
+        with a measure at most `share` above the minimum), "energy" (nearest with a measure of
+        at most `share`) or, for curves, "closest" (nearest with the given `shape`). Default
+        near.
     along : vector, optional
-        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
-        stations; any direction without it.
+        Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+        Default: any direction.
     motion : text, optional
-        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
-        by itself); without it points move along `along`, or in any direction.
+        "across" (points move in the plane perpendicular to `along`) or "box" (each coordinate
+        is bounded separately). Default: along `along`, or in any direction without it.
     degree_v : integer, optional
-        Polynomial degree along v, if it is another than along u. 2 to 9.
+        Polynomial degree along v. Default: `degree`. 2 to 9.
     closed_u : integer, optional
-        1 for a surface that is closed along u, whose first row of points is not repeated. 0 to
-        1, default 0.
+        1: closed along u; the first row of points is not repeated. 0 to 1, default 0.
     closed_v : integer, optional
-        The same along v. 0 to 1, default 0.
+        1: closed along v; the first column of points is not repeated. 0 to 1, default 0.
     share : number, optional
-        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
-        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
-        the measure of "energy".
+        Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
+        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
+        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
+        of the measure, default 0.1. "energy": the largest measure, required.
     tolerances : farray, optional
-        Tolerances of the points one by one, a grid like these, instead of `tolerance`.
+        Tolerances of the individual points, a grid of the same shape, instead of `tolerance`.
     fixed : list of integer, optional
-        Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the
-        surface passes through.
+        Numbers, from 1, of points on the surface: (i - 1) n + j in a grid [m, n].
     through : list of point, optional
-        Points that the surface passes through at `through_u`, `through_v`. No derivatives.
+        Points on the surface at `through_u`, `through_v`. No derivatives.
     through_u : list of number, optional
-        Parameters along u, from 0 to 1, of `through`.
+        Parameters of `through` along u, from 0 to 1.
     through_v : list of number, optional
-        Parameters along v of `through`.
+        Parameters of `through` along v, from 0 to 1.
     normals : list of vector, optional
-        Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
+        Normal directions of the surface at `normals_u`, `normals_v`. No derivatives.
     normals_u : list of number, optional
-        Parameters along u, from 0 to 1, of `normals`.
+        Parameters of `normals` along u, from 0 to 1.
     normals_v : list of number, optional
-        Parameters along v of `normals`.
+        Parameters of `normals` along v, from 0 to 1.
     keep : list of text, optional
-        What it keeps of the surface through the points, to first order: "volume" (the
-        displacement of a hull) or "area". No derivatives.
+        Quantities of the surface through the points that are preserved to first order: "volume"
+        (the displacement of a hull) or "area". No derivatives.
     bound : text, optional
-        What the tolerance bounds in the optimum: "data", the distance of each point from the
-        surface (the default of points on it); "points", the move of each control point;
-        "curve", that of the surface from the one through the points, which leaves control
-        points more room.
+        Quantity that the tolerance bounds in the optimum: "data" (distance of each point from
+        the surface; default for fits), "points" (move of each control point) or "curve"
+        (distance of the surface from the initial one, which allows larger moves of control
+        points).
     steps : integer, optional
-        Local steps per point of each curve in the faithful mode (3), or sweeps (50). 1 to
-        100000.
+        Steps per point of each curve in the mode "faithful" (default 3), or number of sweeps
+        (default 50). 1 to 100000.
     order : text, optional
-        Which curves come first in a pass of the faithful mode: "vu", those of constant v (the
-        default), or "uv".
+        Order of the curves in a pass of the mode "faithful": "vu" (those of constant v first;
+        default) or "uv".
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8168,68 +8181,71 @@ def FairNet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """Curves that share points, faired together within a tolerance: the stations, waterlines and
+    """Curves with common points, faired together within a tolerance: stations, waterlines and
     buttocks of a hull.
 
-    Each curve is a list of points; a point object in several lists is one point of all
-    these curves. All points move at once, none by more than the tolerance, so that the sum of the
-    measure over all curves is the least; each curve then passes through its moved points, so that
-    curves still meet where they did. A list that ends with its first point is a closed curve. The
-    value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
-    Equal coordinates alone join nothing. The limit is on the points: there is no `bound`.
+    Each curve is a list of points; a point object in several lists is common to these
+    curves (points with equal coordinates are not). All points move together, each at most
+    by the tolerance, so that the sum of the measure over all curves is minimal; each curve
+    then interpolates its moved points, so that intersections are preserved. A list that
+    ends with its first point is a closed curve. The value is the list of the faired curves:
+    `net[2]` is the second, `NetCurve` makes it an object. The tolerance bounds the points:
+    there is no `bound`.
 
     Parameters
     ----------
     name : str
         The name of the object.
     curves : list of value
-        The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
+        Curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
     tolerance : number
-        Largest move of each point; 0 leaves all unchanged. At least 0.
+        Largest move of each point, in units of length; 0: unchanged. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`. Default second.
+        Measure to minimise; see `FairCurve`. Default second.
     breaks : list of point, optional
-        Points that are intended breaks: they stay, nothing is smoothed across them, and curves
-        have corners there.
+        Intended breaks: these points do not move, nothing is smoothed across them, and the
+        curves have corners there.
     keep : text, optional
-        Kept ends of open curves: "corners" (the points at which every curve that has them
-        ends), "ends" or "none". Default corners.
+        Fixed ends of open curves: "corners" (points at which every curve through them ends),
+        "ends" (all) or "none". Default corners.
     along : vector, optional
-        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
-        stations; any direction without it.
+        Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+        Default: any direction.
     motion : text, optional
-        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
-        by itself); without it points move along `along`, or in any direction.
+        "across" (points move in the plane perpendicular to `along`) or "box" (each coordinate
+        is bounded separately). Default: along `along`, or in any direction without it.
     degree : integer, optional
         Polynomial degree. 2 to 9, default 3.
     mode : text, optional
-        "optimum", or "faithful": curve after curve in the order of the list, knots removed and
-        re-inserted one by one, `steps` per point. The result then depends on that order and may
-        jump where two knots tie. Default optimum.
+        "optimum", or "faithful": curve after curve in the order of the list, by removal and re-
+        insertion of knots, `steps` per point. The result of "faithful" depends on this order
+        and may jump where two knots are equally bad. Default optimum.
     passes : integer, optional
-        Passes of the faithful mode. 1 to 100, default 1.
+        Passes of the mode "faithful". 1 to 100, default 1.
     spacing : text, optional
-        How points get their parameters along each curve, as for `FairCurve`; a coordinate is
-        taken where it rises or falls along a curve, chords elsewhere. The mode "faithful" takes
-        "index". Default chord.
+        Parametrisation of the points of each curve; see `FairCurve`. A coordinate is used for
+        the curves along which it is monotone, chord lengths for the others. The mode "faithful"
+        uses "index". Default chord.
     goal : text, optional
-        Which of the results within the tolerance: "near" (no fairer than noise of the
-        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
-        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
-        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
-        of curves, "closest" (the nearest of the `shape`). Default near.
+        Selects the result within the tolerance: "near" (residuals up to the level of noise that
+        fills the tolerance; data with little to gain do not move), "budget" (the same, without
+        the exception), "fairest" (minimum of the measure), "nearest" (nearest to the points
+        with a measure at most `share` above the minimum), "energy" (nearest with a measure of
+        at most `share`) or, for curves, "closest" (nearest with the given `shape`). Default
+        near.
     share : number, optional
-        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
-        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
-        the measure of "energy".
+        Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
+        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
+        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
+        of the measure, default 0.1. "energy": the largest measure, required.
     fixed : list of point, optional
-        Points that stay besides those of `keep`.
+        Further points that do not move.
     tolerances : list of number, optional
-        Tolerances of the points `tolerances_at`, instead of `tolerance`.
+        Tolerances of the points in `tolerances_at`, instead of `tolerance`.
     tolerances_at : list of point, optional
-        The points of `tolerances`.
+        The points that `tolerances` belong to.
     steps : integer, optional
-        Steps per point of each curve in a pass of the faithful mode. 1 to 1000, default 3.
+        Steps per point of each curve and pass in the mode "faithful". 1 to 1000, default 3.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8263,16 +8279,16 @@ def NetCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """One curve of a faired network.
+    """One curve of a faired network, as an object.
 
     Parameters
     ----------
     name : str
         The name of the object.
     net : value
-        The network, a `FairNet`.
+        A `FairNet`.
     index : integer
-        The number of the curve in the list of the network, from 1. At least 1.
+        Number of the curve in the network's list, from 1. At least 1.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -8317,16 +8333,15 @@ def FairPatches(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
-    on across the edges.
+    """Surfaces with common edges, faired together within a tolerance, with continuous tangent
+    planes or curvature across the edges.
 
-    Each grid of points is a surface; where a side of one has the same points as a side of another (or
-    of itself), in either direction, they share a seam. All points of all surfaces move at once, those
-    of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
-    seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
-    or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
-    surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
-    list of the faired surfaces: `NetSurf` makes one an object.
+    Each grid of points is a surface; two sides with the same points, in either direction,
+    form a seam (also two sides of one surface). All points move together, so that the sum
+    of the measure over all curves of the nets is minimal. `seams` is the continuity across
+    seams; the ratio of the parameter speeds on both sides is that of the given surfaces.
+    Corners that are not on a seam keep position, tangents and twist. The value is the list
+    of the faired surfaces: `NetSurf` makes one an object.
 
     Parameters
     ----------
@@ -8335,32 +8350,33 @@ def FairPatches(
     surfaces : list of curve or surface
         Grids of points, each at least degree + 2 in each direction.
     tolerance : number
-        Largest move of control points; 0 leaves all unchanged. At least 0.
+        Largest move of control points, in units of length; 0: unchanged. At least 0.
     measure : text, optional
-        The measure to minimise; see `FairCurve`. Default second.
+        Measure to minimise; see `FairCurve`. Default second.
     as : text, optional
-        Meaning of the points: "fit" or "control". Default fit.
+        Role of the points: "fit" (interpolated, then faired) or "control" (control points).
+        Default fit.
     degree : integer, optional
-        Polynomial degree, in both directions or along u. 2 to 9, default 3.
+        Polynomial degree along u, and along v without `degree_v`. 2 to 9, default 3.
     seams : text, optional
         Continuity across seams: "position", "tangent" or "curvature". Default curvature.
     rims : value, optional
-        Kept at rims that are not seams; see `FairSurf`. Default corners.
+        Condition at rims that are not seams; see `FairSurf`. Default corners.
     goal : text, optional
-        "fairest", or "near": where all lines of all grids are exact (lines, conics, plane
-        cubics, helices) these move no farther than continuity across the seams asks for, give
-        or take a factor of eight. Default near.
+        "fairest" (minimum of the measure), or "near": the same, except that grids whose lines
+        are all exact (lines, conics, plane cubics, helices) move only as far as the continuity
+        across seams requires, within a factor of 8. Default near.
     degree_v : integer, optional
-        Polynomial degree along v, if it is another than along u. 2 to 9.
+        Polynomial degree along v. Default: `degree`. 2 to 9.
     along : vector, optional
-        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
-        stations; any direction without it.
+        Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
+        Default: any direction.
     motion : text, optional
-        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
-        by itself); without it points move along `along`, or in any direction.
+        "across" (points move in the plane perpendicular to `along`) or "box" (each coordinate
+        is bounded separately). Default: along `along`, or in any direction without it.
     bound : text, optional
-        What the tolerance bounds: "points", the move of each control point, or "curve", that of
-        the surfaces, which leaves control points more room. Default points.
+        Quantity that the tolerance bounds: "points" (move of each control point) or "curve"
+        (move of the surfaces, which allows larger moves of control points). Default points.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8393,19 +8409,19 @@ def NetSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """One surface of several that are faired together.
+    """One surface of a `FairPatches`, as an object.
 
-    Its members are `deviation` (how far its control points moved) and, of all surfaces together, `value`,
-    `gap` and `active`.
+    Members: `deviation` (largest move of its control points) and, for all surfaces together,
+    `value`, `gap` and `active`; see `FairCurve`.
 
     Parameters
     ----------
     name : str
         The name of the object.
     net : value
-        The surfaces, a `FairPatches`.
+        A `FairPatches`.
     index : integer
-        The number of the surface in their list, from 1. At least 1.
+        Number of the surface in the list, from 1. At least 1.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8606,7 +8622,8 @@ def SetBody(
     accuracy : number, optional
         Maximum distance of triangle centres from the surface, estimated by refinement.
     simplify : number, optional
-        Largest distance from the surface when triangles are merged; none are merged by default.
+        Largest distance from the surface when triangles are merged, in units of length.
+        Default: no merging.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
