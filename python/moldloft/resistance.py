@@ -171,6 +171,7 @@ def holtrop(
 
     Notes
     -----
+    The correlation allowance is of hull and appendages, as in the paper's example.
     J. Holtrop, G. G. J. Mennen, An approximate power prediction method, International Shipbuilding
     Progress 29 (1982) 166-170.
     """
@@ -202,7 +203,7 @@ def holtrop(
         wave=_wave(ship, froude, run, bulb_factor) * ship.volume * density * GRAVITY,
         bulb=_bulb(ship, speed) * density * GRAVITY,
         transom=pressure * ship.transom_area * _transom_factor(ship, speed),
-        correlation=pressure * area * _allowance(ship, bulb_factor),
+        correlation=pressure * (area + appendages) * _allowance(ship, bulb_factor),
         wetted_area=area,
         outside=tuple(ship.outside),
     )
@@ -313,8 +314,8 @@ def michell(
     Returns
     -------
     numpy.ndarray
-        In the shape of `speed`. Panels are cut at the water; triangles are integrated exactly along
-        the waves, and the error is that of the flat panels.
+        In the shape of `speed`. Panels are cut at the water; each triangle is integrated by a rule
+        of seven points, and most of the error is that of the flat panels.
 
     Raises
     ------
