@@ -166,8 +166,8 @@ def rounded(value: float, given: float, step: float, tolerance: float) -> float:
 
     Examples
     --------
-    >>> rounded(1.2343, 1.23, 0.01, 0.005), rounded(1.2361, 1.23, 0.001, 0.005)
-    (1.23, 1.235)
+    >>> rounded(1.2343, 1.23, 0.01, 0.005), rounded(1.2347, 1.23, 0.001, 0.0049)
+    (1.23, 1.234)
     """
     count = Fraction(value) / Fraction(repr(step))
     down = math.floor(count)
