@@ -37,6 +37,7 @@ WITHOUT = {
     "blanked",
     "border-not-joined",
     "cancelled",
+    "cannot-add",
     "diverged",
     "engine-ended",
     "units-differ",

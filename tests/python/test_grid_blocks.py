@@ -360,7 +360,7 @@ def test_the_volume_grid_of_the_missile(seed: int) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("k1 floor", "stands behind"),
+        ("k1 floor", "follows `=`"),
         ("k9 = floor wall", "no face"),
         ("k1 = floor wal", "no boundary"),
         ("k1 = ", "no name"),

@@ -25,7 +25,7 @@ const LESSENING: usize = 4;
 
 /// A number that may change.
 #[derive(Clone, Debug)]
-pub struct Follower {
+pub struct FollowingNumber {
     /// Where changes are counted from.
     pub home: f64,
     /// The least and the largest value.
@@ -34,7 +34,7 @@ pub struct Follower {
     pub weight: f64,
 }
 
-impl Follower {
+impl FollowingNumber {
     /// The change that counts as one.
     fn size(&self) -> f64 {
         match self.range {
@@ -62,7 +62,7 @@ pub trait Conditions {
 
 /// How a search is done.
 #[derive(Clone, Copy, Debug)]
-pub struct Search<'a> {
+pub struct FollowSearch<'a> {
     /// How much each condition counts: where not all can be met, one of a smaller importance gives way.
     pub importance: &'a [f64],
     /// Conditions that are off by no more are met.
@@ -92,12 +92,12 @@ pub struct Followed {
 /// Why there is nothing at the start.
 pub fn follow(
     conditions: &mut dyn Conditions,
-    followers: &[Follower],
+    followers: &[FollowingNumber],
     start: &[f64],
-    how: Search<'_>,
+    how: FollowSearch<'_>,
 ) -> Result<Followed, String> {
     let n = followers.len();
-    let sizes: Vec<f64> = followers.iter().map(Follower::size).collect();
+    let sizes: Vec<f64> = followers.iter().map(FollowingNumber::size).collect();
     let mut x = start.to_vec();
     let mut left = conditions.at(&x)?;
     let mut reach: Vec<f64> = Vec::new();
@@ -144,7 +144,7 @@ pub fn follow(
             left.iter().zip(&reach).map(share).sum::<f64>().sqrt()
         };
         let changed = |x: &[f64]| {
-            let one = |((f, x), s): ((&Follower, &f64), &f64)| f.weight * (x - f.home) / s;
+            let one = |((f, x), s): ((&FollowingNumber, &f64), &f64)| f.weight * (x - f.home) / s;
             followers.iter().zip(x).zip(&sizes).map(one).map(|y| y * y).sum::<f64>()
         };
         let merit = |left: &[f64], x: &[f64]| {

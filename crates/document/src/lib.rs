@@ -51,6 +51,6 @@ pub use measures::hydrostatics::HydrostaticsOptions as FloatOptions;
 pub use measures::surface_fields::PatchAnalysis;
 pub use moldloft_lang::run::program::ArgumentInText;
 pub use moldloft_lang::{NoFiles, Param, ReadText, SolveStatus, TextReadError, World, registry};
-pub use set::Coefficient;
+pub use set::LiteralCoefficient;
 pub use solve::SolveReport;
-pub use solve_for::{Adjustable, Adjustment, Solution, Target, round_to};
+pub use solve_for::{Adjustable, Adjustment, SolvedNumbers, WantedNumber, round_to};

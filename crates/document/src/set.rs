@@ -77,7 +77,7 @@ impl Document {
 
     /// The numbers in the expression that `name` (`P21.y`) is given by, with the derivative of the expression by each:
     /// those by which it, or its reciprocal, is of first degree, such as 5.046 in `5.046 * beam` and 2 in `beam / 2`.
-    pub fn coefficients(&mut self, name: &str) -> Vec<Coefficient> {
+    pub fn coefficients(&mut self, name: &str) -> Vec<LiteralCoefficient> {
         let Some((span, literals)) = self.literals_within(name) else { return Vec::new() };
         let program = &self.modules.get(0).program;
         let text = program.text().clone();
@@ -117,7 +117,7 @@ impl Document {
             };
             if slope != 0.0 && slope.is_finite() {
                 let name = format!("{name}#{}", k + 1);
-                found.push(Coefficient { name, value: *value, slope, span: *s });
+                found.push(LiteralCoefficient { name, value: *value, slope, span: *s });
             }
         }
         found
@@ -350,7 +350,7 @@ impl Document {
 
 /// A number in the expression of another, such as 5.046 in `y = 5.046 * beam`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coefficient {
+pub struct LiteralCoefficient {
     /// Its name: that of the number, `#`, and its place in the expression from 1, as in `P21.y#1`.
     pub name: String,
     /// Its value.

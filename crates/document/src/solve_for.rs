@@ -5,13 +5,13 @@
 //! that states how far it goes.
 
 use crate::document::Document;
-use crate::follow::{Conditions, Followed, Follower, Search, follow};
+use crate::follow::{Conditions, FollowSearch, Followed, FollowingNumber, follow};
 use moldloft_diag::Diagnostic;
 use moldloft_registry::Value;
 
 /// A number of the model, and what it is to be.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Target {
+pub struct WantedNumber {
     /// The number as an expression.
     pub expression: String,
     /// Its value.
@@ -44,7 +44,7 @@ pub struct Adjustment {
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct SolvedNumbers {
     /// The numbers that have followed.
     pub adjustments: Vec<Adjustment>,
     /// The values of the targets' expressions.
@@ -105,9 +105,9 @@ impl Document {
     /// expressions; the model is as before then.
     pub fn solve_for(
         &mut self,
-        targets: &[Target],
+        targets: &[WantedNumber],
         by: &[Adjustable],
-    ) -> Result<Solution, Vec<Diagnostic>> {
+    ) -> Result<SolvedNumbers, Vec<Diagnostic>> {
         self.complete()?;
         let expressions: Vec<String> = targets.iter().map(|t| t.expression.clone()).collect();
         let names: Vec<String> = by.iter().map(|a| a.name.clone()).collect();
@@ -142,7 +142,7 @@ impl Document {
                     share: if total > 0.0 { cost(k) / total } else { 0.0 },
                 };
                 let adjustments = names.iter().enumerate().map(one).collect();
-                Ok(Solution { adjustments, reached, steps: found.steps })
+                Ok(SolvedNumbers { adjustments, reached, steps: found.steps })
             }
             found => {
                 let fault = wish.refusal(targets, &followers, &begin, found);
@@ -186,9 +186,9 @@ impl Document {
 
     fn followers(
         &self,
-        targets: &[Target],
+        targets: &[WantedNumber],
         by: &[Adjustable],
-    ) -> Result<Vec<Follower>, Vec<Diagnostic>> {
+    ) -> Result<Vec<FollowingNumber>, Vec<Diagnostic>> {
         let mut faults = Vec::new();
         for target in targets.iter().filter(|t| !t.value.is_finite()) {
             let message = format!("`{}` cannot be {}", target.expression, target.value);
@@ -223,13 +223,13 @@ impl Document {
             }
             let Some((value, range)) = self.number_state(&a.name) else { continue };
             let home = a.home.filter(|h| h.is_finite()).unwrap_or(value);
-            followers.push(Follower { home, range, weight: a.weight });
+            followers.push(FollowingNumber { home, range, weight: a.weight });
         }
         if faults.is_empty() { Ok(followers) } else { Err(faults) }
     }
 }
 
-fn width(f: &Follower) -> f64 {
+fn width(f: &FollowingNumber) -> f64 {
     match f.range {
         Some((low, high)) if high > low => high - low,
         _ if f.home != 0.0 => f.home.abs(),
@@ -238,9 +238,13 @@ fn width(f: &Follower) -> f64 {
 }
 
 /// From the present values, and when these lead nowhere from the middle of the ranges.
-fn search(wish: &mut Wish<'_>, followers: &[Follower], begin: &[f64]) -> Result<Followed, String> {
+fn search(
+    wish: &mut Wish<'_>,
+    followers: &[FollowingNumber],
+    begin: &[f64],
+) -> Result<Followed, String> {
     let equal = vec![1.0; wish.values.len()];
-    let how = Search { importance: &equal, enough: 0.0, steps: MOST_STEPS };
+    let how = FollowSearch { importance: &equal, enough: 0.0, steps: MOST_STEPS };
     let first = follow(wish, followers, begin, how);
     let values = wish.values.clone();
     let off = |f: &Followed| -> f64 {
@@ -268,7 +272,7 @@ fn search(wish: &mut Wish<'_>, followers: &[Follower], begin: &[f64]) -> Result<
 }
 
 /// The target that is missed most, if one is.
-fn missed(targets: &[Target], found: &Followed) -> Option<usize> {
+fn missed(targets: &[WantedNumber], found: &Followed) -> Option<usize> {
     let off = |k: usize| {
         let scale = targets[k].value.abs().max(found.reach.get(k).copied().unwrap_or(0.0));
         if found.left[k] == 0.0 { 0.0 } else { (found.left[k] / scale).abs() }
@@ -280,7 +284,7 @@ fn missed(targets: &[Target], found: &Followed) -> Option<usize> {
 
 impl Wish<'_> {
     /// Numbers with no more digits than matter.
-    fn round(&mut self, followers: &[Follower], found: &mut Followed) {
+    fn round(&mut self, followers: &[FollowingNumber], found: &mut Followed) {
         let rounded: Vec<f64> = followers
             .iter()
             .zip(&found.x)
@@ -303,8 +307,8 @@ impl Wish<'_> {
     /// Why the targets are not met: how far the one that is missed most goes with the others held.
     fn refusal(
         &mut self,
-        targets: &[Target],
-        followers: &[Follower],
+        targets: &[WantedNumber],
+        followers: &[FollowingNumber],
         begin: &[f64],
         found: Result<Followed, String>,
     ) -> Diagnostic {
@@ -352,14 +356,14 @@ impl Wish<'_> {
     fn ends(
         &mut self,
         at: usize,
-        followers: &[Follower],
+        followers: &[FollowingNumber],
         begin: &[f64],
         reach: &[f64],
     ) -> Option<(f64, f64)> {
         let wished = self.values.clone();
         let importance: Vec<f64> =
             (0..wished.len()).map(|k| if k == at { GIVES_WAY } else { 1.0 }).collect();
-        let how = Search { importance: &importance, enough: 0.0, steps: MOST_STEPS };
+        let how = FollowSearch { importance: &importance, enough: 0.0, steps: MOST_STEPS };
         let mut ends = [None; 2];
         for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
             let step = BEYOND * reach[at].max(wished[at].abs());

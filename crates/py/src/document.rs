@@ -13,7 +13,7 @@ use moldloft::diag::Sources;
 use moldloft::document::searches::Searches;
 use moldloft::document::{
     Adjustable, Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
-    Target,
+    WantedNumber,
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft::host::FileWorld;
@@ -433,8 +433,8 @@ impl PyDocument {
         targets: Vec<(String, f64)>,
         by: Vec<(String, f64)>,
     ) -> PyResult<(Vec<(String, f64, f64, f64)>, Vec<f64>, usize)> {
-        let target = |(expression, value)| Target { expression, value };
-        let targets: Vec<Target> = targets.into_iter().map(target).collect();
+        let target = |(expression, value)| WantedNumber { expression, value };
+        let targets: Vec<WantedNumber> = targets.into_iter().map(target).collect();
         let adjustable = |(name, weight)| Adjustable { name, weight, home: None };
         let by: Vec<Adjustable> = by.into_iter().map(adjustable).collect();
         let found = self.long_checked(py, move |d| d.solve_for(&targets, &by))?;

@@ -3,7 +3,7 @@
 //! The place is an expression of the model; its derivatives by numbers of the text are exact. The numbers follow by the
 //! least change ([`moldloft_document::follow`]), from what they were when the drag began.
 
-use moldloft_document::follow::{Conditions, Follower, Search, follow};
+use moldloft_document::follow::{Conditions, FollowSearch, FollowingNumber, follow};
 use moldloft_document::{Document, round_to};
 use moldloft_num::Vec3;
 use moldloft_registry::{Class, Value};
@@ -242,13 +242,13 @@ impl Drag {
         let mut begin = Vec::new();
         for name in &names {
             let (x, range) = document.number_state(name).ok_or("gone")?;
-            followers.push(Follower { home: home(name).unwrap_or(x), range, weight: 1.0 });
+            followers.push(FollowingNumber { home: home(name).unwrap_or(x), range, weight: 1.0 });
             begin.push(x);
         }
         let mut aim = Aim { document, expression: &self.expression, names: &names, target, basis };
         let equal = vec![1.0; basis.len()];
         let enough = (1e-3 * grain).max(1e-12 * (1.0 + target.norm()));
-        let how = Search { importance: &equal, enough, steps: MOST_STEPS };
+        let how = FollowSearch { importance: &equal, enough, steps: MOST_STEPS };
         let found = follow(&mut aim, &followers, &begin, how)?;
         let still = found.x == begin && found.left.iter().any(|l| l.abs() > grain);
         if let Some(why) = found.refused.filter(|_| still) {

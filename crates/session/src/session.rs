@@ -11,7 +11,7 @@ use crate::text::{byte, changed, difference, unit};
 use crate::volume::{self, GridPlane};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Adjustable, CompletionKind, Document, Target, World, registry};
+use moldloft_document::{Adjustable, CompletionKind, Document, WantedNumber, World, registry};
 use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
 use moldloft_mesh::{closure, qualities};
 use moldloft_num::{Order, Vec3};
@@ -470,8 +470,8 @@ impl Session {
         by: BTreeMap<String, Adjusted>,
         frame: &mut ReplyFrame,
     ) -> Answer {
-        let one = |(expression, value)| Target { expression, value };
-        let targets: Vec<Target> = targets.into_iter().map(one).collect();
+        let one = |(expression, value)| WantedNumber { expression, value };
+        let targets: Vec<WantedNumber> = targets.into_iter().map(one).collect();
         let one =
             |(name, a): (String, Adjusted)| Adjustable { name, weight: a.weight, home: a.home };
         let by: Vec<Adjustable> = by.into_iter().map(one).collect();

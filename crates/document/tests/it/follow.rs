@@ -1,6 +1,6 @@
 //! Numbers that follow, against conditions of optimality and closed forms.
 
-use moldloft_document::follow::{Conditions, Follower, Search, follow};
+use moldloft_document::follow::{Conditions, FollowSearch, FollowingNumber, follow};
 
 /// Conditions given by functions and their derivatives.
 struct Given<F, D> {
@@ -31,11 +31,12 @@ impl Numbers {
     }
 }
 
-fn free(home: f64) -> Follower {
-    Follower { home, range: None, weight: 1.0 }
+fn free(home: f64) -> FollowingNumber {
+    FollowingNumber { home, range: None, weight: 1.0 }
 }
 
-const USUAL: Search<'static> = Search { importance: &[1.0, 1.0], enough: 0.0, steps: 40 };
+const USUAL: FollowSearch<'static> =
+    FollowSearch { importance: &[1.0, 1.0], enough: 0.0, steps: 40 };
 
 #[test]
 fn a_linear_condition_is_met_by_the_nearest_point() {
@@ -45,13 +46,13 @@ fn a_linear_condition_is_met_by_the_nearest_point() {
         slopes: |_: &[f64]| vec![vec![1.0, 2.0]],
         x: vec![],
     };
-    let within = |home, low, high| Follower { home, range: Some((low, high)), weight: 1.0 };
+    let within = |home, low, high| FollowingNumber { home, range: Some((low, high)), weight: 1.0 };
     let both = [within(0.0, -4.0, 4.0), within(0.0, -4.0, 4.0)];
     let found = follow(&mut given, &both, &[0.0, 0.0], USUAL).unwrap();
     assert!((found.x[0] - 2.0).abs() < 1e-6 && (found.x[1] - 4.0).abs() < 1e-6, "{:?}", found.x);
     assert!(found.left[0].abs() < 1e-8);
     // Three times as dear, the first changes nine times less beside the second.
-    let dear = [Follower { weight: 3.0, ..free(1.0) }, free(1.0)];
+    let dear = [FollowingNumber { weight: 3.0, ..free(1.0) }, free(1.0)];
     let found = follow(&mut given, &dear, &[1.0, 1.0], USUAL).unwrap();
     let (a, b) = (found.x[0] - 1.0, found.x[1] - 1.0);
     assert!((a + 2.0 * b - 7.0).abs() < 1e-8 && (9.0 * a - b / 2.0).abs() < 1e-6, "{a} {b}");
@@ -93,9 +94,9 @@ fn random_conditions_are_met_by_a_least_change() {
         let home: Vec<f64> = (0..3).map(|_| 1.0 + r.next()).collect();
         let goal: Vec<f64> = (0..3).map(|_| 1.0 + r.next()).collect();
         let target = values(&goal);
-        let followers: Vec<Follower> = home
+        let followers: Vec<FollowingNumber> = home
             .iter()
-            .map(|h| Follower { home: *h, range: Some((1.0, 2.0)), weight: 0.5 + r.next() })
+            .map(|h| FollowingNumber { home: *h, range: Some((1.0, 2.0)), weight: 0.5 + r.next() })
             .collect();
         let mut given = Given {
             values: |x: &[f64]| values(x).iter().zip(&target).map(|(a, b)| a - b).collect(),
@@ -126,4 +127,36 @@ fn random_conditions_are_met_by_a_least_change() {
     }
     println!("{met} met, {missed} missed, off {worst:.1e}, slope {steepest:.1e}");
     assert!(missed * 200 <= many && steepest < 0.05);
+}
+
+#[test]
+fn what_cannot_be_solved_or_added_is_refused() {
+    use moldloft_document::{Adjustable, WantedNumber};
+    let text = "param float a = 2 in [1, 5]; param float b = 3 in [1, 5]; AbsPoint P(a * b, a, 0);";
+    let mut document = crate::common::sound(text);
+    let want = |value| vec![WantedNumber { expression: "P.x".into(), value }];
+    let by = |names: &[&str]| -> Vec<Adjustable> {
+        let one = |n: &&str| Adjustable { name: (*n).to_owned(), weight: 1.0, home: None };
+        names.iter().map(one).collect()
+    };
+    for (targets, names, id) in [
+        (want(6.5), by(&[]), "nothing-to-solve"),
+        (vec![], by(&["a"]), "nothing-to-solve"),
+        (want(6.5), by(&["a", "a"]), "cannot-follow"),
+        (want(100.0), by(&["a"]), "out-of-reach"),
+        (want(f64::NAN), by(&["a"]), "not-finite"),
+    ] {
+        let faults = document.solve_for(&targets, &names).unwrap_err();
+        assert_eq!(faults[0].id, id, "{faults:?}");
+    }
+    for (statement, id) in [
+        ("AbsPoint Q(", "not-a-statement"),
+        ("print 2;", "not-a-statement"),
+        ("AbsPoint P(1, 2, 3);", "duplicate-name"),
+        ("Line l(P, Nowhere);", "cannot-add"),
+    ] {
+        let fault = document.add(statement).unwrap_err();
+        assert_eq!(fault.id, id, "{statement}: {fault:?}");
+    }
+    assert_eq!(document.text(), text);
 }
