@@ -53,7 +53,7 @@ fn a_statement_comes_behind_those_of_its_kind_and_what_it_reads() {
         ("AbsPoint D(1, 2, 3); AbsPoint E(1, 2, 3);", "one object"),
         ("AbsPoint D(1, 2", "not closed"),
         ("Line m(A, nobody);", "nobody"),
-        ("Line m(A, l);", "l"),
+        ("Line m(A, l);", "found a curve"),
     ] {
         let said = refused(&mut s, add(statement));
         assert!(said.contains(part), "{statement}: {said}");
