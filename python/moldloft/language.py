@@ -248,6 +248,7 @@ SYNONYMS = {
     "project": ("ProjSnake", "ProjPoint", "ProjMagnet"),
     "geodesic": ("GeoSnake",),
     "fillet": ("Fillet", "Blend"),
+    "rolling": ("RollFillet",),
     "blend": ("Blend",),
     "mirror": ("Mirr",),
     "trim": ("SubSurf", "TrimSurf", "SubCurve"),
