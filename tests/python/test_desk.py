@@ -288,7 +288,8 @@ def test_files(tmp_path: Path) -> None:
     desk = table(tmp_path)
     desk.run("goal fairest")
     again = Desk.open(desk.save(tmp_path / "out.csv"), 0.006)
-    assert np.abs(np.array(again.source.points) - np.array(desk.result.points)).max() < 1e-12
+    # The table is written to the thousandths that it was read with.
+    assert np.abs(np.array(again.source.points) - np.array(desk.result.points)).max() <= 5.001e-4
     found = json.loads(desk.encoded("out.json"))
     assert len(found.get("curves", found)) > 0
     sheet = desk.encoded("out.html").decode()

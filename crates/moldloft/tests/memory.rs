@@ -146,6 +146,8 @@ const OPERATIONS: &[Operation] = &[
         Ok(format!("{columns:?} {:?}", slopes.map_err(|f| ids(&f))?.len()))
     }),
     ("hydrostatics", HULL, |d| {
+        // The hull has no transom.
+        d.allow_partial(true);
         let found = d.hydrostatics(&d.hydrostatic_options()).map_err(|f| ids(&[f]))?;
         Ok(format!("{:?}", found.volume))
     }),
