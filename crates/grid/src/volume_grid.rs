@@ -160,8 +160,8 @@ impl<T: Real> VolumeGrid<T> {
         Ok(())
     }
 
-    /// Scaled Jacobian and equiangular skewness of each cell, cell (i, j, k) at `(i * (nj - 1) + j)
-    /// * (nk - 1) + k`: the least triple product of the unit edges at a corner, and the deviation
+    /// Scaled Jacobian and equiangular skewness of each cell, cell (i, j, k) at
+    /// `(i * (nj - 1) + j) * (nk - 1) + k`: the least triple product of the unit edges at a corner, and the deviation
     /// of the worst angle of a face from 90°, relative to 90°. Corners at edges without length do
     /// not count.
     pub fn cell_quality(&self) -> Vec<[f64; 2]> {

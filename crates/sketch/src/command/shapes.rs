@@ -8,6 +8,7 @@ use super::subject::ReplySubject;
 use super::{verbs, words};
 use crate::dimension::expr::DimensionExpr;
 use crate::{CoordinateAxis, PointId};
+use moldloft_num::Real;
 use moldloft_syntax::number::plain;
 use std::f64::consts::TAU;
 
@@ -258,11 +259,12 @@ impl SectionOutline {
     fn polygon(&mut self, [u, v]: [f64; 2], diameter: f64, name: &str) {
         let n = self.points.len();
         let corner = |k: usize| {
-            let (s, c) = (TAU * k as f64 / n as f64).sin_cos();
+            let angle = TAU * k as f64 / n as f64;
+            let (s, c) = (Real::sin(angle), Real::cos(angle));
             [0.5 * c - 0.5, 0.5 * s]
         };
         let page: Vec<[f64; 2]> =
-            (0..n).map(|k| corner(k)).map(|[x, y]| [u + diameter * x, v + diameter * y]).collect();
+            (0..n).map(corner).map(|[x, y]| [u + diameter * x, v + diameter * y]).collect();
         self.draw(&page, |_| "F".to_owned());
         let first = self.points[0];
         for k in 1..n {
