@@ -7658,7 +7658,8 @@ def FairCurve(
     Differences from the Python function: `breaks` and `release` are numbers, never "auto";
     `ends` are words; the log of single steps is available from the command (`moldloft fair
     model.sdl:name --log`); there are no `accuracy` (optima are solved to rounding, so that
-    derivatives exist) and no `original`.
+    derivatives exist), no `original` and no `draft`, which is for pictures while a tolerance
+    slides.
 
     Parameters
     ----------

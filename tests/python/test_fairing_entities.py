@@ -34,11 +34,11 @@ OF_CURVES = {
 }
 
 KINDS = {
-    "FairCurve": (fair_curve, OF_CURVES, {"original", "accuracy", "log"}),
+    "FairCurve": (fair_curve, OF_CURVES, {"original", "accuracy", "log", "draft"}),
     "FairSnake": (
         fair_curve,
         {**OF_CURVES, "points": ("magnets",)},
-        {"original", "accuracy", "log", "joins", "keep"},
+        {"original", "accuracy", "log", "draft", "joins", "keep"},
     ),
     "FairSurf": (
         fair_surface,
@@ -81,7 +81,7 @@ COMMAND = {
 }
 """Names of Python's options in the command, where they are others."""
 
-BY_ORDER = {"order"}
+BY_ORDER = {"order", "draft"}
 """A pass of the command fairs curves of constant v first."""
 
 
@@ -112,7 +112,7 @@ def test_entities_have_the_options_of_python(kind):
     # What is said to be absent is, so that the list does not grow old.
     assert absent <= python and not {a for a in absent if a in have}, kind
     # The reference says why.
-    words = {"joins": "joins no other curves", "keep": "keeps no area", "log": "the log of single"}
+    words = {"log": "the log of single"}
     said = " ".join(
         (ast.get_docstring(declared(kind)) + ast.get_docstring(declared("FairCurve"))).split()
     )
@@ -459,9 +459,9 @@ REFUSED = {
     "count = 9, tolerances = {"
     + ", ".join(20 * ["0.0001"])
     + "}": "more control points, or a larger tolerance",
-    'count = 9, as = "control"': "does not go with",
-    "count = 9, breaks = {4}": "does not go with",
-    'mode = "literal", bound = "curve"': "does not go with",
+    'count = 9, as = "control"': "cannot be combined with",
+    "count = 9, breaks = {4}": "cannot be combined with",
+    'mode = "literal", bound = "curve"': "cannot be combined with",
     'mode = "literal", measure = "jump-lengths"': "no steps of single points",
     'mode = "slow"': "unknown mode",
     "steps = 3": "for another mode",
@@ -473,12 +473,12 @@ REFUSED = {
     'motion = "box", along = {0, 1, 0}': "not determined",
     'motion = "round"': "unknown motion",
     'last_end = "round"': "unknown end condition",
-    'as = "control", spacing = "chord"': "does not go with",
+    'as = "control", spacing = "chord"': "cannot be combined with",
     'as = "points", weights = {1, 1}, spacing = "index"': "of control points and fits",
     "knots = {0, 0, 0, 0, 1, 1, 1, 1}": "expected",
     'as = "control", fixed = {99}': "no point 99",
     'as = "control", tolerances = {1}': "too many or too few",
-    'through = {p3}, through_at = {0.5}, mode = "vertex"': "does not go with",
+    'through = {p3}, through_at = {0.5}, mode = "vertex"': "cannot be combined with",
 }
 
 

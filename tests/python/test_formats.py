@@ -21,6 +21,14 @@ AbsPoint A(0, 1, 0); AbsPoint B(0, 1, -1); AbsPoint C(4, 1, 0); AbsPoint D(4, 1,
 Line a(A, B); Line b(C, D); RuledSurf side(a, b, divisions = {2, 3});
 """
 
+#: The rest of its skin below the water.
+ENDS = """
+AbsPoint E(0, 0, 0); AbsPoint F(0, 0, -1); AbsPoint G(4, 0, 0); AbsPoint H(4, 0, -1);
+Line e(E, F); Line g(G, H); Line bd(B, D); Line fh(F, H);
+RuledSurf stem(e, a, divisions = {2, 2}); RuledSurf stern(b, g, divisions = {2, 2});
+RuledSurf bottom(bd, fh, divisions = {3, 2});
+"""
+
 
 def rust_rows() -> list[formats.Format]:
     return [row for row in formats.formats().values() if not row.writer]
@@ -82,7 +90,7 @@ def test_options_are_taken_or_refused(name: str, tmp_path: Path) -> None:
     row = formats.formats()[name]
     if row.volume or name in ("cgns", "volume-cgns"):
         return
-    model = moldloft.loads(SHIP)
+    model = moldloft.loads(SHIP + ENDS)
     path = tmp_path / row.file_name("ship")
     assert files.produce(model, name, path)[0].data
     for option, taken in (("lids", row.lids), ("immersed", row.immersed)):
