@@ -345,6 +345,8 @@ _EXTRAS = {
     "commit(pathlib.Path(), produce(m, 'cgns', pathlib.Path('boat.cgns')))",
     "study": "from moldloft.study import component; "
     "component(m, ['beam'], ['hydrostatics.volume'])",
+    "optimizers": "import optuna, pymoo, moldloft.study.optimizers",
+    "tables": "import pandas, pyarrow, moldloft.study",
     "cluster": "import distributed, moldloft.study.cluster",
     "hydro": "assert m.to_capytaine().mesh.nb_faces > 0",
     "cad": "m.write('boat.3dm'); m.write('boat.dxf'); assert not m.to_ocp().IsNull()",
