@@ -106,9 +106,6 @@ def test_a_dragged_point_changes_its_number_in_one_step(bench: Callable[..., Ben
     b.until(lambda: b.hand("project('P')") == pytest.approx([x, y], abs=1e-6))
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a parameter that enters squared overshoots: 7.5 units for 4.1"
-)
 def test_an_expression_is_dragged_by_its_parameter(bench: Callable[..., Bench]) -> None:
     text = "param float w = 2 in [1, 9];\nAbsPoint P(w * w, 0 * w, 0 * w);\n"
     text += "AbsPoint Q(0, 5, 0);\nAbsPoint R(30, -5, 0);\n"

@@ -65,6 +65,9 @@ pub trait Conditions {
 pub struct FollowSearch<'a> {
     /// How much each condition counts: where not all can be met, one of a smaller importance gives way.
     pub importance: &'a [f64],
+    /// True for conditions of one unit, such as the coordinates of a point: what the numbers hardly do to one of them
+    /// counts no more than what they do to the others.
+    pub alike: bool,
     /// Conditions that are off by no more are met.
     pub enough: f64,
     /// Steps at most.
@@ -111,6 +114,10 @@ pub fn follow(
                 .iter()
                 .map(|row| row.iter().zip(&sizes).map(|(d, s)| (d * s).abs()).sum::<f64>())
                 .collect();
+            if how.alike {
+                let largest = reach.iter().copied().fold(0.0, f64::max);
+                reach.fill(largest);
+            }
         }
         // A condition that nothing moves is left out: it would only add what is not finite.
         let scale = |i: usize| {

@@ -244,7 +244,7 @@ fn search(
     begin: &[f64],
 ) -> Result<Followed, String> {
     let equal = vec![1.0; wish.values.len()];
-    let how = FollowSearch { importance: &equal, enough: 0.0, steps: MOST_STEPS };
+    let how = FollowSearch { importance: &equal, alike: false, enough: 0.0, steps: MOST_STEPS };
     let first = follow(wish, followers, begin, how);
     let values = wish.values.clone();
     let off = |f: &Followed| -> f64 {
@@ -363,7 +363,8 @@ impl Wish<'_> {
         let wished = self.values.clone();
         let importance: Vec<f64> =
             (0..wished.len()).map(|k| if k == at { GIVES_WAY } else { 1.0 }).collect();
-        let how = FollowSearch { importance: &importance, enough: 0.0, steps: MOST_STEPS };
+        let how =
+            FollowSearch { importance: &importance, alike: false, enough: 0.0, steps: MOST_STEPS };
         let mut ends = [None; 2];
         for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
             let step = BEYOND * reach[at].max(wished[at].abs());

@@ -36,7 +36,7 @@ fn free(home: f64) -> FollowingNumber {
 }
 
 const USUAL: FollowSearch<'static> =
-    FollowSearch { importance: &[1.0, 1.0], enough: 0.0, steps: 40 };
+    FollowSearch { importance: &[1.0, 1.0], alike: false, enough: 0.0, steps: 40 };
 
 #[test]
 fn a_linear_condition_is_met_by_the_nearest_point() {

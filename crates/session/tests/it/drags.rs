@@ -271,3 +271,23 @@ fn numbers_that_are_given_are_reached_and_written() {
     let said = ask(&mut s, far).head["error"].to_string();
     assert!(said.contains("out of reach"), "{said}");
 }
+
+/// Views along an axis but for rounding, or for a hair, and a hand that is not on the point's line.
+#[test]
+fn a_view_nearly_along_an_axis_takes_the_point_to_the_hand() {
+    let text = "param float w = 2 in [1, 9];\nAbsPoint P(w * w, 0 * w, 0 * w);\n";
+    for tilt in [0.0, 6e-17, 1e-9, 1e-3_f64] {
+        for (steps, y) in [(1, 0.0), (10, 0.0), (10, 0.4)] {
+            let mut s = session(text);
+            ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+            let mut w = 0.0;
+            for k in 1..=steps {
+                let part = f64::from(k) / f64::from(steps);
+                let drag = json!({"kind": "drag_to", "target": [4.0 + 4.125 * part, y * part, 0.0],
+                    "basis": [[1, tilt, 0], [-tilt, 1, tilt]], "grain": 0.05});
+                w = number(&ask(&mut s, drag), "w");
+            }
+            assert!((w * w - 8.125).abs() < 0.06, "{tilt} {steps} {y}: {w}");
+        }
+    }
+}
