@@ -5,7 +5,7 @@
 ...             bulb_area=20, bulb_height=4, transom_area=16, stern=10)
 >>> found = holtrop(ship, 25 * 1852 / 3600, appendages=50, appendage_factor=1.5)
 >>> round(found.total / 1000)
-1792
+1793
 """
 
 from __future__ import annotations

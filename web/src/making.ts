@@ -244,19 +244,22 @@ export class Making {
   }
 
   private async added(): Promise<void> {
-    const { kind } = this
+    const { kind, named } = this
     if (!kind) return
     try {
       const statement = this.statement(kind)
       await this.act.synced()
       const { head } = await this.link.ask('add', { statement })
-      const name = this.named.value.trim()
+      const name = named.value.trim()
       this.act.apply(head.edits ?? [], head.version, `Add ${name}`)
       await this.act.synced()
-      this.act.select(name)
-      this.form(kind)
-      // The next one has a name that is free: the scene with this one may still be under way.
-      if (this.named.value === name) this.named.value = name.replace(/\d+$/, (n) => String(Number(n) + 1))
+      // Meanwhile the form may have been closed, or another one opened.
+      if (this.named === named && this.kind === kind) {
+        this.act.select(name)
+        this.form(kind)
+        // The next one has a name that is free: the scene with this one may still be under way.
+        if (this.named.value === name) this.named.value = name.replace(/\d+$/, (n) => String(Number(n) + 1))
+      }
       this.act.say(`${statement} was added`)
     } catch (error) {
       this.fault.textContent = (error as Error).message
