@@ -201,6 +201,7 @@ def test_meshes_are_bodies(tmp_path: Path) -> None:
         "Line a({0, 0, -1}, {2, 0, -1}); Line b({0, 1, -1}, {2, 1, -1}); "
         "RuledSurf plate(a, b, divisions = {4, 3});"
     )
+    plate.partial = True
     (path,) = plate.write(tmp_path / "plate.gdf")
     assert len(moldloft.read_mesh(path).mesh().faces) == 12
     (path,) = plate.write(tmp_path / "plate.obj")

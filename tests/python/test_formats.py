@@ -35,7 +35,7 @@ def rust_rows() -> list[formats.Format]:
 
 
 def test_a_longer_ending_names_its_format(tmp_path: Path) -> None:
-    model = moldloft.loads(SHIP)
+    model = moldloft.loads(SHIP + ENDS)
     model.write(tmp_path / "ship.high.gdf")
     model.write(tmp_path / "other.gdf", format="gdf-high")
     (long, other) = ((tmp_path / name).read_bytes() for name in ("ship.high.gdf", "other.gdf"))

@@ -267,6 +267,7 @@ def test_meshes_come_back_as_they_were_written(ending: str, tmp_path: Path) -> N
 @pytest.mark.parametrize("ending", ["gdf", "dat", "pnl", "hst"])
 def test_panel_files_come_back_whole(ending: str, tmp_path: Path) -> None:
     model = moldloft.loads(HALF)
+    model.partial = True
     form = {"dat": "nemoh", "pnl": "hams", "hst": "hydrostar"}.get(ending, ending)
     (path, *_) = model.write(tmp_path / f"half.{ending}", format=form)
     found = overlays.read(path)

@@ -13,10 +13,10 @@
 //! let text = "AbsPoint A(0, 0, 0); AbsPoint B(0, 0, -1); AbsPoint C(2, 0, 0); AbsPoint D(2, 0, -1);
 //!     Line a(A, B); Line b(C, D); RuledSurf side(a, b, divisions = {2, 2});";
 //! let mut model = Document::from_text(registry(), Box::new(NoFiles), "side.sdl", text);
-//! let gdf = format_named("wamit").unwrap();
-//! let files = write(&mut model, gdf, &gdf.file_name("side"), &WriteOptions::default()).unwrap();
-//! assert_eq!(files[0].name, "side.gdf");
-//! assert!(files[0].bytes.starts_with(b"side\n1 9.80665\n0 0\n4\n"));
+//! let obj = format_named("obj").unwrap();
+//! let files = write(&mut model, obj, &obj.file_name("side"), &WriteOptions::default()).unwrap();
+//! assert_eq!(files[0].name, "side.obj");
+//! assert_eq!(files[0].bytes.split(|b| *b == b'\n').filter(|line| line.starts_with(b"f ")).count(), 4);
 //! ```
 //!
 //! Invariant: no file is opened here; the caller writes the bytes, all of them or none.

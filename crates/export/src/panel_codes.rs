@@ -7,14 +7,29 @@ use moldloft_io::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, MeshError};
 
 impl Export<'_> {
+    /// Refuses a skin that is open below the water z = 0; where a part is allowed it is a remark.
+    ///
+    /// # Errors
+    /// Which edges are open.
+    pub fn require_closed_skin(&mut self) -> Result<(), Diagnostic> {
+        let warning = self.document.closed_below(0.0)?;
+        let remarks = self.document.export_remarks().iter().cloned().chain(warning).collect();
+        self.document.set_export_remarks(remarks);
+        Ok(())
+    }
+
     /// The panels, and the options of the file.
     ///
     /// # Errors
-    /// As [`Export::panels`]; more vertices than can be counted.
+    /// As [`Export::panels`]; a skin that is open below the water z = 0, unless patches are chosen by
+    /// tags; more vertices than can be counted.
     pub fn panels_of_code(&mut self) -> Result<(Mesh, PanelFileOptions), ExportFailure> {
         let symmetry = self.document.symmetry();
         let (mirror_x, mirror_y) = (symmetry.contains('x'), symmetry.contains('y'));
         let mut mesh: Mesh = self.panels()?.clone();
+        if self.options.tags.is_empty() {
+            self.require_closed_skin()?;
+        }
         let count = mesh.positions().len();
         let large = |_: MeshError| WriteError::TooLarge { what: "vertices", count };
         if self.options.immersed {

@@ -296,7 +296,7 @@ impl<T: Real> Body<T> {
     }
 
     /// The number of rims that reach below the level; of a body that shows one side, those in the plane y = 0 are closed.
-    pub(crate) fn open_below(&self, level: f64, half: bool) -> usize {
+    pub fn open_below(&self, level: f64, half: bool) -> usize {
         let near = SAME_PLACE * self.size;
         let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - near);
         let aside = |r: &&Vec<Vec3<T>>| !half || r.iter().any(|p| p.y.re().abs() > near);

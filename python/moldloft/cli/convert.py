@@ -51,6 +51,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="close the hull of a table of offsets by deck, transom and flat keel",
     )
+    parser.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="panels for a code although the skin is open below the water",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -71,6 +76,7 @@ def run(options: argparse.Namespace) -> int:
         return _from_offsets(options, target, format_named(options.to or named or "sdl"))
     model = open_model(options)
     report(model.diagnostics)
+    model.partial = options.keep_going
     other = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
     form = format_named(options.to or named or other)
     # Text carries what is not built for want of another program's entity; the rest is as it was.
@@ -118,6 +124,7 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
     if target is None:
         raise Error(f"name the {form} file with -o")
     model = loads(text, name=f"{Path(options.model).stem}.sdl")
+    model.partial = options.keep_going
     commit(target.parent, produce(model, form, target))
     return 0
 
@@ -135,6 +142,7 @@ def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -
             commit(target.parent, [Output(target.name, text.encode())])
         return 0
     model = loads(text, name=f"{Path(options.model).stem}.sdl")
+    model.partial = options.keep_going
     if target is None:
         raise Error(f"name the {form} file with -o")
     commit(target.parent, produce(model, form, target))

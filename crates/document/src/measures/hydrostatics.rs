@@ -2,7 +2,7 @@
 
 use crate::Document;
 use crate::measures::bodied::Bodied;
-use moldloft_diag::Diagnostic;
+use moldloft_diag::{Diagnostic, Severity};
 use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::{not_finite, open_below_water};
 use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
@@ -47,6 +47,25 @@ impl Document {
             1.. if !self.partial() => Err(open_below_water(&bodied.skin)),
             _ => Ok(found),
         }
+    }
+
+    /// Refuses a model whose skin is open below a level, or shows both sides of a mirror plane: no body
+    /// displaces water. Where a part is allowed, an open skin is a warning, the result.
+    ///
+    /// # Errors
+    /// As [`Document::hydrostatics`].
+    pub fn closed_below(&mut self, level: f64) -> Result<Option<Diagnostic>, Diagnostic> {
+        let mirrored = self.symmetry().contains('y');
+        let bodied = self.bodied(USUAL_ACCURACY)?;
+        if bodied.body.open_below(level, mirrored) == 0 {
+            return Ok(None);
+        }
+        let mut fault = open_below_water(&bodied.skin);
+        if !self.partial() {
+            return Err(fault);
+        }
+        fault.severity = Severity::Warning;
+        Ok(Some(fault))
     }
 
     /// The skin of all shown surfaces and bodies, remembered until something changes.

@@ -20,6 +20,7 @@ pub const FORMAT: Format = Format {
 
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (tolerance, lids) = (export.options.tolerance, export.options.lids);
+    export.require_closed_skin()?;
     let patches = spline_patches(export.document, tolerance, lids)?;
     let symmetry = export.document.symmetry();
     let header = Header {

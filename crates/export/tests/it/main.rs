@@ -10,7 +10,7 @@ use moldloft_export::{
 use moldloft_io::StructuredGrid;
 use moldloft_num::Vec3;
 
-/// Half a box in water with its lid, mirrored in y = 0.
+/// Half a box in water with its lid, mirrored in y = 0; the end `fore` is in x = 0.
 const BOX: &str = "
     Model info(symmetry = \"y\", units = \"m\");
     AbsPoint A(0, 1, 0); AbsPoint B(0, 1, -1); AbsPoint C(4, 1, 0); AbsPoint D(4, 1, -1);
@@ -19,6 +19,8 @@ const BOX: &str = "
     RuledSurf side(a, b, divisions = {2, 3}, tags = \"hull\");
     RuledSurf bottom(e, f, divisions = {2, 3}, orientation = 1);
     RuledSurf top(g, h, divisions = {2, 3}, tags = \"lid\");
+    Line p(G, E); Line q(H, F); RuledSurf aft(b, q, divisions = {2, 2});
+    RuledSurf fore(a, p, divisions = {2, 2});
 ";
 
 const BRICK: &str = "
@@ -110,7 +112,10 @@ fn lids_go_where_the_row_says() {
 #[test]
 fn a_symmetry_without_a_flag_is_written_out() {
     let panels = |symmetry: &str, name: &str| {
-        let text = BOX.replace("symmetry = \"y\"", &format!("symmetry = \"{symmetry}\""));
+        let mut text = BOX.replace("symmetry = \"y\"", &format!("symmetry = \"{symmetry}\""));
+        if symmetry.contains('x') {
+            text = text.replace("fore(a, p, ", "fore(a, p, visible = 0, ");
+        }
         let options = WriteOptions::default();
         let format = format_named(name).unwrap();
         let file = write(&mut model(&text), format, "box", &options).unwrap().remove(0);
@@ -118,10 +123,43 @@ fn a_symmetry_without_a_flag_is_written_out() {
     };
     let gdf = panels("xy", "gdf");
     assert_eq!(gdf.lines().nth(2), Some("1 1"));
-    assert_eq!(gdf.lines().nth(3), Some("12"));
+    assert_eq!(gdf.lines().nth(3), Some("16"));
     // Nemoh has no flag for x = 0: twice the panels.
     assert!(panels("xy", "nemoh").lines().count() > panels("y", "nemoh").lines().count() * 3 / 2);
     assert_eq!(SymmetryPlanes::YThenX.names_x(true), !SymmetryPlanes::YThenX.names_x(false));
+}
+
+/// A hull without its end or bottom displaces nothing: its files are errors, unless patches are chosen
+/// or a part is allowed.
+#[test]
+fn panel_codes_take_no_open_skin() {
+    let codes = FORMATS.iter().filter(|f| f.immersed || f.name == "gdf-high");
+    for format in codes {
+        let without = |word: &str| {
+            let lines = BOX.lines().map(|line| match line.trim().contains(&format!("{word}(")) {
+                true => line.replace("divisions", "visible = 0, divisions"),
+                false => line.to_string(),
+            });
+            lines.collect::<Vec<_>>().join("\n")
+        };
+        for (text, tags, partial, written) in [
+            (without("top"), vec![], false, true),
+            (without("aft"), vec![], false, false),
+            (without("bottom"), vec![], false, false),
+            (without("aft"), vec!["hull".to_string()], false, format.immersed),
+            (without("aft"), vec![], true, true),
+        ] {
+            let mut model = model(&text);
+            model.allow_partial(partial);
+            let options = WriteOptions { tags, ..WriteOptions::default() };
+            let made = write(&mut model, format, &format.file_name("box"), &options);
+            assert_eq!(made.is_ok(), written, "{} {made:?}", format.name);
+            if let (Err(faults), []) = (made, &options.tags[..]) {
+                assert_eq!(faults[0].id, "open-below-water");
+            }
+            assert_eq!(model.export_remarks().len(), usize::from(partial));
+        }
+    }
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn patches_face_out_of_the_water() {
             mesh.mesh.faces()[own.faces.start].map(|v| mesh.mesh.positions()[v as usize]);
         assert!((q - p).cross(r - p).dot(outward) < 0.0, "{}", patch.name);
     }
-    assert_eq!(spline_patches(&mut model, None, false).unwrap().len(), 2);
+    assert_eq!(spline_patches(&mut model, None, false).unwrap().len(), 4);
     let crossing = crate::BOX.replace("AbsPoint G(0, 0, 0)", "AbsPoint G(0, -1, 0)");
     let mut crossing = crate::model(&crossing);
     let error = format!("{:?}", spline_patches(&mut crossing, None, true).unwrap_err());
