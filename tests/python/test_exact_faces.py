@@ -202,7 +202,8 @@ def test_meshes_are_bodies(tmp_path: Path) -> None:
         "RuledSurf plate(a, b, divisions = {4, 3});"
     )
     plate.partial = True
-    (path,) = plate.write(tmp_path / "plate.gdf")
+    with pytest.warns(UserWarning, match="open below the water"):
+        (path,) = plate.write(tmp_path / "plate.gdf")
     assert len(moldloft.read_mesh(path).mesh().faces) == 12
     (path,) = plate.write(tmp_path / "plate.obj")
     assert moldloft.read_mesh(path, file_units="mm", units="m")["body"].area == pytest.approx(2e-6)

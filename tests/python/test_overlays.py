@@ -269,7 +269,8 @@ def test_panel_files_come_back_whole(ending: str, tmp_path: Path) -> None:
     model = moldloft.loads(HALF)
     model.partial = True
     form = {"dat": "nemoh", "pnl": "hams", "hst": "hydrostar"}.get(ending, ending)
-    (path, *_) = model.write(tmp_path / f"half.{ending}", format=form)
+    with pytest.warns(UserWarning, match="open below the water"):
+        (path, *_) = model.write(tmp_path / f"half.{ending}", format=form)
     found = overlays.read(path)
     assert len(found.faces) == 2 * len(model.mesh().faces)
     assert found.points[:, 1].min() == pytest.approx(-2)
