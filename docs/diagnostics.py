@@ -38,6 +38,7 @@ WITHOUT = {
     "border-not-joined",
     "cancelled",
     "cannot-add",
+    "coarse-panels",
     "diverged",
     "engine-ended",
     "units-differ",

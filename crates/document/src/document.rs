@@ -18,7 +18,7 @@ use moldloft_lang::source::sketch_file::{self, SketchFile};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::{Dual4, Fineness};
-use moldloft_panel::{Nominal, Panelling};
+use moldloft_panel::{Nominal, PanelNote, Panelling};
 use moldloft_registry::{CallError, Kept, Registry, Role, Row, Scalar, Value};
 use moldloft_sketch::SketchSolid;
 use std::collections::{HashMap, HashSet};
@@ -672,7 +672,7 @@ impl Document {
         Ok(remarks.iter().map(|remark| self.reported(remark)).collect())
     }
 
-    fn reported(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
+    fn reported(&self, remark: &PanelNote) -> Diagnostic {
         let severity = if remark.is_error() { Diagnostic::error } else { Diagnostic::warning };
         let mut diagnostic = severity(remark.id(), remark.to_string()).help(remark.help());
         let object =
@@ -867,6 +867,7 @@ impl Document {
     }
 
     /// The panels with as many divisions as bring them as near to their surfaces as this; see [`Panelling::within`].
+    /// Panels that stay farther away are among [`Document::export_remarks`].
     ///
     /// # Errors
     /// When there would be too many panels, or none.
@@ -878,6 +879,9 @@ impl Document {
             let none = Diagnostic::error("no-mesh", "the model has no panels");
             self.or_spent(none.help("show a surface"))
         })?;
+        let coarse = panelling.remarks().iter().filter(|n| matches!(n, PanelNote::Coarse { .. }));
+        let coarse: Vec<Diagnostic> = coarse.map(|note| self.reported(note)).collect();
+        self.export_remarks.extend(coarse);
         Ok(Arc::new(Panelled { panelling, mesh }))
     }
 

@@ -6,9 +6,10 @@
 
 use moldloft_model::Object;
 use moldloft_num::trace::{Edge, Edges, Trace};
-use moldloft_num::{CurveJet, Order, Real, SurfJet, Surface};
+use moldloft_num::{CurveJet, Fineness, Order, Real, SurfJet, Surface};
 use moldloft_registry::{
-    BorderCurve, CurveRef, DivisionDensity, Scalar, SurfaceRef, TriangulatedBorder, Value,
+    Border, BorderCurve, CallError, CurveRef, DivisionDensity, Scalar, SurfaceRef,
+    TriangulatedBorder, Value,
 };
 use std::sync::Arc;
 
@@ -31,6 +32,21 @@ pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Triangula
         Value::Body(facets) => Some(&facets.border.as_ref()?.0),
         _ => None,
     }
+}
+
+/// The border of an object with triangles as near to its surface as this.
+///
+/// # Errors
+/// When that takes too many triangles.
+pub(crate) fn finer(
+    object: &Object<f64>,
+    fineness: Option<&Fineness>,
+) -> Result<Option<Border<f64>>, CallError> {
+    let finer = fineness.zip(border(object)).map(|(f, border)| border.within(f)).transpose();
+    finer.map_err(|fault| {
+        let found = format!("{} of `{}`", fault.found.as_deref().unwrap_or("more"), object.name);
+        fault.found(found)
+    })
 }
 
 /// A hem as a patch; `None` for a curve that no neighbour can name.

@@ -5,7 +5,7 @@ use crate::knuckles::knuckles;
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Fineness, Order, SurfJet};
-use moldloft_registry::{Scalar, SurfaceRef, Value};
+use moldloft_registry::{CallError, Scalar, SurfaceRef, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -126,11 +126,14 @@ impl Draft<'_> {
 /// The participating surfaces, in the order of declaration, followed by hidden ones and the hems of
 /// sheets. `before`: the knuckles of an earlier state of the graph, with its last change at that
 /// time. `fineness`: the required accuracy of panels, if given.
+///
+/// # Errors
+/// When the accuracy takes too many triangles.
 pub(crate) fn drafts<'g>(
     graph: &'g Graph<f64>,
     before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
     fineness: Option<&Fineness>,
-) -> Vec<Draft<'g>> {
+) -> Result<Vec<Draft<'g>>, CallError> {
     let mut drafts: Vec<Draft> = Vec::new();
     let mut finder = KnuckleFinder { graph, before, found: HashMap::new() };
     let mut draft = |object: &'g Object<f64>, meshed| {
@@ -187,7 +190,7 @@ pub(crate) fn drafts<'g>(
     }
     for object in graph.objects().filter(|o| o.head.shown()) {
         let Some(border) = border_curves::border(object) else { continue };
-        let finer = fineness.map(|f| border.within(f));
+        let finer = border_curves::finer(object, fineness)?;
         let curves = finer.as_ref().map_or(border.curves(), |finer| finer.0.curves());
         for (index, border_curve) in curves.iter().enumerate() {
             let Some(surface) = border_curves::line(border_curve) else { continue };
@@ -210,7 +213,7 @@ pub(crate) fn drafts<'g>(
             });
         }
     }
-    drafts
+    Ok(drafts)
 }
 
 /// True if panels are opposite to the natural normal: by declaration, or because the surface is a

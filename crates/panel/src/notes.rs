@@ -91,6 +91,15 @@ pub enum PanelNote {
         /// Position.
         at: Vec3,
     },
+    /// Panels are farther from their surface than the tolerance.
+    Coarse {
+        /// The patch.
+        patch: String,
+        /// Maximum distance.
+        distance: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
     /// Number of further contradictions.
     More(usize),
 }
@@ -107,6 +116,7 @@ impl PanelNote {
             PanelNote::Unjoined { .. } => "edges-not-joined",
             PanelNote::Border { .. } => "border-not-joined",
             PanelNote::Knuckle { .. } => "knuckle-across-panels",
+            PanelNote::Coarse { .. } => "coarse-panels",
         }
     }
 
@@ -114,7 +124,10 @@ impl PanelNote {
     pub fn is_error(&self) -> bool {
         !matches!(
             self,
-            PanelNote::Apart { .. } | PanelNote::Border { .. } | PanelNote::Knuckle { .. }
+            PanelNote::Apart { .. }
+                | PanelNote::Border { .. }
+                | PanelNote::Knuckle { .. }
+                | PanelNote::Coarse { .. }
         )
     }
 
@@ -152,6 +165,9 @@ impl PanelNote {
             PanelNote::Knuckle { .. } => {
                 "make two parts of it that meet at a snake along the knuckle, such as UVSnake or EdgeSnake"
             }
+            PanelNote::Coarse { .. } => {
+                "a larger tolerance, or two surfaces that meet at the knuckle, the pole or the end of the fold"
+            }
             PanelNote::More(_) => "fix those that are reported first",
         };
         text.to_string()
@@ -163,7 +179,8 @@ impl PanelNote {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
             PanelNote::Pieces { patch, .. }
             | PanelNote::Border { patch, .. }
-            | PanelNote::Knuckle { patch, .. } => Some(patch),
+            | PanelNote::Knuckle { patch, .. }
+            | PanelNote::Coarse { patch, .. } => Some(patch),
             PanelNote::Apart { patches, .. } => Some(&patches[1]),
             PanelNote::Junction { patches, .. } | PanelNote::Unjoined { patches, .. } => {
                 Some(&patches[0])
@@ -260,6 +277,10 @@ impl std::fmt::Display for PanelNote {
                 f,
                 "a knuckle runs across the panels of `{patch}` at (u, v) = ({u:.6}, {v:.6}), ({}, {}, {}): they cut it off",
                 at.x, at.y, at.z
+            ),
+            PanelNote::Coarse { patch, distance, tolerance } => write!(
+                f,
+                "panels of `{patch}` are {distance:.2e} from the surface, farther than the tolerance {tolerance:.2e}"
             ),
             PanelNote::More(n) => write!(f, "{n} more contradictions among divisions"),
         }

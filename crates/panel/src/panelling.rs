@@ -102,29 +102,36 @@ impl Panelling {
     }
 
     /// The panelling with as many divisions as bring panels as near to their surfaces as this; stated divisions are the
-    /// least. Bodies that have no border are as they are.
+    /// least. Bodies that have no border are as they are. Panels that stay farther away are a remark.
     ///
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
     pub fn within(graph: &Graph<f64>, fineness: &Fineness) -> Result<Self, CallError> {
         let mut asked = *fineness;
-        for _ in 1..MAX_ROUNDS {
-            let made = Self::made(graph, None, None, Some(&asked))?;
-            let off = made.off(graph);
-            if off <= fineness.chord {
+        for round in 1.. {
+            let mut made = Self::made(graph, None, None, Some(&asked))?;
+            let (patch, distance) = made.farthest(graph).unwrap_or((0, 0.0));
+            if distance <= fineness.chord {
                 return Ok(made);
             }
-            asked.chord *= (0.8 * fineness.chord / off).max(0.1);
+            if round == MAX_ROUNDS {
+                let patch = made.structure.patches[patch].name.to_string();
+                let tolerance = fineness.chord;
+                made.remarks.push(PanelNote::Coarse { patch, distance, tolerance });
+                return Ok(made);
+            }
+            asked.chord *= (0.8 * fineness.chord / distance).max(0.1);
         }
-        Self::made(graph, None, None, Some(&asked))
+        unreachable!("the last round returns")
     }
 
-    /// Maximum distance of the centres of panels from their surfaces, including half of their warp.
-    fn off(&self, graph: &Graph<f64>) -> f64 {
-        let Some(parameters) = self.parameters(graph) else { return 0.0 };
+    /// The patch whose panels are farthest from its surface: the distance of their centres, including half of
+    /// their warp.
+    fn farthest(&self, graph: &Graph<f64>) -> Option<(usize, f64)> {
+        let parameters = self.parameters(graph)?;
         let meshed =
             (0..self.structure.patches.len()).filter(|&k| self.structure.patches[k].meshed);
-        let mut most = 0.0f64;
+        let mut farthest: Option<(usize, f64)> = None;
         for ((surface, uv), patch) in parameters.into_iter().zip(meshed) {
             let [nu, nv] = self.structure.patches[patch].divisions;
             let points = &self.points[patch];
@@ -140,10 +147,13 @@ impl Panelling {
                 let [a, b, c, d] = corners.map(|k| points[k]);
                 let Some(normal) = (c - a).cross(d - b).normalized() else { continue };
                 let warp = (a + c - b - d).dot(normal).abs() / 4.0;
-                most = most.max((place - (a + b + c + d) / 4.0).dot(normal).abs() + warp);
+                let off = (place - (a + b + c + d) / 4.0).dot(normal).abs() + warp;
+                if farthest.is_none_or(|(_, most)| off > most) {
+                    farthest = Some((patch, off));
+                }
             }
         }
-        most
+        farthest
     }
 
     /// The same with the counts of `nominal` where lengths would decide them. Unchanged parts of
@@ -166,7 +176,7 @@ impl Panelling {
         before: Option<&Panelling>,
         fineness: Option<&Fineness>,
     ) -> Result<Self, CallError> {
-        let mut drafts = drafts(graph, before.map(|b| (&b.knuckles, b.clock)), fineness);
+        let mut drafts = drafts(graph, before.map(|b| (&b.knuckles, b.clock)), fineness)?;
         let identities = Identities::new(graph, &drafts);
         identities.collapse(&mut drafts);
         let roots = RootTable::new(graph, &drafts, identities);
@@ -176,7 +186,7 @@ impl Panelling {
         let knuckles = drafts.iter().filter(|d| d.border_curve.is_none());
         let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
-        let mut bodies = triangle_bodies::bodies(graph, fineness);
+        let mut bodies = triangle_bodies::bodies(graph, fineness)?;
         let total = made.structure.patches.iter().map(count).sum::<u64>()
             + bodies.iter().map(MeshedBody::panels).sum::<u64>();
         if total > MOST_PANELS {

@@ -1,7 +1,7 @@
 //! Bodies of triangles among the panels: they come as they are, but for sheets with a border, whose
 //! vertices there are those of their neighbours.
 
-use crate::border_curves::border;
+use crate::border_curves::{border, finer};
 use crate::edges::along_edge;
 use crate::joined_patches::JoinedPatches;
 use crate::notes::PanelNote;
@@ -9,7 +9,7 @@ use crate::patch_values::PatchValues;
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_model::{Graph, Object};
 use moldloft_num::{Fineness, Real, Vec3};
-use moldloft_registry::{Border, BorderCurve, Scalar, TriangleBody, Value};
+use moldloft_registry::{Border, BorderCurve, CallError, Scalar, TriangleBody, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -37,12 +37,18 @@ pub(crate) struct MeshedBody {
 
 /// The visible bodies in the order of declaration, without joins. `fineness`: the required accuracy
 /// of sheets, if given.
-pub(crate) fn bodies(graph: &Graph<f64>, fineness: Option<&Fineness>) -> Vec<MeshedBody> {
+///
+/// # Errors
+/// When the accuracy takes too many triangles.
+pub(crate) fn bodies(
+    graph: &Graph<f64>,
+    fineness: Option<&Fineness>,
+) -> Result<Vec<MeshedBody>, CallError> {
     let shown = graph.objects().filter(|o| o.head.shown());
     shown
         .filter_map(|object| {
             let Some(Value::Body(facets)) = object.value() else { return None };
-            Some(MeshedBody {
+            Some(finer(object, fineness).map(|finer| MeshedBody {
                 name: object.name.clone(),
                 kind: object.row.name.as_ref().into(),
                 colour: object.head.colour,
@@ -51,11 +57,11 @@ pub(crate) fn bodies(graph: &Graph<f64>, fineness: Option<&Fineness>) -> Vec<Mes
                 facets: facets.clone(),
                 divided: Vec::new(),
                 border_curves: Vec::new(),
-                finer: fineness.and_then(|f| Some(border(object)?.within(f))),
+                finer,
                 border_vertices: Vec::new(),
                 vertices: Vec::new(),
                 own: Vec::new(),
-            })
+            }))
         })
         .collect()
 }

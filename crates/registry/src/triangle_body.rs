@@ -1,7 +1,7 @@
 //! Bodies bounded by triangles and open sheets of them, with borders that can be divided again, and
 //! their measures.
 
-use crate::{CurveRef, DivisionDensity, SurfaceRef};
+use crate::{CallError, CurveRef, DivisionDensity, SurfaceRef};
 use moldloft_num::{Fineness, Real, Vec3};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -84,7 +84,10 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     fn measures(&self) -> Option<SheetMeasures<T>>;
 
     /// The same with triangles as near to the surface as this, in place of stated divisions.
-    fn within(&self, fineness: &Fineness) -> Border<T>;
+    ///
+    /// # Errors
+    /// When that takes too many triangles.
+    fn within(&self, fineness: &Fineness) -> Result<Border<T>, CallError>;
 }
 
 /// Measures of a body, or of a part of a surface.

@@ -162,6 +162,36 @@ fn panel_codes_take_no_open_skin() {
     }
 }
 
+const BOWL: &str = "
+    BCurve half({{0, 0, -2}, {2, 0, -2}, {2, 0, 2}, {0, 0, 2}}); Line axis({0, 0, -2}, {0, 0, 2});
+    RevSurf ball(half, axis, 0, PI, visible = 0); AbsMagnet m(ball, 0.2, 0.2); AbsMagnet n(ball, 0.8, 0.3);
+    AbsMagnet o(ball, 0.5, 0.9); LineSnake mn(m, n); LineSnake no(n, o); LineSnake om(o, m);
+    TrimSurf cap(ball, {mn, no, om});
+";
+
+/// A tolerance beyond reach is an error or a remark with the distance, never a coarser file.
+#[test]
+fn a_tolerance_is_met_or_named() {
+    let stl = format_named("stl").unwrap();
+    let fine = |tolerance| WriteOptions { tolerance: Some(tolerance), ..WriteOptions::default() };
+    let mut bowl = model(BOWL);
+    assert!(write(&mut bowl, stl, "bowl.stl", &fine(1e-4)).is_ok());
+    assert!(bowl.export_remarks().iter().all(|r| r.id != "coarse-panels"));
+    let faults = write(&mut bowl, stl, "bowl.stl", &fine(1e-9)).unwrap_err();
+    assert_eq!(faults[0].id, "too-many-panels");
+    assert!(faults[0].found.as_ref().unwrap().contains("of `cap`"), "{faults:?}");
+    // Panels across an oblique knuckle never come near it.
+    let mut roof = model(
+        "BCurve a({{0, 0, 0}, {2, 0, 1}, {4, 0, 0}}, degree = 1); BCurve b({{0, 3, 0}, {2, 3, 1}, {4, 3, 0}}, degree = 1);
+         RuledSurf roof(a, b, visible = 0); AbsMagnet m(roof, 0.1, 0.1); AbsMagnet n(roof, 0.7, 0.2);
+         AbsMagnet o(roof, 0.9, 0.9); AbsMagnet p(roof, 0.3, 0.8); LineSnake mn(m, n); LineSnake no(n, o);
+         LineSnake po(p, o); LineSnake mp(m, p); SubSurf part({mn, no, po, mp}, divisions = {5, 5});",
+    );
+    assert!(write(&mut roof, stl, "roof.stl", &fine(1e-5)).is_ok());
+    let remark = roof.export_remarks().iter().find(|r| r.id == "coarse-panels").unwrap();
+    assert!(remark.message.contains("`part`") && remark.message.contains("1.00e-5"), "{remark:?}");
+}
+
 #[test]
 fn grids_and_blocks_without_a_model() {
     let points: Vec<Vec3> = (0..6).map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0)).collect();

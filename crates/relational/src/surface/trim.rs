@@ -270,7 +270,7 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
         Some(self.exact()?.0)
     }
 
-    fn within(&self, fineness: &Fineness) -> Border<T> {
+    fn within(&self, fineness: &Fineness) -> Result<Border<T>, CallError> {
         let hems = self.hems.iter().map(|h| hem(&self.surface, &h.curve, None, None, *fineness));
         let mut finer = Self {
             surface: self.surface.clone(),
@@ -282,7 +282,19 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
             exact: self.exact.clone(),
         };
         finer.close_loops();
-        Border(Arc::new(finer))
+        let at: Vec<Vec<T>> = finer.hems.iter().map(divisions).collect();
+        let (cycles, ..) = finer.loops(&at)?;
+        let points = TrimPlane::points(&finer.surface, &cycles, fineness);
+        if points > MOST_FINE_POINTS as f64 {
+            return Err(CallError::new(
+                "too-many-panels",
+                "a part of a surface takes too many triangles",
+            )
+            .expected(format!("at most {MOST_FINE_POINTS} points in its box"))
+            .found(format!("{points:.3e} points in the box"))
+            .help("a larger tolerance or angle, or parts without folds"));
+        }
+        Ok(Border(Arc::new(finer)))
     }
 }
 

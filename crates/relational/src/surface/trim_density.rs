@@ -225,11 +225,21 @@ impl Stretch {
         between(&self.sum[k], &self.at[k], x)
     }
 
+    /// Number of points of a net with lines 1 apart.
+    pub fn points(&self) -> f64 {
+        let [m, n] = self.extents();
+        m * n
+    }
+
+    fn extents(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.sum[k][self.sum[k].len() - 1].max(1.0))
+    }
+
     /// Parameter lines in u and v whose intersections are the points of the interior: at the breaks
     /// and about 1 apart between them, wider if there were more than `most` intersections, since
     /// the curvature at a fold is unbounded.
     pub fn lines(&self, most: usize) -> [Vec<f64>; 2] {
-        let reach = [0, 1].map(|k| self.sum[k][self.sum[k].len() - 1].max(1.0));
+        let reach = self.extents();
         let coarser = (reach[0] * reach[1] / most as f64).sqrt().max(1.0);
         // The shorter direction keeps at least one line.
         let shorter = reach[0].min(reach[1]);

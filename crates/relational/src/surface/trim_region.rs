@@ -54,6 +54,25 @@ impl TrimPlane {
         fineness: &Fineness,
         most: usize,
     ) -> Self {
+        let stretch = Self::stretch(surface, cycles, fineness);
+        let lines = stretch.lines(most);
+        Self { stretch: Stretching::ByCurvature(stretch), lines, margin: MARGIN }
+    }
+
+    /// The number of points that this fineness takes in the box of the loops.
+    pub fn points<T: Real>(
+        surface: &SurfaceRef<T>,
+        cycles: &[Vec<Place<T>>],
+        fineness: &Fineness,
+    ) -> f64 {
+        Self::stretch(surface, cycles, fineness).points()
+    }
+
+    fn stretch<T: Real>(
+        surface: &SurfaceRef<T>,
+        cycles: &[Vec<Place<T>>],
+        fineness: &Fineness,
+    ) -> Stretch {
         let polygons: Vec<Vec<[f64; 2]>> =
             cycles.iter().map(|c| c.iter().map(|p| p.map(T::re)).collect()).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -62,9 +81,7 @@ impl TrimPlane {
                 (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
             }
         }
-        let stretch = stretched(fineness, surface, [low, high], |us, v| rows(&polygons, us, v));
-        let lines = stretch.lines(most);
-        Self { stretch: Stretching::ByCurvature(stretch), lines, margin: MARGIN }
+        stretched(fineness, surface, [low, high], |us, v| rows(&polygons, us, v))
     }
 
     fn forward(&self, p: [f64; 2]) -> [f64; 2] {
