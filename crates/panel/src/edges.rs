@@ -1,7 +1,8 @@
 //! Parameters of a patch's divisions: along each edge separately, so that points marked by
 //! neighbours are among them, and between the edges along straight lines of the parameter square.
 
-use crate::roots::{EdgeParameter, MarkSource, on_its_root, pieces};
+use crate::identity::on_part;
+use crate::roots::{AliasId, EdgeParameter, MarkSource, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Real, Vec3};
 use moldloft_parallel::prelude::*;
@@ -45,6 +46,8 @@ pub(crate) trait PatchLookup<T: Real> {
     fn owner(&self, draft: u32) -> Key;
     /// A point object, by its identity in the graph that was planned.
     fn point(&self, key: Key) -> Option<&Point<T>>;
+    /// The parameters, on its representative, of the ends of a root with that alias.
+    fn alias_ends(&self, alias: AliasId) -> Option<[T; 2]>;
     /// The derivatives of the parameter of a knuckle along u (0) or v (1) of a draft, with a real
     /// part of 0.
     fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T>;
@@ -86,11 +89,15 @@ pub(crate) fn along_edge<T: Real>(
                 let to = match segment.until {
                     _ if at + 1 == segments.len() => T::one(),
                     EdgeParameter::Piece(p) => pieces.get(usize::from(p))?.until,
-                    EdgeParameter::Inside(p, source, turned) => {
+                    EdgeParameter::Inside(p, source, alias) => {
                         let piece = pieces.get(usize::from(p))?;
                         // On the root that both have, and from there to the piece's own.
-                        let t = parameter(source, places)?;
-                        let t = if source.turned() == turned { t } else { -t + 1.0 };
+                        let mut t = parameter(source, places)?;
+                        if source.alias() != alias {
+                            t = on_part(places.alias_ends(source.alias())?, t);
+                            let [from, to] = places.alias_ends(alias)?;
+                            t = (t - from) / (to - from);
+                        }
                         let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
                         begin(p) + (piece.until - begin(p)) * share
                     }

@@ -12,9 +12,10 @@
 use crate::draft::{Draft, surface_of};
 use crate::roots::pieces;
 use moldloft_model::Graph;
-use moldloft_num::trace::{EDGE_CORNERS, Edge, Key, Named, Piece, Root, Trace};
-use moldloft_num::{Box3, Order, Vec3};
+use moldloft_num::trace::{EDGE_CORNERS, Edge, Key, Mark, Named, Piece, Root, Trace};
+use moldloft_num::{Box3, Order, Real, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use smallvec::SmallVec;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -31,10 +32,58 @@ const ROUNDS: usize = 6;
 /// Origin of a line or a point, as a number; equal for equal origins.
 type Make = u64;
 
+/// A step from the parameter of a root to that of the root that it is, or is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum AliasStep {
+    /// In the opposite direction.
+    Turned,
+    /// Onto the part of a root that is edge 0 or 1 of a declared join.
+    Part {
+        /// The join.
+        join: Key,
+        /// Which of its edges.
+        edge: u8,
+    },
+}
+
+/// The steps from the parameter of a root to that of its representative.
+pub(crate) type Alias = SmallVec<[AliasStep; 2]>;
+
+/// True when the root is its representative from end to end.
+fn is_whole(alias: &Alias) -> bool {
+    alias.iter().all(|step| *step == AliasStep::Turned)
+}
+
+fn is_turned(alias: &Alias) -> bool {
+    alias.first() == Some(&AliasStep::Turned)
+}
+
+/// One alias after the other.
+fn append(alias: &mut Alias, steps: impl IntoIterator<Item = AliasStep>) {
+    for step in steps {
+        if step == AliasStep::Turned && alias.last() == Some(&step) {
+            alias.pop();
+        } else {
+            alias.push(step);
+        }
+    }
+}
+
+fn turn(turned: bool) -> Option<AliasStep> {
+    turned.then_some(AliasStep::Turned)
+}
+
+/// The parameter of a root at the parameter t of a part from `from` to `to`; exact at both ends.
+pub(crate) fn on_part<T: Real>([from, to]: [T; 2], t: T) -> T {
+    if t.re() == 1.0 { to + (to - from) * (t - 1.0) } else { from + (to - from) * t }
+}
+
 /// The roots and points with other identities.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Identities {
-    roots: HashMap<Root, (Root, bool)>,
+    roots: HashMap<Root, (Root, Alias)>,
+    /// Parameters, on their roots, of the ends of edges of declared joins that are parts.
+    parts: HashMap<(Key, u8), [f64; 2]>,
     points: HashMap<Key, Key>,
     /// The roots of declared joins, with the maximum distance of their edges.
     declared: Vec<(Root, f64)>,
@@ -122,24 +171,45 @@ impl Identities {
         }
         let roots: Vec<Root> = self.roots.keys().copied().collect();
         for root in roots {
-            let last = self.root(root);
-            self.roots.insert(root, last);
+            let (last, alias) = self.root(root);
+            let (straight, turned) = self.straightened(root);
+            if straight != last && straight != root {
+                // The same line by the one names of its ends.
+                let mut known = Alias::from_iter(turn(turned));
+                append(&mut known, alias.iter().copied());
+                self.roots.insert(straight, (last, known));
+            }
+            self.roots.insert(root, (last, alias));
         }
     }
 
-    /// The representative of a root, and whether it has the opposite direction.
-    pub fn root(&self, root: Root) -> (Root, bool) {
-        let (mut at, mut against) = self.straightened(root);
-        // Names lead to smaller ones and end; a count keeps that from resting on it.
-        for _ in 0..self.roots.len() {
-            let Some(&(next, turned)) = self.roots.get(&at) else { break };
-            at = next;
-            against ^= turned;
+    /// The representative of a root, and its parameters on that.
+    pub fn root(&self, root: Root) -> (Root, Alias) {
+        let (mut at, mut alias) = (root, Alias::new());
+        // Names lead to others and end; a count keeps that from resting on it.
+        for _ in 0..=2 * self.roots.len() {
+            // A line may have been joined before its ends had their one name.
+            if let Some((next, steps)) = self.roots.get(&at) {
+                append(&mut alias, steps.iter().copied());
+                at = *next;
+                continue;
+            }
             let (straight, turned) = self.straightened(at);
+            append(&mut alias, turn(turned));
+            if straight == at {
+                break;
+            }
             at = straight;
-            against ^= turned;
         }
-        (at, against)
+        (at, alias)
+    }
+
+    /// The parameter on the representative.
+    pub fn on_representative(&self, alias: &Alias, t: f64) -> f64 {
+        alias.iter().fold(t, |t, step| match step {
+            AliasStep::Turned => 1.0 - t,
+            AliasStep::Part { join, edge } => on_part(self.parts[&(*join, *edge)], t),
+        })
     }
 
     /// A straight line between points by the one names of these.
@@ -154,14 +224,15 @@ impl Identities {
         }
     }
 
-    /// The piece on the representative root, and whether that has the opposite direction.
-    pub fn piece(&self, piece: &Piece<f64>) -> (Piece<f64>, bool) {
-        let (root, turned) = self.root(piece.root);
-        let mark = |mark: moldloft_num::trace::Mark<f64>| moldloft_num::trace::Mark {
-            t: if turned { 1.0 - mark.t } else { mark.t },
+    /// The piece on the representative root, and its parameters on that.
+    pub fn piece(&self, piece: &Piece<f64>) -> (Piece<f64>, Alias) {
+        let (root, alias) = self.root(piece.root);
+        let mark = |mark: Mark<f64>| Mark {
+            t: self.on_representative(&alias, mark.t),
             point: mark.point.map(|p| self.point(p)),
         };
-        (Piece { root, from: mark(piece.from), to: mark(piece.to), until: piece.until }, turned)
+        let on = Piece { root, from: mark(piece.from), to: mark(piece.to), until: piece.until };
+        (on, alias)
     }
 }
 
@@ -333,9 +404,15 @@ impl<'g> IdentityFinder<'g> {
         set(parts)
     }
 
+    /// The representative of a root, unless the root is only a part of it.
+    fn whole_root(&self, root: Root) -> Root {
+        let (representative, alias) = self.found.root(root);
+        if is_whole(&alias) { representative } else { root }
+    }
+
     /// Origin of a line: the curve of which it is an image, or the points that it is drawn through.
     fn line_make(&mut self, root: Root) -> Make {
-        let (root, _) = self.found.root(root);
+        let root = self.whole_root(root);
         if let Some(&make) = self.lines.get(&root) {
             return make;
         }
@@ -465,11 +542,70 @@ impl<'g> IdentityFinder<'g> {
                 PLACES.iter().map(|&t| place(0, t).distance(place(1, other(t)))).sum()
             };
             let (alike, against) = (apart(false), apart(true));
-            let turned = (against < alike) ^ (a.from.t > a.to.t) ^ (b.from.t > b.to.t);
-            self.join_line(a.root, b.root, turned);
+            let against = against < alike;
+            let runs = |p: &Piece<f64>| (p.from.t - p.to.t).abs() == 1.0;
+            match [runs(&a), runs(&b)] {
+                [true, true] => {
+                    let turned = against ^ (a.from.t > a.to.t) ^ (b.from.t > b.to.t);
+                    self.join_line(a.root, b.root, turned);
+                }
+                [true, false] => self.join_part(&a, (object.key, 1), &b, against),
+                [false, true] => self.join_part(&b, (object.key, 0), &a, against),
+                [false, false] => continue,
+            }
             let (root, _) = self.found.root(a.root);
             self.found.declared.push((root, tolerance));
         }
+    }
+
+    /// The whole of a root is a part of another, which is an edge of a declared join.
+    fn join_part(
+        &mut self,
+        whole: &Piece<f64>,
+        (join, edge): (Key, u8),
+        part: &Piece<f64>,
+        against: bool,
+    ) {
+        self.found.parts.insert((join, edge), [part.from.t, part.to.t]);
+        let turned = against ^ (whole.from.t > whole.to.t);
+        let steps = turn(turned).into_iter().chain([AliasStep::Part { join, edge }]);
+        if !self.place_on(whole.root, steps, part.root) {
+            return;
+        }
+        let [from, to] = [whole, part].map(|piece| {
+            let known = self.ends(piece.root);
+            [piece.from, piece.to].map(|mark| match mark.t {
+                0.0 => known[0].or(mark.point),
+                1.0 => known[1].or(mark.point),
+                _ => mark.point,
+            })
+        });
+        for k in 0..2 {
+            if let (Some(p), Some(q)) = (from[k], to[if against { 1 - k } else { k }]) {
+                self.join_point(p, q);
+            }
+        }
+    }
+
+    /// A root is on another by these steps from now on; false when that cannot be said of it, or is
+    /// known.
+    fn place_on(
+        &mut self,
+        root: Root,
+        steps: impl IntoIterator<Item = AliasStep>,
+        on: Root,
+    ) -> bool {
+        let [(child, own), (parent, further)] = [root, on].map(|root| self.found.root(root));
+        if child == parent || !is_whole(&own) {
+            return false;
+        }
+        // A turn is its own inverse.
+        let mut alias = own;
+        append(&mut alias, steps);
+        append(&mut alias, further);
+        self.found.roots.insert(child, (parent, alias));
+        self.unions += 1;
+        true
     }
 
     fn join_points(&mut self) {
@@ -507,7 +643,7 @@ impl<'g> IdentityFinder<'g> {
         let mut groups: BTreeMap<Make, Vec<Root>> = BTreeMap::new();
         let mut seen = HashSet::new();
         for root in self.roots.clone() {
-            let (root, _) = self.found.root(root);
+            let root = self.whole_root(root);
             if seen.insert(root) {
                 let make = self.line_make(root);
                 groups.entry(make).or_default().push(root);
@@ -524,13 +660,27 @@ impl<'g> IdentityFinder<'g> {
 
     /// Two roots are one from now on, and so are their ends.
     fn join_line(&mut self, a: Root, b: Root, turned: bool) {
-        let [(a, against_a), (b, against_b)] = [self.found.root(a), self.found.root(b)];
-        let turned = turned ^ against_a ^ against_b;
+        let [(first, on_a), (second, on_b)] = [self.found.root(a), self.found.root(b)];
+        match [is_whole(&on_a), is_whole(&on_b)] {
+            [true, true] => {}
+            // One of them is a part already; so is the other then.
+            [true, false] => {
+                self.place_on(a, turn(turned), b);
+                return;
+            }
+            [false, true] => {
+                self.place_on(b, turn(turned), a);
+                return;
+            }
+            [false, false] => return,
+        }
+        let (a, b) = (first, second);
+        let turned = turned ^ is_turned(&on_a) ^ is_turned(&on_b);
         if a == b {
             return;
         }
         let (kept, other) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
-        self.found.roots.insert(other, (kept, turned));
+        self.found.roots.insert(other, (kept, Alias::from_iter(turn(turned))));
         self.unions += 1;
         let [from, to] = [kept, other].map(|root| self.ends(root));
         for k in 0..2 {

@@ -155,8 +155,8 @@ impl PanelNote {
                 "let both surfaces use the same curve, or a snake of one as the edge of the other"
             }
             PanelNote::Junction { twin: false, .. } => {
-                "let the corner be a bead, ring or magnet on that edge, and the neighbours' edges run \
-                 along parts of its curve"
+                "`Join` the neighbours' edges with parts of that edge, between beads or rings on it: \
+                 `AbsBead b(curve, t); SubCurve part(a, b); Join j(patch.v0, part);`"
             }
             PanelNote::Junction { .. } => {
                 "build both patches on the same point and the same curves: patches are joined by shared objects, not by coordinates"

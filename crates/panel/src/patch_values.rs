@@ -4,8 +4,9 @@
 use crate::border_curves;
 use crate::draft::surface_of;
 use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
+use crate::identity::{AliasStep, on_part};
 use crate::knuckles::ASIDE;
-use crate::roots::{EdgeParameter, MarkSource};
+use crate::roots::{AliasId, EdgeParameter, MarkSource};
 use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
@@ -47,9 +48,16 @@ pub(crate) fn evaluated_all<T: Scalar>(
     (0..count).into_par_iter().map(one).collect()
 }
 
-/// The names of the point objects that plans of edges refer to.
+/// The names of the point objects that plans of edges refer to, and of the joins of aliases.
 pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Key, Arc<str>> {
     let mut names = HashMap::new();
+    for step in structure.aliases.iter().flatten() {
+        if let AliasStep::Part { join, .. } = step
+            && let Some(object) = graph.get(*join)
+        {
+            names.insert(*join, object.name.clone());
+        }
+    }
     for plan in structure.patches.iter().flat_map(|f| &f.plans) {
         let EdgePlan::Segments(segments) = plan else { continue };
         for segment in segments {
@@ -126,6 +134,23 @@ impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
             Value::Point(point) => Some(point),
             _ => None,
         }
+    }
+
+    fn alias_ends(&self, alias: AliasId) -> Option<[T; 2]> {
+        let mut ends = [T::zero(), T::one()];
+        for step in self.structure.aliases.get(alias as usize)? {
+            match step {
+                AliasStep::Turned => ends = ends.map(|t| -t + 1.0),
+                AliasStep::Part { join, edge } => {
+                    let object = self.graph.get(self.graph.find(self.names.get(join)?)?)?;
+                    let Value::Curve(curve) = object.value()? else { return None };
+                    let part = &curve.joins.as_ref()?.0[usize::from(*edge)];
+                    let piece = part.pieces().first().copied()?;
+                    ends = ends.map(|t| on_part([piece.from.t, piece.to.t], t));
+                }
+            }
+        }
+        Some(ends)
     }
 
     fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T> {

@@ -5,7 +5,7 @@
 //! neighbours of a part have their corners among the vertices of the whole.
 
 use crate::draft::Draft;
-use crate::identity::Identities;
+use crate::identity::{Alias, Identities};
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_num::trace::{Edge, Key, Mark, Piece, Root};
@@ -21,23 +21,23 @@ const SAME_MARK: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkSource {
     /// The begin or end of a piece of an edge of a patch.
-    Piece { draft: u32, edge: u8, piece: u16, end: bool, turned: bool },
+    Piece { draft: u32, edge: u8, piece: u16, end: bool, alias: AliasId },
     /// A bead or ring, by its object.
-    Bead { point: Key, turned: bool },
+    Bead { point: Key, alias: AliasId },
     /// A magnet on an edge, 0..4, of its surface.
-    Magnet { point: Key, edge: u8, turned: bool },
+    Magnet { point: Key, edge: u8, alias: AliasId },
     /// A knuckle of a patch that crosses a piece of an edge at a fraction of its length.
-    Knuckle { draft: u32, edge: u8, piece: u16, share: f64, turned: bool },
+    Knuckle { draft: u32, edge: u8, piece: u16, share: f64, alias: AliasId },
 }
 
 impl MarkSource {
-    /// True if the parameter of the source has the opposite direction to the root.
-    pub fn turned(self) -> bool {
+    /// The parameters of the source on the root.
+    pub fn alias(self) -> AliasId {
         match self {
-            MarkSource::Piece { turned, .. }
-            | MarkSource::Bead { turned, .. }
-            | MarkSource::Knuckle { turned, .. }
-            | MarkSource::Magnet { turned, .. } => turned,
+            MarkSource::Piece { alias, .. }
+            | MarkSource::Bead { alias, .. }
+            | MarkSource::Knuckle { alias, .. }
+            | MarkSource::Magnet { alias, .. } => alias,
         }
     }
 }
@@ -60,6 +60,9 @@ impl RootPlace {
     }
 }
 
+/// The number of an alias in [`RootTable::aliases`]; 0 is a root that represents itself.
+pub(crate) type AliasId = u32;
+
 /// The number of a mark among those of all roots.
 pub(crate) type RootPlaceId = u32;
 
@@ -74,6 +77,7 @@ pub(crate) struct RootTable {
     start: Vec<u32>,
     places: Vec<RootPlace>,
     roots: Vec<Root>,
+    aliases: Vec<Alias>,
     identities: Identities,
 }
 
@@ -94,8 +98,8 @@ pub(crate) struct EdgeInterval {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EdgeParameter {
     Piece(u16),
-    /// Inside a piece, at a mark of its root; true for a piece of opposite direction to its root.
-    Inside(u16, MarkSource, bool),
+    /// Inside a piece, at a mark of its root, on which the piece has that alias.
+    Inside(u16, MarkSource, AliasId),
 }
 
 struct RawMark {
@@ -108,20 +112,21 @@ struct RawMark {
 impl RootTable {
     /// All points marked by edges and corners of the patches.
     pub fn new(graph: &Graph<f64>, drafts: &[Draft], identities: Identities) -> Self {
-        let mut all = Self { identities, ..Self::default() };
+        let mut all = Self { identities, aliases: vec![Alias::new()], ..Self::default() };
         let mut raw = Vec::new();
         for (d, draft) in drafts.iter().enumerate() {
             for (k, edge) in draft.edges.edges.iter().enumerate() {
                 let Some(pieces) = pieces(edge, draft.object.key, k) else { continue };
                 for (p, piece) in pieces.iter().enumerate() {
-                    let (piece, turned) = all.identities.piece(piece);
+                    let (piece, alias) = all.identities.piece(piece);
+                    let alias = all.alias_id(alias);
                     for (end, mark) in [piece.from, piece.to].into_iter().enumerate() {
                         let source = MarkSource::Piece {
                             draft: d as u32,
                             edge: k as u8,
                             piece: p as u16,
                             end: end == 1,
-                            turned,
+                            alias,
                         };
                         let root = all.id(piece.root);
                         raw.push(RawMark { root, t: mark.t + 0.0, point: mark.point, source });
@@ -129,11 +134,11 @@ impl RootTable {
                 }
                 for &at in &draft.knuckles[k % 2] {
                     let Some((p, share)) = share_of(&pieces, at) else { continue };
-                    let (piece, turned) = all.identities.piece(&pieces[p]);
+                    let (piece, alias) = all.identities.piece(&pieces[p]);
+                    let alias = all.alias_id(alias);
                     let t = piece.from.t + (piece.to.t - piece.from.t) * share;
                     let (draft, edge, piece_at) = (d as u32, k as u8, p as u16);
-                    let source =
-                        MarkSource::Knuckle { draft, edge, piece: piece_at, share, turned };
+                    let source = MarkSource::Knuckle { draft, edge, piece: piece_at, share, alias };
                     let root = all.id(piece.root);
                     raw.push(RawMark { root, t: t + 0.0, point: None, source });
                 }
@@ -157,6 +162,26 @@ impl RootTable {
     /// The one name of a point.
     pub fn point(&self, key: Key) -> Key {
         self.identities.point(key)
+    }
+
+    /// The aliases in use.
+    pub fn aliases(&self) -> &[Alias] {
+        &self.aliases
+    }
+
+    /// The own parameter of a root with that alias, at one of its representative.
+    pub fn own_parameter(&self, alias: AliasId, t: f64) -> f64 {
+        let alias = &self.aliases[alias as usize];
+        let [from, to] = [0.0, 1.0].map(|end| self.identities.on_representative(alias, end));
+        (t - from) / (to - from)
+    }
+
+    fn alias_id(&mut self, alias: Alias) -> AliasId {
+        let known = self.aliases.iter().position(|a| *a == alias);
+        known.unwrap_or_else(|| {
+            self.aliases.push(alias);
+            self.aliases.len() - 1
+        }) as AliasId
     }
 
     fn id(&mut self, root: Root) -> usize {
@@ -186,11 +211,11 @@ impl RootTable {
                 };
                 let name = self.identities.point(key);
                 for (root, t, source) in places_of(point, key) {
-                    let (root, against) = self.identities.root(root);
+                    let (root, alias) = self.identities.root(root);
                     // A root of no patch needs no marks.
                     let Some(&root) = self.ids.get(&root) else { continue };
-                    let (t, source) =
-                        if against { (1.0 - t, against_root(source)) } else { (t, source) };
+                    let t = self.identities.on_representative(&alias, t);
+                    let source = with_alias(source, self.alias_id(alias));
                     raw.push(RawMark { root, t: t + 0.0, point: Some(name), source });
                 }
             }
@@ -251,7 +276,8 @@ impl RootTable {
     pub fn spans(&self, pieces: &[Piece<f64>]) -> Vec<EdgeInterval> {
         let mut spans = Vec::with_capacity(pieces.len());
         for (p, piece) in pieces.iter().enumerate() {
-            let (piece, turned) = self.identities.piece(piece);
+            let (piece, alias) = self.identities.piece(piece);
+            let alias = self.aliases.iter().position(|a| *a == alias).unwrap_or(0) as AliasId;
             let root = self.ids[&piece.root];
             let (from, to) =
                 (self.find(root, piece.from.t + 0.0), self.find(root, piece.to.t + 0.0));
@@ -273,7 +299,7 @@ impl RootTable {
                 let until = if next == to {
                     EdgeParameter::Piece(p)
                 } else {
-                    EdgeParameter::Inside(p, self.places[next as usize].source, turned)
+                    EdgeParameter::Inside(p, self.places[next as usize].source, alias)
                 };
                 let interval = Some(at.min(next));
                 spans.push(EdgeInterval { interval, backwards, ends: [at, next], until });
@@ -298,17 +324,15 @@ fn share_of(pieces: &[Piece<f64>], at: f64) -> Option<(usize, f64)> {
     (at < pieces[p].until - SAME_MARK && at > begin + SAME_MARK).then_some((p, share))
 }
 
-fn against_root(source: MarkSource) -> MarkSource {
-    match source {
-        MarkSource::Bead { point, .. } => MarkSource::Bead { point, turned: true },
-        MarkSource::Magnet { point, edge, .. } => MarkSource::Magnet { point, edge, turned: true },
-        MarkSource::Piece { draft, edge, piece, end, .. } => {
-            MarkSource::Piece { draft, edge, piece, end, turned: true }
-        }
-        MarkSource::Knuckle { draft, edge, piece, share, .. } => {
-            MarkSource::Knuckle { draft, edge, piece, share, turned: true }
-        }
+fn with_alias(source: MarkSource, of: AliasId) -> MarkSource {
+    let mut source = source;
+    match &mut source {
+        MarkSource::Piece { alias, .. }
+        | MarkSource::Bead { alias, .. }
+        | MarkSource::Knuckle { alias, .. }
+        | MarkSource::Magnet { alias, .. } => *alias = of,
     }
+    source
 }
 
 /// Positions of a point on roots, by its own data.
@@ -317,11 +341,7 @@ fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource);
     if let Some(place) = &point.on_curve {
         let (curve, t) = (&place.0, place.1);
         if let [piece] = curve.pieces().as_slice() {
-            places.push((
-                piece.root,
-                on_root(piece, t),
-                MarkSource::Bead { point: key, turned: false },
-            ));
+            places.push((piece.root, on_root(piece, t), MarkSource::Bead { point: key, alias: 0 }));
         }
     }
     if let Some(place) = &point.on_surface
@@ -338,7 +358,7 @@ fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource);
             if let Some(pieces) = pieces(edge, owner, k)
                 && let [piece] = pieces.as_slice()
             {
-                let source = MarkSource::Magnet { point: key, edge: k as u8, turned: false };
+                let source = MarkSource::Magnet { point: key, edge: k as u8, alias: 0 };
                 places.push((piece.root, on_root(piece, along), source));
             }
         }

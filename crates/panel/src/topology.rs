@@ -4,6 +4,7 @@
 use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
 use crate::edges::{DivisionRun, EdgePlan, Shares, reversed, shares_of};
+use crate::identity::Alias;
 use crate::notes::{ChainStep, PanelNote};
 use crate::roots::{EdgeInterval, EdgeParameter, IntervalId, RootTable};
 use moldloft_model::Graph;
@@ -86,6 +87,8 @@ pub(crate) struct PanelTopology {
     pub points: Vec<Vec<Key>>,
     /// The stretches of declared joins, with the maximum distance of their edges.
     pub declared: Vec<(IntervalId, f64)>,
+    /// The aliases of roots.
+    pub aliases: Vec<Alias>,
 }
 
 /// The skeleton and the notes from its construction.
@@ -337,10 +340,10 @@ impl TopologySolver<'_, '_> {
         for span in self.spans[patch][k].iter().flatten() {
             stops.push(match span.until {
                 EdgeParameter::Piece(p) => pieces[usize::from(p)].until,
-                EdgeParameter::Inside(p, _, turned) => {
+                EdgeParameter::Inside(p, _, alias) => {
                     let piece = &pieces[usize::from(p)];
                     let t = self.roots.places()[span.ends[1] as usize].parameter();
-                    let t = if turned { 1.0 - t } else { t };
+                    let t = self.roots.own_parameter(alias, t);
                     let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
                     begin(p) + (piece.until - begin(p)) * share
                 }
@@ -619,7 +622,7 @@ impl TopologySolver<'_, '_> {
         } else {
             Vec::new()
         };
-        PanelTopology { patches, points, declared }
+        PanelTopology { patches, points, declared, aliases: self.roots.aliases().to_vec() }
     }
 
     fn edge(

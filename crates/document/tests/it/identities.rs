@@ -571,11 +571,11 @@ fn equal_numbers_join_nothing_but_are_reported() {
 }
 
 #[test]
-fn a_join_takes_whole_edges() {
+fn a_join_takes_a_whole_edge() {
     let text = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
         Line ab(A, B); Line cd(C, D); RuledSurf top(ab, cd); EdgeSnake e(1, top); AbsRing r(e, 0); AbsRing s(e, 0.5);
-        SubSnake half(r, s);";
-    let d = open(&format!("{text} Join j(top.v1, half);"));
+        AbsRing t(e, 1); SubSnake half(r, s); SubSnake rest(s, t);";
+    let d = open(&format!("{text} Join j(rest, half);"));
     assert_eq!(ids(&d), ["not-an-edge"]);
     assert!(reported(&d)[0].contains("a part of an edge"), "{:?}", reported(&d));
     let d = open(&format!("{text} Join j(top.v2, half);"));

@@ -404,6 +404,89 @@ fn corners_that_miss_their_neighbours_are_told() {
     assert_eq!(d.panelled().unwrap().mesh.report().euler, 1, "a disc");
 }
 
+/// Two strips of their own points along one edge of a third, which is a line or a curve of three points.
+fn strips_at_an_edge(lines: [&str; 2], joins: &str, counts: [&str; 3]) -> String {
+    let [am, mb] = lines;
+    let [top, left, right] = counts;
+    format!(
+        "param float t = 0.35 in [0.05, 0.95]; param float h = 1 in [0.5, 3];
+         AbsPoint A(0, 0, 0); AbsPoint B(4, 0, h); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
+         AbsPoint O(0, 0, 0); AbsPoint M(4 * t, 0, h * t); AbsPoint N(4, 0, h);
+         AbsPoint E(0, -1, 0); AbsPoint F(4, -1, 0); AbsPoint G(2, -1, 0);
+         Line ab(A, B); Line cd(C, D); Line ef(E, G); Line gf(G, F); {am} {mb}
+         RuledSurf top(ab, cd{top}); RuledSurf left(am, ef{left}); RuledSurf right(mb, gf{right});
+         AbsBead a(ab, 0); AbsBead m(ab, t); AbsBead b(ab, 1); SubCurve am0(a, m); SubCurve bm0(b, m);
+         {joins}"
+    )
+}
+
+/// A whole edge is joined to a part of another: the corner between two neighbours is a vertex of the
+/// third's edge at all values of the parameters, with the same numbers.
+#[test]
+fn whole_edges_join_parts_of_others() {
+    let counts = [
+        [", divisions = {10, 2}", ", divisions = {4, 2}", ""],
+        ["", ", divisions = {4, 2}", ", divisions = {6, 2}"],
+        [", divisions = {7, 3}", "", ""],
+    ];
+    let lines = ["Line am(O, M); Line mb(M, N);", "Line am(M, O); Line mb(N, M);"];
+    let joins = [
+        "Join j(left.v0, am0); Join k(right.v0, bm0);",
+        "Join j(am0, left.v0); Join k(bm0, right.v0);",
+        "EdgeSnake e(1, left); Join k(right.v0, bm0); Join j(e, am0); Join g(left.u1, right.u0);",
+        "Join g(right.u0, left.u1); Join j(left.v0, am0); Join k(right.v0, bm0);",
+    ];
+    for (n, (line, join)) in lines.iter().flat_map(|l| joins.map(|j| (l, j))).enumerate() {
+        let line = line.split_inclusive(';').collect::<Vec<_>>();
+        // Turned strips meet at their other ends.
+        let join = if n < joins.len() {
+            join.to_string()
+        } else {
+            join.replace("left.u1, right.u0", "left.u0, right.u1")
+                .replace("right.u0, left.u1", "right.u1, left.u0")
+        };
+        let foot = if n < joins.len() { "" } else { "turned" };
+        for counts in counts {
+            let mut text = strips_at_an_edge([line[0], line[1]], &join, counts);
+            if foot == "turned" {
+                text =
+                    text.replace("Line ef(E, G); Line gf(G, F);", "Line ef(G, E); Line gf(F, G);");
+            }
+            let mut d = sound(&text);
+            let at_home = panelled(&mut d).panelling.topology().clone();
+            for k in 0..40 {
+                let t = 0.06 + 0.0221 * f64::from(k);
+                d.set(&[("t".into(), t), ("h".into(), 0.5 + 0.06 * f64::from(k))]).unwrap();
+                let p = panelled(&mut d);
+                assert_eq!(*p.panelling.topology(), at_home, "{text} at {t}");
+                assert!(p.panelling.remarks().is_empty(), "{:?}", p.panelling.remarks());
+                let junctions = d.junctions().unwrap();
+                assert!(junctions.is_empty(), "{junctions:?}");
+                let report = p.mesh.report();
+                assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
+            }
+            d.set(&[("t".into(), 0.35), ("h".into(), 1.0)]).unwrap();
+            let exact = d.jacobian(&["t".into()]).unwrap();
+            let mut at = |t: f64| {
+                d.set(&[("t".into(), t)]).unwrap();
+                panelled(&mut d).mesh.positions().to_vec()
+            };
+            let (low, high) = (at(0.35 - 1e-5), at(0.35 + 1e-5));
+            for (k, d) in exact[0].iter().enumerate() {
+                let difference = (high[k] - low[k]) / 2e-5;
+                assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
+            }
+        }
+    }
+    let apart = strips_at_an_edge(["Line am(O, M);", "Line mb(M, N);"], joins[0], counts[0])
+        .replace("AbsPoint M(4 * t,", "AbsPoint M(4 * t + 0.1,");
+    let d = open(&apart);
+    assert!(ids(&d).contains(&"edges-apart".to_string()), "{:?}", ids(&d));
+    let parts =
+        strips_at_an_edge(["Line am(O, M);", "Line mb(M, N);"], "Join j(am0, bm0);", counts[0]);
+    assert!(ids(&open(&parts)).contains(&"not-an-edge".to_string()));
+}
+
 /// A cone of two grids, whose apex is a row of one place, and a plane that ends on its side.
 fn cone_and_plane(tags: &str, join: &str) -> String {
     format!(

@@ -1,6 +1,6 @@
 //! Edges declared to be one.
 
-use moldloft_num::trace::{Piece, Trace};
+use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
 use std::sync::Arc;
@@ -9,8 +9,9 @@ use std::sync::Arc;
 /// from different objects. The result is the first edge.
 ///
 /// Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
-/// Curves and snakes along whole edges are accepted too; the directions may be opposite. Patches on
-/// the same curves and points join without a declaration. Edges farther apart than the tolerance at
+/// Curves and snakes along edges are accepted too; the directions may be opposite. One of the two may
+/// be a part of an edge, such as a `SubCurve` between beads: the whole other edge is on that part.
+/// Patches on the same curves and points join without a declaration. Edges farther apart than the tolerance at
 /// any point are an error; the vertices are those of the patch declared first.
 #[derive(Kind)]
 #[kind(
@@ -38,8 +39,14 @@ impl<T: Real> Build<T> for Join<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { first, second, tolerance } = self;
         let tolerance = tolerance.map_or(context.tolerance, |t| t.re());
-        whole(&first, Self::FIRST)?;
-        whole(&second, Self::SECOND)?;
+        let parts = [is_part(&first, Self::FIRST)?, is_part(&second, Self::SECOND)?];
+        if parts == [true; 2] {
+            return Err(CallError::new("not-an-edge", "two parts of edges are not joined")
+                .expected("one whole edge of a patch, such as `a.v1`, or a curve along one")
+                .found("a part of an edge")
+                .help("divide one of the patches where the other ends")
+                .in_field(Self::SECOND));
+        }
         // The widest gap in equal and in opposite direction, and its parameter on the first edge.
         let gap = |turned: bool| {
             let mut widest = (0.0f64, 0.0, Vec3::zero());
@@ -77,20 +84,18 @@ impl<T: Real> Build<T> for Join<T> {
     }
 }
 
-/// Error unless the argument is one whole edge or one whole curve.
-fn whole<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<(), CallError> {
+/// True for a part of an edge or of a curve, false for all of it.
+fn is_part<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<bool, CallError> {
     let pieces = edge.pieces();
-    let runs = |p: &Piece<T>| {
-        let ends = [p.from.t.re(), p.to.t.re()];
-        ends == [0.0, 1.0] || ends == [1.0, 0.0]
-    };
     match pieces.as_slice() {
-        [one] if runs(one) => Ok(()),
-        other => Err(CallError::new("not-an-edge", "only whole edges are joined")
-            .expected("one whole edge of a patch, such as `a.v1`, or a curve along one")
+        [one] => {
+            let ends = [one.from.t.re(), one.to.t.re()];
+            Ok(ends != [0.0, 1.0] && ends != [1.0, 0.0])
+        }
+        other => Err(CallError::new("not-an-edge", "only edges in one piece are joined")
+            .expected("an edge of a patch, such as `a.v1`, or a curve along one")
             .found(match other {
                 [] => "a point, or a curve without a name".to_string(),
-                [_] => "a part of an edge".to_string(),
                 many => format!("{} pieces", many.len()),
             })
             .help("join the patches' edges piece by piece, or build both on one curve")
