@@ -89,6 +89,7 @@ fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallErro
 /// An edge of zero length, a pole, takes the spacing of the opposite one.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     cheap,
@@ -213,6 +214,7 @@ const EDGES: [(&str, GridSide); 4] = [
 /// error, unless `folded` is "allow".
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vectors,
     function,
     name = "elliptic",
@@ -474,6 +476,7 @@ fn on_surface<T: Scalar>(
 /// long).
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "hyperbolic",
@@ -669,6 +672,7 @@ fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {
 /// at edges of zero length are ignored.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "quality",
@@ -709,6 +713,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
 /// The number of folded cells of a grid or a block.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Number,
     function,
     name = "folds",
@@ -741,6 +746,7 @@ impl<T: Scalar> Build<T> for Folds<T> {
 /// value and the cell that is worst; of a block the figures of OpenFOAM's checkMesh and the least scaled Jacobian.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Text,
     function,
     name = "report",

@@ -93,6 +93,7 @@ fn marched<T: Scalar>(
 /// angle: a C-grid has better cells there.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vectors,
     function,
     name = "o_grid",
@@ -131,6 +132,7 @@ impl<T: Scalar> Build<T> for OGrid<T> {
 /// make an O-grid.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vectors,
     function,
     name = "c_grid",
@@ -186,6 +188,7 @@ impl<T: Scalar> Build<T> for CGrid<T> {
 /// With `sweeps` 0 the grid is that of `tfi`.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = List,
     function,
     name = "h_grid",

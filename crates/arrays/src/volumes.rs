@@ -95,6 +95,7 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
 /// error.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Block,
     function,
     name = "elliptic_block",

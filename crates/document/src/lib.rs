@@ -47,6 +47,8 @@ pub use editor::{
 pub use measures::blocks::Blocked;
 pub use measures::contour_lines::ContourSection;
 pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immersion, WeightItem};
+#[cfg(not(target_family = "wasm"))]
+pub use measures::gradients::{GradientMode, Gradients, WeightedOutput};
 pub use measures::hydrostatics::HydrostaticsOptions as FloatOptions;
 pub use measures::surface_fields::PatchAnalysis;
 pub use moldloft_lang::run::program::ArgumentInText;

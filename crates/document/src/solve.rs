@@ -39,7 +39,7 @@ pub struct SolveReport {
     /// How it ended.
     pub status: SolveStatus,
     /// The derivatives of the conditions by the unknowns there, by rows.
-    jacobian: Vec<Vec<f64>>,
+    pub(crate) jacobian: Vec<Vec<f64>>,
     /// The declaration.
     span: Span,
 }

@@ -2,7 +2,8 @@
 //!
 //! Everything that evaluates geometry in Moldloft is generic over one scalar trait, [`Real`], with
 //! that one bound. Plain runs use `f64`; a run with derivatives uses [`Dual`], a number that carries
-//! its exact derivative in a few directions. Derivatives by the shape parameters `t`, `u`, `v` are
+//! its exact derivative in a few directions, or [`Rev`], a number that records what it is made of, for
+//! derivatives by many inputs at once. Derivatives by the shape parameters `t`, `u`, `v` are
 //! *jets* ([`Jet`]): truncated Taylor numbers over the scalar, so a shape is written once, as a
 //! formula, and yields its tangents and curvatures by the same code.
 //!
@@ -27,6 +28,7 @@ mod quadrature;
 mod rational;
 mod real;
 mod reparametrization;
+mod rev;
 mod roots;
 mod shape;
 mod solid;
@@ -52,6 +54,7 @@ pub use reparametrization::{
     Composed, Reparametrization, ReparametrizationJet, inv_reparametrization,
     inv_reparametrization_in, lift_reparametrization,
 };
+pub use rev::{Adjoints, Rev, Tape};
 pub use roots::{NoRoot, find_root};
 pub use shape::{
     Curve, CurveFormula, CurveJet, Field, InnerPlane, Order, SurfJet, Surface, SurfaceFormula,

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// The scalar that all geometry is generic over: `f64`, a [`crate::Dual`], or a [`crate::Jet`].
+/// The scalar that all geometry is generic over: `f64`, a [`crate::Dual`], a [`crate::Rev`], or a [`crate::Jet`].
 ///
 /// Comparisons and branches look at [`Real::re`] only, so control flow is the same for every
 /// scalar. Elementary functions are those of `libm`: the same bits on every platform.
@@ -36,6 +36,9 @@ pub trait Real:
     /// True when the parts after the first are first derivatives, each in a direction of its own.
     const FIRST_ORDER: bool;
 
+    /// True when derivatives are on a tape: the parts after the first do not exist.
+    const TAPED: bool = false;
+
     /// The real part: the number without its derivatives.
     fn re(self) -> f64;
 
@@ -44,6 +47,15 @@ pub trait Real:
 
     /// The number whose part `k` is `part(k)`.
     fn from_parts(part: impl FnMut(usize) -> f64) -> Self;
+
+    /// The number `value` with the derivatives of the sum of `rate * x`.
+    #[inline(always)]
+    fn linear(value: f64, terms: &[(f64, Self)]) -> Self {
+        Self::from_parts(|k| match k {
+            0 => value,
+            _ => terms.iter().map(|(rate, x)| x.part(k) * rate).sum(),
+        })
+    }
 
     /// True when the number and all its derivatives are finite.
     fn is_finite(self) -> bool;
@@ -284,6 +296,16 @@ macro_rules! real_by_chain {
         impl<$($gen)*> Real for $ty {
             const PARTS: usize = $parts;
             const FIRST_ORDER: bool = $first;
+            const TAPED: bool = <$base as Real>::TAPED;
+            #[inline(always)]
+            fn linear(value: f64, terms: &[(f64, Self)]) -> Self {
+                let mut sum = Self::from(0.0);
+                for (rate, x) in terms {
+                    sum += x.map(|a| a * *rate);
+                }
+                *sum.value_mut() = <$base as Real>::linear(value, &[(1.0, sum.value())]);
+                sum
+            }
             #[inline(always)]
             fn re(self) -> f64 { self.value().re() }
             #[inline(always)]

@@ -4,9 +4,10 @@
 use crate::identity::on_part;
 use crate::roots::{AliasId, EdgeParameter, MarkSource, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Order, Real, Vec3};
 use moldloft_parallel::prelude::*;
 use moldloft_registry::{Point, Scalar, SurfaceRef};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Number of points of a patch evaluated together.
@@ -146,27 +147,91 @@ fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Optio
 /// The points of a patch whose edges have their divisions at `edges`; that of (i, j) at
 /// `[i * (nv + 1) + j]`.
 pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4]) -> Vec<Vec3<T>> {
-    let [south, east, north, west] = edges;
-    let (nu, nv) = (south.len(), west.len());
-    let mut points = vec![Vec3::zero(); nu * nv];
-    let even = |a: &[T], b: &[T]| a.iter().zip(b).all(|(x, y)| x.bits_eq(*y) && x.is_constant());
-    if even(south, north) && even(west, east) {
-        let real = |x: &[T]| x.iter().map(|t| t.re()).collect::<Vec<f64>>();
-        surface.grid(&real(south), &real(west), &mut points, None);
-        return points;
-    }
-    let uv = parameters(edges);
-    if uv.iter().flatten().all(|x| x.is_constant()) {
-        let real: Vec<[f64; 2]> = uv.iter().map(|p| p.map(T::re)).collect();
-        // In chunks on all threads: one patch may be most of a model.
-        let parts = points.par_chunks_mut(PART).zip(real.par_chunks(PART));
-        parts.for_each(|(points, uv)| surface.scattered(uv, points));
-    } else {
-        for (p, [u, v]) in points.iter_mut().zip(uv) {
-            *p = surface.jet(u, v, moldloft_num::Order::Zero).p;
+    let mut points = vec![Vec3::zero(); edges[0].len() * edges[3].len()];
+    match PatchParameters::of(edges) {
+        PatchParameters::Grid(us, vs) => surface.grid(&us, &vs, &mut points, None),
+        PatchParameters::Fixed(uv) => {
+            // In chunks on all threads: one patch may be most of a model.
+            let parts = points.par_chunks_mut(PART).zip(uv.par_chunks(PART));
+            parts.for_each(|(points, uv)| surface.scattered(uv, points));
         }
+        PatchParameters::Moving(uv) => at_moving(surface, &uv, &mut points),
     }
     points
+}
+
+/// The same in parts of about `most` points, one after the other: those of a range of which `wanted` says so, each with
+/// the index of its first.
+pub(crate) fn evaluated_in_parts<T: Scalar>(
+    surface: &SurfaceRef<T>,
+    edges: &[Vec<T>; 4],
+    most: usize,
+    wanted: impl Fn(Range<usize>) -> bool,
+    mut each: impl FnMut(usize, &[Vec3<T>]),
+) {
+    let mut points = Vec::new();
+    let mut part = |range: Range<usize>, fill: &dyn Fn(&mut [Vec3<T>])| {
+        if wanted(range.clone()) {
+            points.resize(range.len(), Vec3::zero());
+            fill(&mut points);
+            each(range.start, &points);
+        }
+    };
+    match PatchParameters::of(edges) {
+        PatchParameters::Grid(us, vs) => {
+            let (rows, nv) = ((most / vs.len()).max(1), vs.len());
+            for (k, us) in us.chunks(rows).enumerate() {
+                let first = k * rows * nv;
+                let range = first..first + us.len() * nv;
+                part(range, &|points| surface.grid(us, &vs, points, None));
+            }
+        }
+        PatchParameters::Fixed(uv) => {
+            for (k, uv) in uv.chunks(most).enumerate() {
+                let range = k * most..k * most + uv.len();
+                part(range, &|points| surface.scattered(uv, points));
+            }
+        }
+        PatchParameters::Moving(uv) => {
+            for (k, uv) in uv.chunks(most).enumerate() {
+                let range = k * most..k * most + uv.len();
+                part(range, &|points| at_moving(surface, uv, points));
+            }
+        }
+    }
+}
+
+/// The parameters of the points of a patch.
+enum PatchParameters<T> {
+    /// All u with all v.
+    Grid(Vec<f64>, Vec<f64>),
+    /// Pairs that no parameter of the model moves.
+    Fixed(Vec<[f64; 2]>),
+    /// Pairs that move.
+    Moving(Vec<[T; 2]>),
+}
+
+impl<T: Scalar> PatchParameters<T> {
+    fn of(edges: &[Vec<T>; 4]) -> Self {
+        let [south, east, north, west] = edges;
+        let even =
+            |a: &[T], b: &[T]| a.iter().zip(b).all(|(x, y)| x.bits_eq(*y) && x.is_constant());
+        if even(south, north) && even(west, east) {
+            let real = |x: &[T]| x.iter().map(|t| t.re()).collect::<Vec<f64>>();
+            return Self::Grid(real(south), real(west));
+        }
+        let uv = parameters(edges);
+        match uv.iter().flatten().all(|x| x.is_constant()) {
+            true => Self::Fixed(uv.iter().map(|p| p.map(T::re)).collect()),
+            false => Self::Moving(uv),
+        }
+    }
+}
+
+fn at_moving<T: Scalar>(surface: &SurfaceRef<T>, uv: &[[T; 2]], points: &mut [Vec3<T>]) {
+    for (p, &[u, v]) in points.iter_mut().zip(uv) {
+        *p = surface.jet(u, v, Order::Zero).p;
+    }
 }
 
 /// The parameters of the points of a patch whose edges have their divisions at `edges`.

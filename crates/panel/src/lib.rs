@@ -26,6 +26,8 @@ mod orientation;
 mod outlines;
 mod panelling;
 mod patch_values;
+#[cfg(not(target_family = "wasm"))]
+mod pulled;
 mod roots;
 mod shared_edges;
 mod skin;

@@ -371,14 +371,24 @@ impl Panelling {
         let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
         let last = positions.len() - bodies.len();
         positions[last..].copy_from_slice(bodies);
-        let patches = self.structure.patches.iter().zip(points).zip(&self.joined.vertices);
+        self.for_each_place(|vertex, patch, at| positions[vertex] = points[patch][at]);
+        positions
+    }
+
+    /// The points of patches that are a vertex: vertex, patch, index in the patch. The last one counts.
+    pub(crate) fn for_each_place(&self, mut each: impl FnMut(usize, usize, usize)) {
+        let patches = self.structure.patches.iter().zip(&self.joined.vertices).enumerate();
         // Backwards, so that the first patch has the last word.
-        for ((_, points), vertices) in patches.rev().filter(|((f, _), _)| f.meshed) {
-            for (&vertex, &p) in vertices.iter().zip(points.iter()) {
-                positions[vertex as usize] = p;
+        for (patch, (_, vertices)) in patches.rev().filter(|(_, (f, _))| f.meshed) {
+            for (at, &vertex) in vertices.iter().enumerate() {
+                each(vertex as usize, patch, at);
             }
         }
-        positions
+    }
+
+    /// The points of a patch as evaluated, at the state that the panelling was made of.
+    pub(crate) fn own_points(&self, patch: usize) -> &[Vec3] {
+        &self.raw[patch]
     }
 }
 
@@ -425,7 +435,7 @@ fn set_zeros<T: Real>(
         for k in indices(divisions, part) {
             let mut p = points[k].to_array();
             let x = &mut p[usize::from(axis)];
-            *x = T::from_parts(|part| if part == 0 { 0.0 } else { x.part(part) });
+            *x = T::linear(0.0, &[(1.0, *x)]);
             points[k] = p.into();
         }
     }

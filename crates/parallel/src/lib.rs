@@ -27,6 +27,9 @@ pub use many as prelude;
 #[cfg(target_family = "wasm")]
 pub use single as prelude;
 
+#[cfg(not(target_family = "wasm"))]
+pub use pool::on_one_thread;
+
 #[cfg(test)]
 mod tests {
     /// Each result by both sets of traits.

@@ -1,6 +1,7 @@
 //! The pool of this process: Rayon's own in the first one that works in parallel, a new one in each of its descendants.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::cell::Cell;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -36,8 +37,32 @@ impl Generation {
     }
 }
 
+thread_local! {
+    /// True on a thread that does all the work of its loops.
+    static ALONE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Size of the stack of a thread that works alone: that of a main thread.
+const STACK_BYTES: usize = 16 << 20;
+
+/// Does work with all its parallel loops on one thread, a new one: what is kept by thread is found again.
+///
+/// # Panics
+/// When the system has no thread.
+pub fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    let builder = ThreadPoolBuilder::new().num_threads(1).stack_size(STACK_BYTES);
+    let alone = builder.build().expect("a thread can be started");
+    alone.install(|| {
+        ALONE.set(true);
+        work()
+    })
+}
+
 /// Does work with its parallel loops on threads of this process.
 pub(crate) fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    if ALONE.get() {
+        return work();
+    }
     in_pool_of(&GENERATIONS, std::process::id(), work)
 }
 
@@ -86,5 +111,17 @@ mod tests {
         in_pool_of(&generations, 1, || ());
         let inner = || in_pool_of(&generations, 2, thread);
         assert!(in_pool_of(&generations, 2, inner).is_some());
+    }
+
+    #[test]
+    fn one_thread_does_all_the_work_of_its_loops() {
+        use crate::many::*;
+        let threads = on_one_thread(|| {
+            let inner = || (0..8u32).into_par_iter().map(|_| std::thread::current().id());
+            let outer = (0..8u32).into_par_iter().flat_map_iter(|_| inner().collect::<Vec<_>>());
+            outer.collect::<Vec<_>>()
+        });
+        assert_eq!(threads.len(), 64);
+        assert!(threads.iter().all(|id| *id == threads[0] && *id != std::thread::current().id()));
     }
 }

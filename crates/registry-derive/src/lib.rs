@@ -20,7 +20,8 @@
 //! last argument `relabel`, which acts on their result; see `moldloft_registry::relabelled`. `sweep
 //! = [bead, point]`: the fields of a bead and of a point that the model moves; see
 //! `moldloft_registry::Row::sweep`. `role`: the role of the kind for the interpreter besides its
-//! value, a `moldloft_registry::Role`. Each field has a constant that names it in faults,
+//! value, a `moldloft_registry::Role`. `forward`: derivatives by forward differentiation alone; other
+//! rows have a body for numbers of a tape, too. Each field has a constant that names it in faults,
 //! `Self::C1` for `c1`: `fault.in_field(Self::C1)`. Field: `default` (absent) or `default = 3`,
 //! `min`, `max`, `min_items`, `angle`, `variadic`.
 
@@ -50,6 +51,7 @@ struct KindOptions {
     cheap: bool,
     shape: bool,
     relabel: bool,
+    forward: bool,
     sweep: Option<Vec<syn::Ident>>,
     role: Option<Expr>,
 }
@@ -228,6 +230,12 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         quote!()
     };
 
+    let rev = match options.forward {
+        true => quote!(None),
+        false => quote!(::moldloft_registry::taped!(
+            #ident::<::moldloft_registry::export::Rev>::call
+        )),
+    };
     let positions = 0..constants.len();
     let (generics, parameters, conditions) = input.generics.split_for_impl();
     Ok(quote!(
@@ -267,6 +275,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     body: ::moldloft_registry::Implementation::Native {
                         plain: #ident::<f64>::call,
                         dual: #ident::<::moldloft_registry::export::Dual4>::call,
+                        rev: #rev,
                     },
                 }
             }
@@ -344,6 +353,7 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                 Meta::Path(path) if path.is_ident("cheap") => options.cheap = true,
                 Meta::Path(path) if path.is_ident("shape") => options.shape = true,
                 Meta::Path(path) if path.is_ident("relabel") => options.relabel = true,
+                Meta::Path(path) if path.is_ident("forward") => options.forward = true,
                 other => return Err(syn::Error::new_spanned(other, "unknown option of a kind")),
             }
         }

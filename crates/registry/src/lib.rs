@@ -24,6 +24,7 @@ mod relabelled;
 mod row;
 mod search_report;
 mod sweep;
+mod taped;
 mod triangle_body;
 mod value;
 
@@ -60,5 +61,5 @@ pub mod export {
     pub const fn field_id(position: usize) -> crate::FieldId {
         crate::FieldId::at(position)
     }
-    pub use moldloft_num::{Dual4, Real};
+    pub use moldloft_num::{Dual4, Real, Rev};
 }

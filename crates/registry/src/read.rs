@@ -4,7 +4,7 @@ use crate::{
     CallError, Class, CurveRef, FieldRef, Point, ReparametrizationRef, SetRef, SolidRef,
     SurfaceRef, TriangleBody, Value,
 };
-use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
+use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Rev, Vec3};
 use std::sync::Arc;
 
 /// A type that an argument can be read as: the type of a kind's field.
@@ -57,6 +57,7 @@ macro_rules! number_field {
 }
 number_field!(f64);
 number_field!(Dual4);
+number_field!(Rev);
 
 fn whole<T: Real>(value: &Value<T>) -> Result<f64, CallError> {
     let Value::Number(x) = value else { return wrong(Class::Integer, value) };

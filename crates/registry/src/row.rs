@@ -3,7 +3,7 @@
 use crate::{CallError, Class, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_budget::Budget;
-use moldloft_num::{Dual4, Real};
+use moldloft_num::{Dual4, Real, Rev};
 use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -187,6 +187,8 @@ pub enum Implementation {
         plain: Call<f64>,
         /// For dual numbers.
         dual: Call<Dual4>,
+        /// For numbers of a tape; `None` where derivatives are those of forward differentiation alone.
+        rev: Option<Call<Rev>>,
     },
     /// A function from outside.
     Foreign(Arc<dyn Foreign>),

@@ -345,6 +345,48 @@ impl<T: Real> Value<T> {
         layers.iter().all(|layer| of(layer) == Some(first)).then_some(Value::Block(layers))
     }
 
+    /// The value with each of its numbers mapped, in the order of memory; of a point its position. `None` for what is more
+    /// than numbers and texts: shapes, planes, sets.
+    pub fn map_numbers<S: Real>(&self, map: &mut impl FnMut(T) -> S) -> Option<Value<S>> {
+        let mut vector = |v: Vec3<T>| {
+            let [x, y, z] = v.to_array();
+            Vec3::new(map(x), map(y), map(z))
+        };
+        Some(match self {
+            Value::Unset => Value::Unset,
+            Value::Text(text) => Value::Text(text.clone()),
+            Value::Number(x) => Value::Number(map(*x)),
+            Value::Vector(v) => Value::Vector(vector(*v)),
+            Value::Point(p) => Value::Vector(vector(p.xyz)),
+            Value::Numbers(a) => Value::Numbers(Arc::new(Array {
+                shape: a.shape,
+                items: a.items.iter().map(|&x| map(x)).collect(),
+            })),
+            Value::Vectors(a) => {
+                Value::Vectors(Arc::new(Vectors::new(a.shape, a.iter().map(vector))))
+            }
+            Value::List(items) => {
+                let items: Option<Vec<_>> = items.iter().map(|v| v.map_numbers(map)).collect();
+                Value::list(items?)
+            }
+            Value::Block(layers) => {
+                let layers: Option<Vec<_>> = layers.iter().map(|v| v.map_numbers(map)).collect();
+                Value::block(layers?)?
+            }
+            _ => return None,
+        })
+    }
+
+    /// All its numbers in the order of [`Self::map_numbers`].
+    pub fn numbers(&self) -> Option<Vec<T>> {
+        let mut all = Vec::new();
+        self.map_numbers(&mut |x: T| {
+            all.push(x);
+            x
+        })?;
+        Some(all)
+    }
+
     /// The class of the value; of an object that was not read yet, `Any`.
     pub fn class(&self) -> Class {
         match self {

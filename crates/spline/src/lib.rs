@@ -40,6 +40,7 @@ mod relabel;
 mod spline_with_knot_derivatives;
 mod surface;
 mod surface_grid;
+mod surface_taped;
 mod tensor;
 
 pub use arc::{ArcError, CircularArc};

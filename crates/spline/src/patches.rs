@@ -220,6 +220,9 @@ impl<T: Real> BSplineSurface<T> {
     /// ```
     pub fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
         let out = &mut out[..uv.len()];
+        if T::TAPED {
+            return self.scattered_on_tape(uv, out);
+        }
         let Some(patches) = self.patches.get_or_init(|| Patches::new(self)) else {
             for (x, &[u, v]) in out.iter_mut().zip(uv) {
                 *x = self.jet(u.into(), v.into(), Order::Zero).p;
@@ -264,6 +267,9 @@ impl<T: Real> BSplineSurface<T> {
     /// When `out` is shorter than `uv`.
     pub fn scattered_first(&self, uv: &[[f64; 2]], out: &mut [SurfJet<T>]) {
         let out = &mut out[..uv.len()];
+        if T::TAPED {
+            return self.scattered_first_on_tape(uv, out);
+        }
         let Some(patches) = self.patches.get_or_init(|| Patches::new(self)) else {
             for (x, &[u, v]) in out.iter_mut().zip(uv) {
                 *x = self.jet(u.into(), v.into(), Order::First);

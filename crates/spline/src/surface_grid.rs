@@ -5,6 +5,7 @@
 
 use crate::{BSplineSurface, KnotVector};
 use moldloft_num::{Order, Real, Vec3};
+use smallvec::SmallVec;
 
 /// Parameters v handled together: small enough for the lines of one span to stay in the first-level
 /// cache (4 lines x 256 x 24 bytes = 24 KiB for a cubic), large enough to run.
@@ -58,6 +59,10 @@ impl<X: Linear> Lines<X> {
             for (k, x) in line.iter_mut().enumerate() {
                 let k = from + k;
                 let basis = if slopes { bases.slopes(k) } else { bases.values(k) };
+                if X::TAPED {
+                    *x = X::combined(basis, &row[bases.first[k]..]);
+                    continue;
+                }
                 let mut sum = X::zero();
                 for (&b, &p) in basis.iter().zip(&row[bases.first[k]..]) {
                     sum = sum.plus(p, b);
@@ -73,6 +78,14 @@ impl<X: Linear> Lines<X> {
         let w = self.width;
         let line = |a: usize| &self.data[(first + a) * w..][..w];
         let out = &mut out[..w];
+        if X::TAPED {
+            let mut terms = vec![X::zero(); basis.len()];
+            for (k, x) in out.iter_mut().enumerate() {
+                terms.iter_mut().enumerate().for_each(|(a, term)| *term = line(a)[k]);
+                *x = f(X::combined(basis, &terms));
+            }
+            return;
+        }
         match *basis {
             // One pass over memory for the usual degrees.
             [b0, b1, b2] => {
@@ -99,12 +112,27 @@ impl<X: Linear> Lines<X> {
 
 /// Values that basis functions combine: points, or points with a weight.
 trait Linear: Copy {
+    /// True for numbers of a tape, on which a sum is one node.
+    const TAPED: bool;
     fn zero() -> Self;
+    /// The sum of the first terms, as many as there are basis functions, for numbers of a tape.
+    fn combined(basis: &[f64], terms: &[Self]) -> Self;
     fn times(self, b: f64) -> Self;
     fn plus(self, other: Self, b: f64) -> Self;
 }
 
+/// The sum of basis functions times numbers, summed in order, as one node.
+fn combined<T: Real>(basis: &[f64], number: impl Fn(usize) -> T) -> T {
+    let terms: SmallVec<[(f64, T); 8]> =
+        basis.iter().enumerate().map(|(a, &b)| (b, number(a))).collect();
+    T::linear(terms.iter().fold(0.0, |sum, (b, x)| sum + x.re() * b), &terms)
+}
+
 impl<T: Real> Linear for Vec3<T> {
+    const TAPED: bool = T::TAPED;
+    fn combined(basis: &[f64], terms: &[Self]) -> Self {
+        Vec3::from([0, 1, 2].map(|axis| combined(basis, |a| terms[a][axis])))
+    }
     #[inline(always)]
     fn zero() -> Self {
         Vec3::default()
@@ -126,6 +154,11 @@ struct Weighted<T> {
 }
 
 impl<T: Real> Linear for Weighted<T> {
+    const TAPED: bool = T::TAPED;
+    fn combined(basis: &[f64], terms: &[Self]) -> Self {
+        let p = [0, 1, 2].map(|axis| combined(basis, |a| terms[a].p[axis]));
+        Self { p: p.into(), w: combined(basis, |a| terms[a].w) }
+    }
     #[inline(always)]
     fn zero() -> Self {
         Self { p: Vec3::default(), w: T::zero() }

@@ -2,8 +2,9 @@
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
+use moldloft_lang::source::env::Evaluation;
 use moldloft_mesh::{Blocks, BlocksReport};
-use moldloft_num::Vec3;
+use moldloft_num::{Dual4, Vec3};
 use moldloft_panel::Blocking;
 use std::sync::Arc;
 
@@ -85,15 +86,23 @@ impl Document {
     pub fn block_jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {
-            let blocked = document.blocked().map_err(|d| vec![d])?;
-            let positions = blocked.blocking.positions(&evaluation.graph).ok_or_else(|| {
-                vec![Diagnostic::error("no-blocks", "the blocks have no positions")]
-            })?;
+            let positions = document.block_vertices_in_pass(evaluation)?;
             for k in 0..count {
                 columns.push(positions.iter().map(|p| p.map(|x| x.eps[k])).collect());
             }
             Ok(())
         })?;
         Ok(columns)
+    }
+
+    /// The vertices of the volume mesh in a pass.
+    pub(crate) fn block_vertices_in_pass(
+        &mut self,
+        evaluation: &Evaluation<Dual4>,
+    ) -> Result<Vec<Vec3<Dual4>>, Vec<Diagnostic>> {
+        let blocked = self.blocked().map_err(|d| vec![d])?;
+        let positions = blocked.blocking.positions(&evaluation.graph);
+        positions
+            .ok_or_else(|| vec![Diagnostic::error("no-blocks", "the blocks have no positions")])
     }
 }

@@ -62,7 +62,7 @@ impl Document {
         Ok(numbers)
     }
 
-    fn eval_in<T: Scalar>(
+    pub(crate) fn eval_in<T: Scalar>(
         &mut self,
         evaluation: &mut Evaluation<T>,
         text: &str,
@@ -113,7 +113,7 @@ impl Document {
 
     /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;
     /// unless the model has an object of that name.
-    fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
+    pub(crate) fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         let group = ["mesh", "hydrostatics"].into_iter().find(|g| *g == group)?;
@@ -132,54 +132,51 @@ impl Document {
     ) -> Result<Vec<Vec<Value<f64>>>, Vec<Diagnostic>> {
         let mut columns: Vec<Vec<Value<f64>>> = vec![Vec::new(); expressions.len()];
         self.passes(by, |document, evaluation, count| {
-            // The numbers of the whole model are found once for all expressions.
-            let mut known: HashMap<&str, Vec<(&'static str, Value<Dual4>)>> = HashMap::new();
+            let mut known = Wholes::default();
             for (text, column) in expressions.iter().zip(&mut columns) {
-                let value = match document.whole_name(text) {
-                    Some((group, number)) if known.contains_key(group) => {
-                        one_of(known[group].clone(), group, number).map_err(|d| vec![d])?
-                    }
-                    Some((group, number)) => {
-                        let panelled = document.entire_panels().map_err(|d| vec![d])?;
-                        let found = if group == "mesh" {
-                            let mesh = panelled.panelling.mesh(&evaluation.graph);
-                            mesh_numbers(&mesh.ok_or_else(|| vec![document.or_spent(no_mesh())])?)
-                        } else {
-                            let bodied = document.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
-                            let graph = &evaluation.graph;
-                            let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
-                            let body = body.ok_or_else(|| vec![document.or_spent(not_finite())])?;
-                            let (symmetry, partial) = (document.symmetry(), document.partial());
-                            body_numbers(&body, &bodied.skin, &symmetry, partial)
-                                .map_err(|d| vec![d])?
-                        };
-                        known.insert(group, found.clone());
-                        one_of(found, group, number).map_err(|d| vec![d])?
-                    }
-                    // What failed with derivatives alone is known here only: the reason goes along.
-                    None => document.eval_in(evaluation, text).map_err(|mut found| {
-                        if found.iter().any(|d| d.id == "blocked") {
-                            found.extend(document.failures(evaluation));
-                        }
-                        found
-                    })?,
-                };
+                let value = document.value_in_pass(evaluation, text, &mut known)?;
                 for k in 0..count {
-                    column.push(derivative_part(&value, k).ok_or_else(|| {
-                        vec![
-                            Diagnostic::error(
-                                "not-a-number",
-                                format!("`{text}` has no derivative"),
-                            )
-                            .expected("a number, a vector, or a row or grid of them")
-                            .found(value.called()),
-                        ]
-                    })?);
+                    let part = derivative_part(&value, k);
+                    column.push(part.ok_or_else(|| vec![not_numbers(text, &value)])?);
                 }
             }
             Ok(())
         })?;
         Ok(columns)
+    }
+
+    /// The value of an expression in a pass. The numbers of the whole model are found once for all expressions.
+    pub(crate) fn value_in_pass(
+        &mut self,
+        evaluation: &mut Evaluation<Dual4>,
+        text: &str,
+        known: &mut Wholes,
+    ) -> Result<Value<Dual4>, Vec<Diagnostic>> {
+        let Some((group, number)) = self.whole_name(text) else {
+            // What failed with derivatives alone is known here only: the reason goes along.
+            return self.eval_in(evaluation, text).map_err(|mut found| {
+                if found.iter().any(|d| d.id == "blocked") {
+                    found.extend(self.failures(evaluation));
+                }
+                found
+            });
+        };
+        if !known.contains_key(group) {
+            let panelled = self.entire_panels().map_err(|d| vec![d])?;
+            let found = if group == "mesh" {
+                let mesh = panelled.panelling.mesh(&evaluation.graph);
+                mesh_numbers(&mesh.ok_or_else(|| vec![self.or_spent(no_mesh())])?)
+            } else {
+                let bodied = self.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
+                let graph = &evaluation.graph;
+                let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
+                let body = body.ok_or_else(|| vec![self.or_spent(not_finite())])?;
+                let (symmetry, partial) = (self.symmetry(), self.partial());
+                body_numbers(&body, &bodied.skin, &symmetry, partial).map_err(|d| vec![d])?
+            };
+            known.insert(group, found);
+        }
+        one_of(known[group].clone(), group, number).map_err(|d| vec![d])
     }
 
     /// Derivatives of all mesh vertices: `[by][vertex]`.
@@ -189,15 +186,52 @@ impl Document {
     pub fn jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {
-            let panelled = document.entire_panels().map_err(|d| vec![d])?;
-            let positions = panelled.panelling.positions(&evaluation.graph);
-            let positions = positions.ok_or_else(|| vec![document.or_spent(no_mesh())])?;
+            let positions = document.vertices_in_pass(evaluation)?;
             for k in 0..count {
                 columns.push(positions.iter().map(|p| p.map(|x| x.eps[k])).collect());
             }
             Ok(())
         })?;
         Ok(columns)
+    }
+
+    /// The vertices of the mesh in a pass.
+    pub(crate) fn vertices_in_pass(
+        &mut self,
+        evaluation: &Evaluation<Dual4>,
+    ) -> Result<Vec<Vec3<Dual4>>, Vec<Diagnostic>> {
+        let panelled = self.entire_panels().map_err(|d| vec![d])?;
+        let positions = panelled.panelling.positions(&evaluation.graph);
+        positions.ok_or_else(|| vec![self.or_spent(no_mesh())])
+    }
+
+    /// The seeded numbers of derivatives by these names.
+    ///
+    /// # Errors
+    /// A name that is no parameter and no number.
+    pub(crate) fn seeds(&mut self, by: &[String]) -> Result<Seeds, Vec<Diagnostic>> {
+        let mut seeds = Seeds::default();
+        for (direction, name) in by.iter().enumerate() {
+            let mut add = |base: &str, rate: f64| {
+                seeds.rates.entry(base.to_owned()).or_default().push((direction, rate));
+            };
+            if self.params().iter().any(|p| p.name == *name) {
+                add(name, 1.0);
+                continue;
+            }
+            match coefficient_name(name) {
+                // A coefficient counts by what it does to its number.
+                Some((base, _)) => {
+                    let found = self.coefficients(base).into_iter().find(|c| c.name == *name);
+                    add(base, found.map_or(0.0, |c| c.slope));
+                }
+                None => add(name, 1.0),
+            }
+            let edit = self.literal(name, 0.0).map_err(|d| vec![d])?;
+            let object = self.plain.graph.get(edit.key).expect("found just now");
+            seeds.objects.insert(object.name.to_string());
+        }
+        Ok(seeds)
     }
 
     /// Runs the model with seeded numbers, four directions a pass, and hands each pass on with
@@ -208,48 +242,45 @@ impl Document {
         mut each: impl FnMut(&mut Self, &mut Evaluation<Dual4>, usize) -> Result<(), Vec<Diagnostic>>,
     ) -> Result<(), Vec<Diagnostic>> {
         self.complete()?;
-        let mut seeded_objects = HashSet::new();
-        // What is seeded, and by how much: a coefficient by what it does to its number.
-        let mut seeds: Vec<(&str, f64)> = Vec::with_capacity(by.len());
-        for name in by {
-            if self.params().iter().any(|p| p.name == *name) {
-                seeds.push((name, 1.0));
-                continue;
-            }
-            seeds.push(match coefficient_name(name) {
-                Some((base, _)) => {
-                    let found = self.coefficients(base).into_iter().find(|c| c.name == *name);
-                    (base, found.map_or(0.0, |c| c.slope))
+        let seeds = self.seeds(by)?;
+        for from in (0..by.len()).step_by(4) {
+            let rate = |direction: usize| {
+                let mut eps = [0.0; 4];
+                if let Some(e) = direction.checked_sub(from).and_then(|k| eps.get_mut(k)) {
+                    *e = 1.0;
                 }
-                None => (name, 1.0),
-            });
-            let edit = self.literal(name, 0.0).map_err(|d| vec![d])?;
-            let object = self.plain.graph.get(edit.key).expect("found just now");
-            seeded_objects.insert(object.name.to_string());
-        }
-        let mut evaluation = self.dual.take().unwrap_or_default();
-        let mut outcome = Ok(());
-        for pass in seeds.chunks(4) {
-            let seed = |name: &str, mut x: Dual4| {
-                for (eps, (_, size)) in x.eps.iter_mut().zip(pass).filter(|(_, p)| p.0 == name) {
-                    *eps = *size;
-                }
-                x
+                eps
             };
-            let unknowns = self.seeded_unknowns(&mut evaluation, &seed, &seeded_objects);
-            let seed =
-                |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
-            self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
-            // What this run did not come to would look like what the model does not have.
-            if let Err(spent) = self.budget().poll() {
-                outcome = Err(vec![unplaced(&CallError::from(spent))]);
-                break;
-            }
-            outcome = each(self, &mut evaluation, pass.len());
-            if outcome.is_err() {
-                break;
-            }
+            let count = (by.len() - from).min(4);
+            self.pass(&seeds, &rate, |document, evaluation| each(document, evaluation, count))?;
         }
+        Ok(())
+    }
+
+    /// Runs the model once, with the numbers of direction k seeded by `rates(k)`, and hands the run on.
+    pub(crate) fn pass(
+        &mut self,
+        seeds: &Seeds,
+        rates: &(dyn Fn(usize) -> [f64; 4] + Sync),
+        each: impl FnOnce(&mut Self, &mut Evaluation<Dual4>) -> Result<(), Vec<Diagnostic>>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let seed = |name: &str, mut x: Dual4| {
+            for &(direction, rate) in seeds.of(name) {
+                let by = rates(direction);
+                x.eps.iter_mut().zip(by).for_each(|(eps, by)| *eps += rate * by);
+            }
+            x
+        };
+        let mut evaluation = self.dual.take().unwrap_or_default();
+        let unknowns = self.seeded_unknowns(&mut evaluation, &seed, &seeds.objects);
+        let seed =
+            |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
+        self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
+        // What this run did not come to would look like what the model does not have.
+        let outcome = match self.budget().poll() {
+            Err(spent) => Err(vec![unplaced(&CallError::from(spent))]),
+            Ok(()) => each(self, &mut evaluation),
+        };
         self.dual = Some(evaluation);
         outcome
     }
@@ -273,31 +304,46 @@ pub(crate) fn no_mesh() -> Diagnostic {
         .help("declare a surface, and show it (visible = 1)")
 }
 
+/// Numbers of the whole model, found in a pass.
+pub(crate) type Wholes = HashMap<&'static str, Vec<(&'static str, Value<Dual4>)>>;
+
+/// Numbers that derivatives are by.
+#[derive(Debug, Default)]
+pub(crate) struct Seeds {
+    /// The directions in which a number is seeded, and the rates.
+    rates: HashMap<String, Vec<(usize, f64)>>,
+    /// The objects that have some of them.
+    pub objects: HashSet<String>,
+}
+
+impl Seeds {
+    /// The directions in which the number of that name is seeded, and the rates.
+    pub fn of(&self, name: &str) -> &[(usize, f64)] {
+        self.rates.get(name).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The fault of an expression whose derivatives would be none.
+pub(crate) fn not_numbers<T: Scalar>(text: &str, value: &Value<T>) -> Diagnostic {
+    Diagnostic::error("not-a-number", format!("`{text}` has no derivative"))
+        .expected("a number, a vector, or a row or grid of them")
+        .found(value.called())
+}
+
+/// True for a number, a vector, a point, and arrays and lists of them.
+pub(crate) fn is_numbers<T: Scalar>(value: &Value<T>) -> bool {
+    match value {
+        Value::List(items) | Value::Block(items) => items.iter().all(is_numbers),
+        Value::Number(_)
+        | Value::Vector(_)
+        | Value::Point(_)
+        | Value::Numbers(_)
+        | Value::Vectors(_) => true,
+        _ => false,
+    }
+}
+
 /// The derivative in direction `k`, in the shape of the value.
 fn derivative_part(value: &Value<Dual4>, k: usize) -> Option<Value<f64>> {
-    use moldloft_registry::{Array, Vectors};
-    use std::sync::Arc;
-    let part = |x: Dual4| x.eps[k];
-    Some(match value {
-        Value::Number(x) => Value::Number(part(*x)),
-        Value::Vector(v) => Value::Vector(v.map(part)),
-        Value::Point(p) => Value::Vector(p.xyz.map(part)),
-        Value::Numbers(a) => Value::Numbers(Arc::new(Array {
-            shape: a.shape,
-            items: a.items.iter().map(|&x| part(x)).collect(),
-        })),
-        Value::Vectors(a) => {
-            let planes = a.planes.each_ref().map(|p| p.iter().map(|&x| part(x)).collect());
-            Value::Vectors(Arc::new(Vectors { shape: a.shape, planes }))
-        }
-        Value::List(items) => {
-            let parts: Option<Vec<_>> = items.iter().map(|v| derivative_part(v, k)).collect();
-            Value::list(parts?)
-        }
-        Value::Block(layers) => {
-            let parts: Option<Vec<_>> = layers.iter().map(|v| derivative_part(v, k)).collect();
-            Value::block(parts?)?
-        }
-        _ => return None,
-    })
+    is_numbers(value).then(|| value.map_numbers(&mut |x: Dual4| x.eps[k]))?
 }

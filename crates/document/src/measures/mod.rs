@@ -5,5 +5,9 @@ pub(crate) mod bodied;
 pub(crate) mod contour_lines;
 pub(crate) mod expressions;
 pub(crate) mod floating;
+#[cfg(not(target_family = "wasm"))]
+pub(crate) mod gradients;
 pub(crate) mod hydrostatics;
+#[cfg(not(target_family = "wasm"))]
+mod pulled;
 pub(crate) mod surface_fields;

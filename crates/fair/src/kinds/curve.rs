@@ -40,6 +40,7 @@ shared_options! {
         /// slides.
         #[derive(Kind)]
         #[kind(
+            forward,
             class = Curve,
             example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); \
                        AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); AbsPoint F(5, 0.49, 0); \

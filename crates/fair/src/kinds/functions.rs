@@ -15,6 +15,7 @@ use std::sync::Arc;
 /// move.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vectors,
     function,
     name = "fair",
@@ -90,6 +91,7 @@ impl<T: Real> Build<T> for Fair<T> {
 /// An open row of n points has n - 4 jumps, a closed one n.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Numbers,
     function,
     name = "jumps",
@@ -136,6 +138,7 @@ impl<T: Real> Build<T> for Jumps<T> {
 /// Curvature |C' x C''| / |C'|^3 of a curve at a parameter or an array of parameters.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "curvature",

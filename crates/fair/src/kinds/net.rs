@@ -41,6 +41,7 @@ shared_options! {
         /// there is no `bound`.
         #[derive(Kind)]
         #[kind(
+            forward,
             class = List,
             example = "AbsPoint A1(0, 0, 0); AbsPoint A2(1, 0.5, 0); AbsPoint A3(2, 0.83, 0); \
                        AbsPoint A4(3, 0.88, 0); AbsPoint A5(4, 1.02, 0); AbsPoint B2(1, 0.6, 1); \
@@ -383,6 +384,7 @@ fn through<T: Real>(
 /// One curve of a faired network, as an object.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Curve,
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); \
                AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); \

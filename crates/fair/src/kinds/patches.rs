@@ -27,6 +27,7 @@ shared_options! {
         /// of the faired surfaces: `NetSurf` makes one an object.
         #[derive(Kind)]
         #[kind(
+            forward,
             class = List,
             example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; surface h[5, 5]; \
                        vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
@@ -227,6 +228,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
 /// `value`, `gap` and `active`; see `FairCurve`.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Surface,
     example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
                g[1,] = distc(a, t); g[2,] = g[1,] + {0, 1, 0.3}; g[3,] = g[1,] + {0, 2, 0.4}; \

@@ -37,6 +37,7 @@ shared_options! {
         /// v. There are no `joins` and no `keep`, which refer to space.
         #[derive(Kind)]
         #[kind(
+            forward,
             class = Snake,
             example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 3); AbsPoint D(4, 1, 3); \
                        Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0, 0.2); \

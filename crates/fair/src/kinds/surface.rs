@@ -43,6 +43,7 @@ shared_options! {
         /// depends on this order and may jump where two knots are equally bad.
         #[derive(Kind)]
         #[kind(
+            forward,
             class = Surface,
             example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
                        vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \

@@ -16,6 +16,7 @@ use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 /// proved, or the point at which it fails is reported.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "liming",
@@ -69,6 +70,7 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
 /// proved, or the point at which it fails is reported.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "zhang",
@@ -111,6 +113,7 @@ impl<T: Real> Build<T> for Zhang<T> {
 /// With distances the setbacks are lengths.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "setback",
@@ -143,7 +146,7 @@ macro_rules! corner_blend {
         /// For distance fields the widths are lengths. Over a box `low`, `high` the contact is
         /// proved, or the point at which it fails is reported.
         #[derive(Kind)]
-        #[kind(class = Set, function, name = $name, example = $example)]
+        #[kind(forward, class = Set, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
             /// A body.
             l1: NamedField<T>,
@@ -224,6 +227,7 @@ corner_blend!(
 /// The solid sides of the rails keep the bodies. See `zhang`.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "transition",

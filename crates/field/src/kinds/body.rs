@@ -23,6 +23,7 @@ pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
 /// from the surface.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Mesh,
     example = "set ball = set(sphere({0, 0, 0}, 1)); SetBody b(ball, depth = 4);"
 )]

@@ -47,6 +47,7 @@ fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 
 /// Twists, bends, tapers and repetitions are such replacements.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "remapped",
@@ -72,6 +73,7 @@ impl<T: Real> Build<T> for Remapped<T> {
 /// A field or set twisted about the z axis.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "twisted",
@@ -94,6 +96,7 @@ impl<T: Real> Build<T> for Twisted<T> {
 /// The remainder x - y floor(x / y) of fields: x repeated with the period y.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "remainder",
@@ -115,6 +118,7 @@ impl<T: Real> Build<T> for Remainder<T> {
 /// Copies of a set, each moved from the one before by the same vector.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "repeated",
@@ -147,6 +151,7 @@ impl<T: Real> Build<T> for Repeated<T> {
 /// A set grown by a distance, or shrunk by a negative one: every face moves along its normals, edges stay sharp.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_offset",
@@ -168,6 +173,7 @@ impl<T: Real> Build<T> for SetOffset<T> {
 /// The wall inside of a set's surface.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_shell",
@@ -193,6 +199,7 @@ impl<T: Real> Build<T> for SetShell<T> {
 /// polyhedra and balls, or of cylinders and right prisms of one axis between the same two planes.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "convex_hull",
@@ -218,6 +225,7 @@ impl<T: Real> Build<T> for ConvexHull<T> {
 /// to a ball.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "minkowski_sum",
@@ -239,6 +247,7 @@ impl<T: Real> Build<T> for MinkowskiSum<T> {
 /// The union of two sets with fillets where their faces meet.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_fillet",
@@ -274,6 +283,7 @@ impl<T: Real> Build<T> for FilletSets<T> {
 /// A set with the convex edges between its faces rounded.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_round",
@@ -303,6 +313,7 @@ impl<T: Real> Build<T> for RoundEdges<T> {
 /// A set with the convex edges between its faces chamfered.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_chamfer",
@@ -330,6 +341,7 @@ impl<T: Real> Build<T> for ChamferEdges<T> {
 /// sets.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_union",
@@ -349,6 +361,7 @@ impl<T: Real> Build<T> for UnionOf<T> {
 /// The intersection of any number of sets, in a balanced tree.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set_intersection",

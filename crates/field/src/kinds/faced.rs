@@ -14,6 +14,7 @@ use std::sync::Arc;
 /// would separate them.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "polyhedron",
@@ -46,6 +47,7 @@ impl<T: Real> Build<T> for Polyhedron<T> {
 /// faces in contact, the set is defined by distances from the triangles.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); FaceSet s(b, {1, 2, 3, 4});"
 )]

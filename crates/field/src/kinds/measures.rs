@@ -58,7 +58,7 @@ macro_rules! measure {
         /// Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
         /// the set.
         #[derive(Kind)]
-        #[kind(class = $class, function, name = $name, example = $example)]
+        #[kind(forward, class = $class, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
             /// The set.
             set: SetArgument<T>,
@@ -241,6 +241,7 @@ fn length<T: Real>(
 /// Proved bounds of the volume of a set within a box, {low, high}, from ranges over boxes.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Numbers,
     function,
     name = "volume_bracket",
@@ -273,6 +274,7 @@ impl<T: Real> Build<T> for VolumeBracket<T> {
 /// The position of a point: "solid", "surface" or "air".
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Text,
     function,
     name = "member",
@@ -303,6 +305,7 @@ impl<T: Real> Build<T> for Member<T> {
 /// intersection.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Text,
     function,
     name = "winner",
@@ -348,6 +351,7 @@ impl<T: Real> FromValue<T> for Either<T> {
 /// The exact gradient of a field or set at a point.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vector,
     function,
     name = "gradient",
@@ -373,6 +377,7 @@ impl<T: Real> Build<T> for Gradient<T> {
 /// Bounds {low, high} of the values of a field or set over a box, rounded outward.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Numbers,
     function,
     name = "range",
@@ -404,6 +409,7 @@ impl<T: Real> Build<T> for Range<T> {
 /// functions one more, primitives from outside 100.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Number,
     function,
     name = "degree",
@@ -429,6 +435,7 @@ impl<T: Real> Build<T> for Degree<T> {
 /// Default box: the bounds of the set.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vector,
     function,
     name = "nearest",
@@ -471,6 +478,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
 /// The first intersection of a ray with the surface of a set, in lengths of its direction.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Number,
     function,
     name = "hit",
@@ -527,6 +535,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
 /// Default box: the bounds of the set.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Number,
     function,
     name = "distance",
@@ -572,6 +581,7 @@ impl<T: Real> Build<T> for Distance<T> {
 /// The number of bodies of a set, those that only touch counted separately: by facets.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Number,
     function,
     name = "components",
@@ -608,6 +618,7 @@ impl<T: Real> Build<T> for Components<T> {
 /// A box around a set, {low, high}.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Vectors,
     function,
     name = "bounds",

@@ -8,6 +8,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 /// The half-space behind a plane: the distance from it, positive on the side of the normal.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "plane",
@@ -30,6 +31,7 @@ impl<T: Real> Build<T> for HalfSpace<T> {
 /// side of its normal.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "half_space",
@@ -49,6 +51,7 @@ impl<T: Real> Build<T> for BehindPlane<T> {
 /// The ball |X - centre|^2 - radius^2; with `distance = 1` the distance |X - centre| - radius.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "sphere",
@@ -79,6 +82,7 @@ impl<T: Real> Build<T> for Sphere<T> {
 /// sqrt(p^2 + q^2) - radius.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "cylinder",
@@ -107,6 +111,7 @@ impl<T: Real> Build<T> for Cylinder<T> {
 /// The double cone whose apex is the start of a line.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "cone",
@@ -129,6 +134,7 @@ impl<T: Real> Build<T> for Cone<T> {
 /// The torus about a line, centred at its start.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "torus",
@@ -154,6 +160,7 @@ impl<T: Real> Build<T> for Torus<T> {
 /// The Dupin cyclide about a line, centred at its start: a ring whose tube is thinner on one side.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "cyclide",
@@ -183,6 +190,7 @@ impl<T: Real> Build<T> for Cyclide<T> {
 /// A named implicit function: the declaration `field f = ...;`.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     name = "Field",
     example = "Field ball(sphere({0, 0, 0}, 1));"

@@ -34,6 +34,7 @@ fn user<T: Real>(profile: ProfileField<T>) -> Primitive<T> {
 /// The curve must not cross itself; if it does, regions of odd winding are inside.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "profile",
@@ -56,6 +57,7 @@ impl<T: Real> Build<T> for ProfileOf<T> {
 /// Its volume is the area of the curve times the height of the vector over the plane.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "extruded",
@@ -104,6 +106,7 @@ impl<T: Real> Build<T> for Extruded<T> {
 /// The body that a closed plane curve passes over in a full turn about a line of its plane.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "revolved",

@@ -54,6 +54,7 @@ impl<T: Real> FromValue<T> for SetSource<T> {
 /// (difference), `^` (points in just one) and the sign `-` (complement).
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "set",
@@ -82,7 +83,7 @@ impl<T: Real> Build<T> for SetOf<T> {
 
 /// The box between two corners, of six half-spaces.
 #[derive(Kind)]
-#[kind(class = Set, function, name = "cuboid", example = "set block = cuboid({0, 0, 0}, {2, 1, 1});")]
+#[kind(forward, class = Set, function, name = "cuboid", example = "set block = cuboid({0, 0, 0}, {2, 1, 1});")]
 pub struct Cuboid<T: Real> {
     /// Low corner.
     low: Point<T>,
@@ -99,6 +100,7 @@ impl<T: Real> Build<T> for Cuboid<T> {
 /// The tetrahedron of four points, in any order.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "tetrahedron",
@@ -124,6 +126,7 @@ impl<T: Real> Build<T> for Tetrahedron<T> {
 /// The faces of a set as sheets, without its inside.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "thin",
@@ -142,7 +145,7 @@ impl<T: Real> Build<T> for Thin<T> {
 
 /// All of space.
 #[derive(Kind)]
-#[kind(class = Set, function, name = "everything", example = "set all = everything();")]
+#[kind(forward, class = Set, function, name = "everything", example = "set all = everything();")]
 pub struct Everything<T: Real> {
     scalar: PhantomData<T>,
 }
@@ -157,6 +160,7 @@ impl<T: Real> Build<T> for Everything<T> {
 /// The empty set: the start of a union in a loop.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "nothing",
@@ -178,6 +182,7 @@ impl<T: Real> Build<T> for Nothing<T> {
 /// They reach every triangle, and the panels of each are a patch under the name.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "attributes",
@@ -231,6 +236,7 @@ impl<T: Real> Build<T> for Attributed<T> {
 /// A|(A&B) = A, A&(A|B) = A.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "regularized",
@@ -249,7 +255,7 @@ impl<T: Real> Build<T> for Regularized<T> {
 
 /// A named set: the declaration `set s = ...;`.
 #[derive(Kind)]
-#[kind(class = Set, name = "Set", example = "Set ball(set(sphere({0, 0, 0}, 1)));")]
+#[kind(forward, class = Set, name = "Set", example = "Set ball(set(sphere({0, 0, 0}, 1)));")]
 pub struct SetObject<T: Real> {
     /// The set.
     set: SetArgument<T>,

@@ -16,6 +16,7 @@ fn positive<T: Real>(what: &'static str, value: T, field: FieldId) -> Result<T, 
 /// The distance from a curve less a radius: a round bar swept along it, with round ends.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "tube",
@@ -39,6 +40,7 @@ impl<T: Real> Build<T> for TubeOf<T> {
 /// The distance from a surface on both sides, less half a thickness: a plate with round edges.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "plate",
@@ -68,6 +70,7 @@ impl<T: Real> Build<T> for PlateOf<T> {
 /// than half a turn: cut the surface before. The ranges are valid there too.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "side",
@@ -87,6 +90,7 @@ impl<T: Real> Build<T> for SideOf<T> {
 /// The signed distance from a closed body of triangles, such as a sketch's solid or a `SetBody`.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Field,
     function,
     name = "inside",

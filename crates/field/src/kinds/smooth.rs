@@ -37,7 +37,7 @@ macro_rules! smooth {
         /// its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
         /// are arcs between planes at right angles.
         #[derive(Kind)]
-        #[kind(class = Field, function, name = $name, example = $example)]
+        #[kind(forward, class = Field, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
             /// A body.
             a: FunctionOf<T>,
@@ -88,6 +88,7 @@ smooth!(
 /// Copies of a set about an axis, each rotated from the one before by the same angle.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Set,
     function,
     name = "circular_array",

@@ -39,6 +39,7 @@ impl<T: Real> Movable<T> {
 /// A field or set moved by a vector.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "translated",
@@ -60,6 +61,7 @@ impl<T: Real> Build<T> for Translated<T> {
 /// A field or set rotated about a line.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "turned",
@@ -84,6 +86,7 @@ impl<T: Real> Build<T> for Turned<T> {
 /// The mirror image of a field or set.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "mirrored",
@@ -114,6 +117,7 @@ fn unit<T: Real>(plane: &Plane<T>) -> Plane<T> {
 /// A field or set scaled about a point.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "scaled",
@@ -140,6 +144,7 @@ impl<T: Real> Build<T> for Scaled<T> {
 /// A field or set stretched along a line; the plane across the line's start stays.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Any,
     function,
     name = "stretched",

@@ -255,7 +255,11 @@ macro_rules! row {
     ($name:literal, $doc:literal, $fields:expr, $example:literal, $body:ident) => {
         Row::new(
             $name,
-            Implementation::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> },
+            Implementation::Native {
+                plain: $body::<f64>,
+                dual: $body::<moldloft_num::Dual4>,
+                rev: moldloft_registry::taped!($body::<moldloft_num::Rev>),
+            },
         )
         .doc($doc)
         .fields($fields)

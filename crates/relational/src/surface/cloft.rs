@@ -519,6 +519,10 @@ fn fill<T: Real>(
     for (piece, stretch) in stretches(spline, vs) {
         let (base, cubic) = rebased(spline, piece);
         let s = steps(&vs[stretch.clone()], base);
+        if T::TAPED {
+            fill_on_tape(&cubic, &s, &mut points[stretch]);
+            continue;
+        }
         for axis in 0..3 {
             for k in 0..T::PARTS {
                 let coefficients = std::array::from_fn(|r| cubic[r][axis].part(k));
@@ -526,6 +530,19 @@ fn fill<T: Real>(
             }
         }
         chunk.write_points(&mut points[stretch]);
+    }
+}
+
+/// The cubic at the numbers `s`, each coordinate one node of a tape.
+fn fill_on_tape<T: Real>(cubic: &[Vec3<T>; 4], s: &Plane, points: &mut [Vec3<T>]) {
+    for (p, &s) in points.iter_mut().zip(s) {
+        let coordinate = |axis: usize| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|r| cubic[r][axis]);
+            let bent = if d.re() == 0.0 { c.re() } else { d.re() * s + c.re() };
+            let value = (bent * s + b.re()) * s + a.re();
+            T::linear(value, &[(1.0, a), (s, b), (s * s, c), (s * s * s, d)])
+        };
+        *p = Vec3::from([0, 1, 2].map(coordinate));
     }
 }
 

@@ -5,6 +5,7 @@ use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Uni1, Vec3};
 use moldloft_spline::{Basis, KnotVector};
+use smallvec::SmallVec;
 
 /// Masters blended by the basis functions of a clamped knot vector.
 pub struct LinearLoft<T: Real> {
@@ -87,6 +88,22 @@ fn blend(planes: &[Plane], q: impl Fn(usize) -> f64, n: usize, out: &mut Plane) 
     }
 }
 
+/// Points as sums of masters' points, each coordinate one node of a tape.
+fn fill_on_tape<T: Real>(
+    planes: &[Plane],
+    master: impl Fn(usize) -> Vec3<T>,
+    points: &mut [Vec3<T>],
+) {
+    for (j, p) in points.iter_mut().enumerate() {
+        let coordinate = |axis: usize| {
+            let terms: SmallVec<[(f64, T); 8]> =
+                planes.iter().enumerate().map(|(r, plane)| (plane[j], master(r)[axis])).collect();
+            T::linear(terms.iter().fold(0.0, |sum, (b, x)| sum + x.re() * b), &terms)
+        };
+        *p = Vec3::from([0, 1, 2].map(coordinate));
+    }
+}
+
 impl<T: Real> Surface<T> for LinearLoft<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         if v.is_constant() {
@@ -123,6 +140,11 @@ impl<T: Real> Surface<T> for LinearLoft<T> {
             for i in 0..us.len() {
                 let out = i * vs.len() + stretch.start..i * vs.len() + stretch.end;
                 let each = (0..3).flat_map(|axis| (0..T::PARTS).map(move |k| (axis, k)));
+                if T::TAPED && normals.is_none() {
+                    let master = |r: usize| plain[i][first + r];
+                    fill_on_tape(&values, master, &mut points[out]);
+                    continue;
+                }
                 let Some(normals) = normals.as_deref_mut() else {
                     for (axis, k) in each {
                         let q = |r: usize| plain[i][first + r][axis].part(k);

@@ -11,6 +11,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
 /// and ellipses of sketches are of this kind.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Curve,
     example = "AbsPoint M(0, 0, 0); AbsPoint S(2, 0, 0); AbsPoint Q(0, 1, 0); \
                ConjugateArc c(M, S, Q, 1.5707963267948966);"

@@ -10,6 +10,7 @@ use std::sync::Arc;
 /// given, as sketches do for bodies with curves.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Mesh,
     example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); \
                MeshBody plate({{0,0,0}, {1,0,0}, {1,1,0}, {0,1,0}}, quads = {1,2,3,4});"

@@ -9,6 +9,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
 /// The quadratics and Overhauser cubics of sketches are of this kind.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Curve,
     example = "CubicChain c({{0,0,0}, {1,1,0}, {2,1,0}, {3,0,0}, {4,-1,0}, {5,0,1}, {6,0,0}});"
 )]

@@ -12,6 +12,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Valu
 /// that run counter-clockwise.
 #[derive(Kind)]
 #[kind(
+    forward,
     class = Surface,
     example = "FacePatch f({{0,0,0}, {4,0,0}, {4,3,0}, {0,3,1}});"
 )]

@@ -1,0 +1,196 @@
+//! Reverse mode: the model is run with numbers of a tape, and weights of its outputs are pulled back to its inputs.
+//!
+//! `inputs -> run (one thread) -> expressions, blocks -> panels a part at a time -> Adjoints -> gradients`
+//!
+//! Run, graph and tape live for one gradient. What a tape cannot do is no error: the answer is then `None`, and forward mode
+//! has the last word, also on what is wrong with the model.
+
+use crate::document::{Document, Panelled};
+use crate::measures::expressions::Seeds;
+use crate::measures::gradients::{WeightedOutput, numbers};
+use indexmap::IndexMap;
+use moldloft_diag::Diagnostic;
+use moldloft_lang::SolveStatus;
+use moldloft_lang::source::env::Evaluation;
+use moldloft_lang::source::fault_location::unplaced;
+use moldloft_mesh::pulled_measures;
+use moldloft_num::{Adjoints, Real, Rev, Tape, Vec3, solve_pivoting_fully};
+use moldloft_parallel::on_one_thread;
+use moldloft_registry::CallError;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// The mesh with the weights of its vertices in each sum.
+struct WeightedMesh {
+    panelled: Arc<Panelled>,
+    weights: Vec<Vec<Vec3>>,
+}
+
+/// Outputs that are the mesh's, and all others.
+type Split<'a> = (Option<WeightedMesh>, Vec<&'a WeightedOutput>);
+
+impl Document {
+    /// The gradients of the sums of outputs, by reverse mode; `None` when something has none.
+    ///
+    /// # Errors
+    /// What is wrong with an output, its weights or a name.
+    pub(crate) fn pulled(
+        &mut self,
+        outputs: &[&WeightedOutput],
+        by: &[String],
+    ) -> Result<Option<Vec<Vec<f64>>>, Vec<Diagnostic>> {
+        let seeds = self.seeds(by)?;
+        let (mesh, others) = self.split(outputs)?;
+        let sums = outputs.first().map_or(0, |output| output.weights.len());
+        on_one_thread(|| {
+            Tape::clear();
+            let inputs: Vec<Rev> = by.iter().map(|_| Tape::input(0.0)).collect();
+            let mut adjoints = vec![Adjoints::new(); sums];
+            let recorded = self.recorded(&seeds, &inputs, mesh.as_ref(), &others, &mut adjoints)?;
+            if !recorded || !Tape::is_sound() {
+                return Ok(None);
+            }
+            let rows: Vec<Vec<f64>> = adjoints
+                .iter_mut()
+                .map(|adjoints| {
+                    adjoints.pull();
+                    inputs.iter().map(|input| adjoints.of(*input)).collect()
+                })
+                .collect();
+            let finite = rows.iter().flatten().all(|x| x.is_finite());
+            let sound = finite && adjoints.iter().all(Adjoints::are_sound);
+            Ok(sound.then_some(rows))
+        })
+    }
+
+    /// The weights of vertices, those that follow from measures of the mesh included; and the other outputs.
+    fn split<'a>(&mut self, outputs: &[&'a WeightedOutput]) -> Result<Split<'a>, Vec<Diagnostic>> {
+        let mut mesh: Option<WeightedMesh> = None;
+        let mut others = Vec::new();
+        for output in outputs {
+            let measure = match self.whole_name(&output.name) {
+                Some(("mesh", "area")) => Some([1.0, 0.0]),
+                Some(("mesh", "volume")) => Some([0.0, 1.0]),
+                _ => None,
+            };
+            if measure.is_none() && output.name != "mesh" {
+                others.push(*output);
+                continue;
+            }
+            if mesh.is_none() {
+                let panelled = self.entire_panels().map_err(|d| vec![d])?;
+                let none = vec![Vec3::zero(); panelled.mesh.positions().len()];
+                mesh = Some(WeightedMesh { panelled, weights: vec![none; output.weights.len()] });
+            }
+            let Some(WeightedMesh { panelled, weights }) = &mut mesh else { continue };
+            let count = if measure.is_some() { 1 } else { 3 * panelled.mesh.positions().len() };
+            let given = output.checked(count)?;
+            let rates = measure.map(|[area, volume]| pulled_measures(&panelled.mesh, area, volume));
+            for (weights, given) in weights.iter_mut().zip(given) {
+                for (at, weight) in weights.iter_mut().enumerate() {
+                    *weight += match &rates {
+                        Some(rates) => rates[at] * given[0],
+                        None => Vec3::of(given[3 * at], given[3 * at + 1], given[3 * at + 2]),
+                    };
+                }
+            }
+        }
+        Ok((mesh, others))
+    }
+
+    /// Runs the model on the tape of this thread and adds the outputs; false when one has no reverse mode.
+    fn recorded(
+        &mut self,
+        seeds: &Seeds,
+        inputs: &[Rev],
+        mesh: Option<&WeightedMesh>,
+        others: &[&WeightedOutput],
+        adjoints: &mut [Adjoints],
+    ) -> Result<bool, Vec<Diagnostic>> {
+        let seed = |name: &str, x: Rev| seeded(x, seeds.of(name), inputs);
+        let mut evaluation = Evaluation::<Rev>::default();
+        let unknowns = self.taped_unknowns(&mut evaluation, &seed, &seeds.objects);
+        let seed =
+            |name: &str, x: Rev| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
+        self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
+        // What this run did not come to would look like what has no reverse mode.
+        let budget = self.budget();
+        let spent = || budget.poll().map_err(|spent| vec![unplaced(&CallError::from(spent))]);
+        spent()?;
+        for output in others {
+            let Some(numbers) = self.taped_numbers(&mut evaluation, &output.name)? else {
+                return spent().map(|()| false);
+            };
+            for (adjoints, weights) in adjoints.iter_mut().zip(output.checked(numbers.len())?) {
+                numbers.iter().zip(weights).for_each(|(x, w)| adjoints.add(*x, *w));
+            }
+        }
+        let pulled = mesh.is_none_or(|WeightedMesh { panelled, weights }| {
+            Tape::is_sound()
+                && panelled.panelling.pull(&evaluation.graph, weights, adjoints).is_some()
+        });
+        spent().map(|()| pulled)
+    }
+
+    /// The unknowns on the tape of this thread: x_j with the derivatives of -(J^-1)_ji c_i, by the conditions c at the
+    /// solution (implicit function theorem).
+    fn taped_unknowns(
+        &mut self,
+        evaluation: &mut Evaluation<Rev>,
+        seed: &(dyn Fn(&str, Rev) -> Rev + Sync),
+        seeded_objects: &HashSet<String>,
+    ) -> IndexMap<String, Rev> {
+        let reports = self.solved.clone();
+        let solution = reports.iter().flat_map(|r| r.unknowns.iter().zip(&r.values));
+        let mut known: IndexMap<String, Rev> =
+            solution.map(|(name, x)| (name.clone(), Rev::from(*x))).collect();
+        for (at, report) in reports.iter().enumerate() {
+            if report.status != SolveStatus::Solved {
+                continue;
+            }
+            let with =
+                |name: &str, x: Rev| known.get(name).copied().unwrap_or_else(|| seed(name, x));
+            self.evaluate(evaluation, &with, seeded_objects, false);
+            let Some(solve) = evaluation.env.solves.get(at) else { continue };
+            let mut terms = vec![Vec::new(); report.unknowns.len()];
+            for (i, condition) in solve.conditions.iter().enumerate() {
+                let unit: Vec<f64> =
+                    (0..solve.conditions.len()).map(|k| f64::from(u8::from(k == i))).collect();
+                let Some(changes) = solve_pivoting_fully(&report.jacobian, &unit) else { continue };
+                for (terms, change) in terms.iter_mut().zip(changes) {
+                    terms.push((-change, *condition));
+                }
+            }
+            for (name, terms) in report.unknowns.iter().zip(&terms) {
+                if let Some(x) = known.get_mut(name) {
+                    *x = Rev::linear(x.re(), terms);
+                }
+            }
+        }
+        known
+    }
+
+    /// All numbers of an output on the tape; `None` when it has no reverse mode.
+    fn taped_numbers(
+        &mut self,
+        evaluation: &mut Evaluation<Rev>,
+        name: &str,
+    ) -> Result<Option<Vec<Rev>>, Vec<Diagnostic>> {
+        if name == "blocks" {
+            let blocked = self.blocked().map_err(|d| vec![d])?;
+            let positions = blocked.blocking.positions(&evaluation.graph);
+            return Ok(positions.map(|all| all.iter().flat_map(|p| p.to_array()).collect()));
+        }
+        Ok(self.eval_in(evaluation, name).ok().and_then(|value| numbers(&value)))
+    }
+}
+
+/// A number that the inputs of some directions are added to, each zero.
+fn seeded(x: Rev, directions: &[(usize, f64)], inputs: &[Rev]) -> Rev {
+    if directions.is_empty() {
+        return x;
+    }
+    let mut terms = vec![(1.0, x)];
+    terms.extend(directions.iter().map(|&(direction, rate)| (rate, inputs[direction])));
+    Rev::linear(x.re(), &terms)
+}
