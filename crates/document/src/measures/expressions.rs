@@ -1,4 +1,4 @@
-//! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
+//! Values of expressions, panels and hydrostatics of a model, and their derivatives.
 
 use crate::document::{Document, ObjectSource};
 use crate::measures::bodied::{Numbers, Whole};
@@ -17,11 +17,11 @@ use moldloft_registry::{CallError, Scalar, Value};
 use std::collections::{HashMap, HashSet};
 
 impl Document {
-    /// The value of an expression in the model's names. Besides these it knows `mesh.area`,
-    /// `mesh.volume` and the numbers of the hydrostatics, such as `hydrostatics.volume`.
+    /// The value of an expression in the names of the model, `mesh.area`, `mesh.volume` and the
+    /// numbers of the hydrostatics, such as `hydrostatics.volume`.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The errors of the expression.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
         self.complete()?;
         self.expression_remarks.clear();
@@ -35,14 +35,14 @@ impl Document {
         value
     }
 
-    /// What is remarkable about the value that [`Document::eval`] gave last, such as a volume that is not known as well
-    /// as asked.
+    /// Warnings about the last value of [`Document::eval`], such as a volume that misses its
+    /// accuracy.
     pub fn expression_remarks(&self) -> &[Diagnostic] {
         &self.expression_remarks
     }
 
-    /// The numbers of `mesh` or `hydrostatics`, found once and remembered until something changes: who watches one
-    /// of them usually watches several.
+    /// The numbers of `mesh` or `hydrostatics`, cached until the model changes: most callers read
+    /// several.
     fn whole_numbers(&mut self, group: &'static str) -> Result<Numbers, Diagnostic> {
         let clock = self.plain.graph.last_change();
         let symmetry = self.symmetry();
@@ -87,7 +87,7 @@ impl Document {
         };
         let (value, remarks) = program.eval(evaluation, inputs, text)?;
         self.expression_remarks = remarks;
-        // Infinity goes on inside array statements, as in programs of 1992; as an answer it is none.
+        // Array statements may compute with infinity, as in programs of 1992; it is not a result.
         let finite = match &value {
             Value::Number(x) => x.is_finite(),
             Value::Vector(v) => v.is_finite(),
@@ -111,8 +111,8 @@ impl Document {
         Ok(value)
     }
 
-    /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;
-    /// unless the model has an object of that name.
+    /// Group and member of a name such as `mesh.area` (joined panels) or `hydrostatics.volume`
+    /// (surfaces); `None` if the model has an object `mesh` or `hydrostatics`.
     fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -124,7 +124,7 @@ impl Document {
     /// each of the expression's own shape.
     ///
     /// # Errors
-    /// What is wrong with an expression or a name.
+    /// Errors in an expression or a name.
     pub fn derivatives(
         &mut self,
         expressions: &[String],
@@ -132,7 +132,7 @@ impl Document {
     ) -> Result<Vec<Vec<Value<f64>>>, Vec<Diagnostic>> {
         let mut columns: Vec<Vec<Value<f64>>> = vec![Vec::new(); expressions.len()];
         self.passes(by, |document, evaluation, count| {
-            // The numbers of the whole model are found once for all expressions.
+            // The numbers of the whole model are computed once for all expressions.
             let mut known: HashMap<&str, Vec<(&'static str, Value<Dual4>)>> = HashMap::new();
             for (text, column) in expressions.iter().zip(&mut columns) {
                 let value = match document.whole_name(text) {
@@ -156,7 +156,8 @@ impl Document {
                         known.insert(group, found.clone());
                         one_of(found, group, number).map_err(|d| vec![d])?
                     }
-                    // What failed with derivatives alone is known here only: the reason goes along.
+                    // A failure of the run with derivatives is known only here: its reason is
+                    // added.
                     None => document.eval_in(evaluation, text).map_err(|mut found| {
                         if found.iter().any(|d| d.id == "blocked") {
                             found.extend(document.failures(evaluation));
@@ -185,7 +186,7 @@ impl Document {
     /// Derivatives of all mesh vertices: `[by][vertex]`.
     ///
     /// # Errors
-    /// What is wrong with a name or the mesh.
+    /// Errors in a name or in the mesh.
     pub fn jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {
@@ -200,8 +201,8 @@ impl Document {
         Ok(columns)
     }
 
-    /// Runs the model with seeded numbers, four directions a pass, and hands each pass on with
-    /// the number of directions in use.
+    /// Runs the model with seeded numbers, four directions per pass, and calls the consumer with
+    /// each pass and the number of its directions.
     pub(crate) fn passes(
         &mut self,
         by: &[String],
@@ -209,7 +210,7 @@ impl Document {
     ) -> Result<(), Vec<Diagnostic>> {
         self.complete()?;
         let mut seeded_objects = HashSet::new();
-        // What is seeded, and by how much: a coefficient by what it does to its number.
+        // Seeded names and seeds: a coefficient is seeded with the derivative of its number.
         let mut seeds: Vec<(&str, f64)> = Vec::with_capacity(by.len());
         for name in by {
             if self.params().iter().any(|p| p.name == *name) {
@@ -240,7 +241,7 @@ impl Document {
             let seed =
                 |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
             self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
-            // What this run did not come to would look like what the model does not have.
+            // Objects that an interrupted run did not reach would look like missing ones.
             if let Err(spent) = self.budget().poll() {
                 outcome = Err(vec![unplaced(&CallError::from(spent))]);
                 break;
