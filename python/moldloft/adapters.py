@@ -71,7 +71,7 @@ def _patch_numbers(mesh: Mesh) -> NDArray[np.int64]:
 
 
 def _split(mesh: Mesh) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64]]:
-    """Which faces are triangles; these, and the quadrilaterals."""
+    """A mask of the triangles, the triangles, and the quadrilaterals."""
     faces = mesh.faces.astype(np.int64)
     triangle = faces[:, 2] == faces[:, 3]
     return triangle, faces[triangle][:, :3], faces[~triangle]

@@ -1,6 +1,6 @@
 """``blockMeshDict`` of OpenFOAM from volume blocks.
 
-blockMesh joins whole faces of blocks and knows an edge by its two vertices. So blocks are cut
+blockMesh joins whole faces of blocks and identifies an edge by its two vertices. So blocks are cut
 where a part of a face meets another block, where two edges would run between the same vertices,
 and where a ring closes on itself. Edges are ``polyLine`` through the vertices of the grid, graded
 cell by cell, so that blockMesh's points on them are the grid's; inside faces and blocks it

@@ -65,7 +65,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Interface:
-    """A rectangle of a block's face that is a rectangle of another's, or of its own."""
+    """A rectangle of a block face that coincides with another one, also of the same block."""
 
     block: int
     """The block, counted from 0."""
@@ -146,7 +146,7 @@ class Blocks:
         self.symmetry = symmetry
         """The planes that the model is mirrored in, of ``"xyz"``."""
         self.unit_of_length = unit_of_length
-        """The unit of the positions, as ``"m"``; empty where the model has none."""
+        """Unit of the positions, such as ``"m"``; empty if the model states no unit."""
         summary = core.summary()
         self.cells: int = summary["cells"]
         """Number of cells."""
@@ -201,7 +201,7 @@ class Blocks:
 
     @property
     def problems(self) -> list[_core.Diagnostic]:
-        """Folded cells, and joins that do not hold."""
+        """Folded cells, and blocks that do not match at joins."""
         return self._core.problems()
 
     def __getitem__(self, name: str) -> Block:
@@ -237,7 +237,7 @@ class Blocks:
         FileError
             When there is no such folder, or it cannot be written to.
         FormatError
-            When the format is unknown or cannot hold the blocks.
+            If the format is unknown or cannot represent the blocks.
         """
         from moldloft.files import commit
 
@@ -263,7 +263,7 @@ class Blocks:
         Raises
         ------
         FormatError
-            When the format is unknown or cannot hold the blocks.
+            If the format is unknown or cannot represent the blocks.
         """
         from moldloft.files import Output
 

@@ -1,6 +1,6 @@
 """A stability booklet, as one HTML page or as PDF: weights, hydrostatics, curves, criteria.
 
-:func:`_parts` says what is in it; the two forms are drawn from the same parts.
+:func:`_parts` defines the content; both formats are drawn from the same parts.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def _parts(
 def write_booklet(
     path: str | os.PathLike[str], model: Model, stability: Stability, **options: Any
 ) -> Path:
-    """Write a booklet, whole or not at all; the file's ending, ``.html`` or ``.pdf``, says how.
+    """Write a booklet atomically, in the format of the extension: ``.html`` or ``.pdf``.
 
     Parameters
     ----------

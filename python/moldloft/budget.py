@@ -32,13 +32,13 @@ class Limits(NamedTuple):
     Attributes
     ----------
     memory
-        Bytes that models hold, all of the process together.
+        Bytes of all models of the process.
     steps
         Statements and calls of one run.
     objects
         Objects of one model.
     seconds
-        Time of one run, one mesh, one measure; ``inf`` where none is stated: work on one set has
+        Time of one run, one mesh, one measure; ``inf`` by default: work on one set has
         10 s of processor time then, and CAD files have theirs.
     """
 
@@ -74,7 +74,7 @@ def limits(
     Raises
     ------
     ModelError
-        When a value is none that can be kept.
+        If a value is not a valid limit.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def limits(
 
 
 def parsed(text: str) -> dict[str, str | int | float]:
-    """The arguments of :func:`limits` that ``NAME=VALUE`` says.
+    """The arguments of :func:`limits` from texts ``NAME=VALUE``.
 
     >>> parsed("memory=500M")
     {'memory': '500M'}
@@ -206,7 +206,7 @@ class _Watch(threading.Thread):
 
 
 def _resident() -> int:
-    """Bytes of the process that are in memory; 0 where the system does not say it."""
+    """Resident memory of the process in bytes; 0 if the system does not report it."""
     try:
         return int(_STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, AttributeError):

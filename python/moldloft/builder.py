@@ -337,7 +337,7 @@ class Builder:
         return Expr(name, float(default if value is None else value))
 
     def model(self) -> Model:
-        """The model of what was declared.
+        """The model of the declared objects.
 
         Returns
         -------

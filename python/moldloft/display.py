@@ -78,7 +78,7 @@ def _is_points(value: object) -> bool:
 
 
 def model_html(model: Model) -> str:
-    """A picture, the parameters with their ranges, the objects by kind, and what is wrong."""
+    """A picture, the parameters with their ranges, the objects by kind, and diagnostics."""
     parts = [f"<strong>{escape(repr(model).strip('<>'))}</strong>"]
     try:
         shown = any(_drawn(fact) for fact in map(model.facts, model.objects))
@@ -107,7 +107,7 @@ def _drawn(fact: dict[str, Any]) -> bool:
 
 
 def object_html(thing: Object) -> str:
-    """A drawing of a curve or surface, its numbers, and what it depends on."""
+    """A drawing of a curve or surface, its numbers, and its dependencies."""
     try:
         fact = thing._facts()
     except Error as error:

@@ -1,4 +1,4 @@
-"""The errors that Moldloft raises: one base class, and what a user would catch besides."""
+"""Exceptions of Moldloft: a base class and the built-in classes that each one also derives from."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Error(Exception):
     Attributes
     ----------
     diagnostics : tuple of Diagnostic
-        Each with id, severity, message, places, help. Empty for a fault outside a model, such as a
+        Each with id, severity, message, places, help. Empty for an error outside a model, such as a
         full disk.
 
     Examples
@@ -158,7 +158,7 @@ class FairingError(Error, ValueError):
 
 
 class UnknownNameError(Error, KeyError):
-    """There is no parameter or object of that name."""
+    """A name is not that of a parameter or object."""
 
 
 class FileError(Error, OSError):
@@ -176,7 +176,7 @@ class MissingPackageError(Error, ImportError):
 
 
 class FormatError(Error, ValueError):
-    """Bytes are not a file of a format, a format is unknown, or it cannot hold what it is to hold.
+    """Invalid content of a file, an unknown format, or a format that cannot represent the model.
 
     Attributes
     ----------

@@ -35,7 +35,7 @@ SOLVERS = tuple(row.name for row in formats().values() if row.panel_code)
 
 
 def format_named(name: str) -> str:
-    """The name of the format of that name or alias.
+    """The name of a format, by name or alias.
 
     Parameters
     ----------

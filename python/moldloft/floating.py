@@ -173,8 +173,8 @@ class Floating:
         Returns
         -------
         Hydrostatics
-            Its ``status`` says whether the attitude is one of rest, its ``stable`` whether small
-            turns in heel and trim are righted.
+            Its ``status`` is ``"converged"`` at an equilibrium; ``stable`` is true for positive
+            stiffness in heel and trim.
 
         Raises
         ------
@@ -198,7 +198,7 @@ class Floating:
                     "Weight engine({2, 0, 0.5}, mass = 3);"
                 )
             if cg is not None:
-                raise Error("give both the displacement and cg, or none: those of the weights")
+                raise Error("give both displacement and cg, or neither to use those of the weights")
             displacement, cg = total.mass, total.centre
         held = free is None and cg is not None
         if free is None:
@@ -246,9 +246,10 @@ class Floating:
         density
             ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
         gravity
-            Acceleration, in the model's units; default: that of the earth, if units are known.
+            Acceleration of gravity in model units; default 9.80665 m/s² if the model states its
+            units.
         sides
-            ``"both"`` counts a mirrored model with its image, ``"one"`` alone.
+            ``"both"`` includes the mirror image of a mirrored model, ``"one"`` excludes it.
         by
             Names of parameters.
         accuracy
@@ -420,7 +421,7 @@ class Floating:
 
     @property
     def length_unit(self) -> tuple[str, float]:
-        """The unit of length and its size in metres; metres where the model states none."""
+        """The unit of length and its size in metres; metres if the model states no unit."""
         unit = self.units.length or "m"
         return unit, Units(unit).metres
 
@@ -452,7 +453,7 @@ class Floating:
         Returns
         -------
         WeightTable
-            Empty where the model declares none.
+            Empty if the model declares no weights.
 
         Examples
         --------

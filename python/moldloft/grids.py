@@ -234,7 +234,7 @@ def write_plot3d(
     grids
         Arrays (ni, nj, 3) or (ni, nj, nk, 3).
     variant
-        How; by default plain binary, double precision, several blocks, three coordinates.
+        File variant; by default plain binary, double precision, several blocks, three coordinates.
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
 
@@ -246,8 +246,8 @@ def write_plot3d(
     Raises
     ------
     Error
-        When the variant cannot hold the grids: several blocks in a single-block file, a z in a 2-D
-        file, numbers beyond single precision.
+        If the variant cannot represent the grids: several blocks in a single-block file, a z in a
+        2-D file, numbers beyond single precision.
     """
     return _commit(path, encode_plot3d(grids, variant, iblank=iblank))
 
@@ -265,7 +265,7 @@ def encode_plot3d(
     grids
         Grids of points, each ``(ni, nj, 3)`` or ``(ni, nj, nk, 3)``.
     variant
-        How; by default plain binary, double precision, several blocks, three coordinates.
+        File variant; by default plain binary, double precision, several blocks, three coordinates.
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
 
@@ -476,7 +476,7 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
 def read_points(path: str | Path) -> NDArray[np.float64]:
     """Points (n, 3) of a text with two or three numbers to a line.
 
-    Blanks, commas, semicolons and tabulators separate; titles, names of columns and what follows a
+    Separators are blanks, commas, semicolons and tabs; titles, names of columns and what follows a
     ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
     trailing edge round the nose.
 

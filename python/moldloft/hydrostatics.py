@@ -85,7 +85,7 @@ class Hydrostatics:
     draft: float
     """Depth of the lowest point below the water."""
     open_edges: int
-    """Open edges of the skin below the water, not in the symmetry plane: 0 when it holds water."""
+    """Open edges of the skin below the water, without those in the symmetry plane."""
     closure_error: float
     """Largest difference between the volumes by x, y and z over the volume."""
     waterplane_error: float
@@ -223,7 +223,7 @@ class Hydrostatics:
         """Immersed openings, overlaps, surfaces measured on triangles, inaccurate figures."""
         lines = []
         if self.partial:
-            lines.append("the model is not whole: the figures are those of what was made")
+            lines.append("the model is incomplete: the figures are those of the valid objects")
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
             lines.append(
@@ -249,7 +249,7 @@ class Hydrostatics:
             value = getattr(self, name)
             if value and (share := self.bounds.get(name, 0.0) / abs(value)) > self.accuracy > 0:
                 lines.append(
-                    f"{name} is known to {share:.1g} of itself; {self.accuracy:.1g} was asked for"
+                    f"{name}: relative accuracy {share:.1g}; requested: {self.accuracy:.1g}"
                 )
         return lines
 
@@ -282,7 +282,7 @@ class Hydrostatics:
         return state_html(self)
 
     def unit(self, figure: str) -> str:
-        """The unit of a figure, empty where the model states none.
+        """The unit of a figure; empty if the model states no units.
 
         Parameters
         ----------
@@ -344,7 +344,7 @@ class Hydrostatics:
         Error
             When the figures have no density, or are of one side.
         UnknownNameError
-            When the figures have no derivatives by ``by``.
+            If the figures have no derivatives with respect to ``by``.
 
         Examples
         --------
@@ -405,7 +405,7 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When a word is not a unit, or the model states none to convert from.
+            If a word is not a unit, or the model states no units.
         """
         to = Units.parse(to) if isinstance(to, str) else to
         changed: dict[str, Any] = {}
@@ -480,7 +480,7 @@ class _Rows:
         return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
 
     def derivative(self, name: str, by: str) -> NDArray[np.float64]:
-        """The derivative of one figure by a parameter in all rows; ``nan`` where it has none.
+        """Derivative of one figure with respect to a parameter in all rows, or ``nan``.
 
         Parameters
         ----------
@@ -544,7 +544,7 @@ class _Rows:
         Parameters
         ----------
         columns
-            Which figures; by default all that have a meaning in some row.
+            Figures; by default all that are defined in some row.
 
         Returns
         -------
@@ -617,7 +617,7 @@ class HydrostaticTable(_Rows):
         Raises
         ------
         Error
-            When matplotlib knows no such ending.
+            If Matplotlib does not support the extension.
         FileError
             When there is no such folder, or it cannot be written to.
         """
@@ -717,7 +717,7 @@ class RightingCurve(_Rows):
         Raises
         ------
         Error
-            When matplotlib knows no such ending.
+            If Matplotlib does not support the extension.
         FileError
             When there is no such folder, or it cannot be written to.
         """

@@ -196,7 +196,7 @@ class _Lines:
             if (fact := model.facts(name))["class"] == "surface" and fact["shown"] and fact["ok"]
         ]
         if not names:
-            raise Error("a lines plan is of surfaces, and the model shows none")
+            raise Error("a lines plan needs surfaces, and the model shows no surface")
         self.surfaces = [model[name] for name in names]
         grids = [s.grid(9, 9) for s in self.surfaces]
         points = np.concatenate([g.reshape(-1, 3) for g in grids])
@@ -712,7 +712,7 @@ def encode_dxf(model: Model, stem: str) -> bytes:
 
 
 def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
-    """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, says how.
+    """Write the lines plan of a model as ``.svg``, ``.pdf`` or ``.dxf``.
 
     Options are those of :func:`lines_plan`.
 

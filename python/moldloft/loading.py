@@ -1,4 +1,4 @@
-"""Loading models from files and texts, and making them again from what a copy holds."""
+"""Loading of models from files and texts, and restoration from copies and pickles."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["Origin", "load", "loads", "restored"]
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of a model besides its text: the data to make it again, here or elsewhere."""
+    """Data that, with its text, restore a model in this or another process."""
 
     name: str
     """The name that messages show."""
@@ -42,7 +42,7 @@ def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
 
 
 def restored(origin: Origin | None, text: str, values: Mapping[str, float], refined: int) -> Model:
-    """A model again in the state that a copy or a pickle holds.
+    """A model in the state stored in a copy or a pickle.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def load(
     path
         An ``.sdl`` program, an ``.ms2`` model file or a ``.skt`` sketch.
     library
-        Folders, besides the model's own, from which it may load.
+        Folders from which it may load, in addition to its own.
     functions
         Python functions that the model may call, by name. They take and return floats, vectors
         ``(3,)`` and arrays; for derivatives they receive :class:`moldloft.numbers.Dual` numbers, on

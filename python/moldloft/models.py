@@ -118,7 +118,7 @@ class Model(Floating, Writable, Adapted):
     def _document(self) -> _core.Document:
         if self._inside and threading.get_ident() in self._inside:
             raise ModelError(
-                "a Python function of a model cannot use the model that calls it: give it what it "
+                "a Python function cannot use the model that calls it: pass the values it "
                 "needs as arguments"
             )
         return self._plain_document
@@ -193,7 +193,7 @@ class Model(Floating, Writable, Adapted):
         ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
         each other in their counts; hydrostatics also while the skin is open below the water. With
-        ``True`` they are those of what was made, and the remarks of hydrostatics say so.
+        ``True`` they are those of the valid objects, which the remarks of hydrostatics state.
 
         Examples
         --------
@@ -352,7 +352,7 @@ class Model(Floating, Writable, Adapted):
         Error
             When the level is negative.
         ModelError
-            When it is too fine.
+            If the level is too fine.
 
         Examples
         --------
@@ -505,7 +505,7 @@ class Model(Floating, Writable, Adapted):
         """Give numbers of the model values: chosen parameters follow by the least change.
 
         Of all values within the ranges of the parameters that give the targets, those of the least
-        sum of squares of weighted changes, each as a share of its range (without one, of its
+        sum of squares of weighted changes, each relative to its range (without one, to its
         value). The search uses exact derivatives; it finds the solution near the present values.
 
         Parameters
@@ -520,7 +520,7 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         Solution
-            What each parameter has become and its share of the change. The model has the new
+            New value of each parameter and its fraction of the change. The model has the new
             values, as after :meth:`set`.
 
         Raises

@@ -53,7 +53,7 @@ class WrongClassError(ModelError, AttributeError):
 
 
 def wrapped(value: Any) -> Any:
-    """Fields and sets as users know them.
+    """Fields and sets in the classes of :mod:`moldloft.implicit`.
 
     Parameters
     ----------
@@ -121,12 +121,12 @@ class Object:
 
     @property
     def parents(self) -> list[str]:
-        """The names of what it depends on directly."""
+        """Names of the objects that it depends on directly."""
         return list(self._facts()["parents"])
 
     @property
     def children(self) -> list[str]:
-        """The names of what depends on it directly."""
+        """Names of the objects that depend on it directly."""
         return list(self._facts()["children"])
 
     @property
@@ -499,7 +499,7 @@ class Surface(SurfaceCalculus, _Located):
         nu, nv
             Numbers of points along u and v, at least 2.
         normals
-            Also the unit normals, along the product of the derivatives by u and v; zero where
+            Also the unit normals, in the direction S_u x S_v; zero where
             the surface is singular.
 
         Returns

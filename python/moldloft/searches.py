@@ -86,7 +86,7 @@ class Intersection:
     tangent: NDArray[np.bool_]
     """True if the shapes touch at the point without crossing."""
     complete: bool
-    """False when the search ran into its limit, as where shapes coincide: there may be more."""
+    """False if the search reached its limit, as for coincident shapes: there may be more."""
     smallest: float
     """All branches longer than this are found that cross at an angle somewhere."""
 

@@ -56,7 +56,7 @@ __all__ = [
 
 
 class SketchError(Error, ValueError):
-    """A command was refused; ``replies`` holds all answers of the text that was run."""
+    """An invalid command; ``replies`` has all replies to the text up to it."""
 
     def __init__(self, message: str, replies: Sequence[Reply] = ()) -> None:
         super().__init__(message)
@@ -120,7 +120,7 @@ class Sketch:
         path
             The file.
         strict
-            Raise when a command is refused, instead of going on.
+            True to raise an error at an invalid command instead of continuing.
 
         Returns
         -------
@@ -130,7 +130,7 @@ class Sketch:
         Raises
         ------
         FileError
-            When it cannot be read.
+            If it cannot be read.
         SketchError
             When a command was refused and ``strict`` is true.
         """
@@ -228,7 +228,7 @@ class Sketch:
         UnknownNameError
             If there is no such object, or no object is active.
         SketchError
-            When it has no body to write.
+            If it has no body.
         FileError
             When there is no such folder, or it cannot be written to.
         """
@@ -247,7 +247,7 @@ class Sketch:
     # -- edits as data -----------------------------------------------------------------------
 
     def edit(self, text: str) -> list[ObjectChange]:
-        """Run one line of commands, and say what it changed.
+        """Run one line of commands and report its changes.
 
         Parameters
         ----------
@@ -283,7 +283,8 @@ class Sketch:
         lines
             Ends of lines as rows of ``points``, from 0, ``(m, 2)``.
         types
-            The type of each line (``"X"``, ``"H"``, ``"O"``, ...); ``None`` as its slope says.
+            The type of each line (``"X"``, ``"H"``, ``"O"``, ...); ``None`` to infer it from the
+            slope.
 
         Returns
         -------
@@ -293,7 +294,7 @@ class Sketch:
         places = _pairs("points", points, np.float64)
         ends = _pairs("lines", lines, np.int64)
         if ends.size and (ends.min() < 0 or ends.max() >= len(places)):
-            raise SketchError(f"an end of a line is not a row of the {len(places)} points")
+            raise SketchError(f"lines: expected indices of the {len(places)} points")
         kinds = [None] * len(ends) if types is None else list(types)
         if len(kinds) != len(ends):
             raise SketchError(f"{len(kinds)} types for {len(ends)} lines")
@@ -719,7 +720,7 @@ class Sketch:
         azimuth: float = -60.0,
         elevation: float = 25.0,
     ) -> bytes:
-        """A PNG of the body; the angles say from where, in degrees.
+        """A PNG of the body, seen from the direction of two angles in degrees.
 
         Parameters
         ----------

@@ -59,7 +59,7 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "weight": (0, 0, 1),
     "righting_moment": (1, 0, 1),
 }
-"""Powers of length, mass and force in each figure; figures that are not named have none."""
+"""Powers of length, mass and force in each figure; other figures are dimensionless."""
 
 ANGLES = ("trim", "heel")
 """Figures that are angles: in radians in Python, in degrees in tables and files."""
@@ -184,7 +184,7 @@ class Units:
         return float(density)
 
     def of(self, figure: str) -> str:
-        """The unit of a figure as text; empty where it has none or it is not stated.
+        """The unit of a figure as text; empty if it is dimensionless or not stated.
 
         Parameters
         ----------
@@ -242,12 +242,12 @@ explain(globals())
 
 
 def shown(name: str, value: Any) -> Any:
-    """A figure as tables and files have it: angles in degrees.
+    """A figure as in tables and files: angles in degrees.
 
     Parameters
     ----------
     name
-        Which figure it is, such as ``heel``.
+        Name of the figure, such as ``heel``.
     value
         Its value; angles in radians.
 
@@ -270,7 +270,7 @@ def header(name: str, units: Units) -> str:
     Parameters
     ----------
     name
-        Which figure it is.
+        Name of the figure.
     units
         Units of the figures.
 

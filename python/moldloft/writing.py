@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Writable"]
 
 _OF_FORMATS = {"cannot-write", "unused-option"}
-"""The diagnostics of formats that cannot hold what they are to hold."""
+"""Ids of diagnostics about content that a format cannot represent."""
 
 
 class Writable:
@@ -68,7 +68,8 @@ class Writable:
             only ``tolerance`` is given.
         whole
             Both sides of a symmetric model, joined in its planes, in files of plain panels; by
-            default these hold one side. Files of panel codes name the planes instead.
+            default these contain one side. Files of panel codes state the planes of symmetry
+            instead.
         triangles
             Triangles only, in files of plain panels.
 
@@ -82,7 +83,7 @@ class Writable:
         FileError
             When there is no such folder, or it cannot be written to.
         FormatError
-            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
+            If the format is unknown, cannot represent the model, or the model has nothing to write.
         ModelError
             When the model has errors, or no patch has such a tag.
 
@@ -167,7 +168,7 @@ class Writable:
         Raises
         ------
         FormatError
-            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
+            If the format is unknown, cannot represent the model, or the model has nothing to write.
 
         Examples
         --------
@@ -309,7 +310,7 @@ class Writable:
         Warns
         -----
         UserWarning
-            Which objects have numbers that no longer follow the parameters.
+            Objects whose numbers become independent of the parameters.
         """
         text = self._document.convert(to)
         self._warn_of_export()

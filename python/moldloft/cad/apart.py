@@ -51,12 +51,12 @@ def read(path: Path, metres: float) -> Imported:
     path
         The file.
     metres
-        The unit of length of what is returned.
+        Unit of length of the result, in metres.
 
     Raises
     ------
     FileError
-        When the file is not of its format, holds no shape, or OCCT ends over it.
+        If the file is not of its format, contains no shape, or crashes OCCT.
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
     if not sys.executable:
@@ -277,7 +277,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _timed(request: dict[str, Any]) -> dict[str, Any]:
-    """What is read, with the processor time that it took."""
+    """The result of reading, with its processor time."""
     began = time.process_time()
     bounded(request["memory"], request["seconds"])
     found = _answer(request)

@@ -31,7 +31,7 @@ def faces_of(shape: Any, kind: Any) -> list[Any]:
 
 @dataclass
 class Sewn:
-    """A shape, and what became of it when its faces were sewn."""
+    """A sewn shape with the result of sewing."""
 
     shape: Any
     """The shape as read."""
@@ -128,7 +128,7 @@ class Sewn:
         alone = self.passes[-1].NbFreeEdges()
         if alone:
             remarks.append(
-                f"{alone} edges are of one face alone, with no other within {self.tolerance:.2g}: "
+                f"{alone} edges belong to a single face, none other within {self.tolerance:.2g}: "
                 "what the faces bound is open there"
             )
 

@@ -177,7 +177,7 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """A remark without a position in Python code, which is irrelevant in a command."""
+    """Shows a warning without its position in Python code, which is irrelevant in a command."""
     from moldloft.cli.colour import painted
 
     stream = file or sys.stderr
@@ -188,7 +188,7 @@ def _show_warning(
 
 
 def _unexpected(error: Exception, arguments: Sequence[str]) -> str:
-    """A fault of ours in one line, or of an argument that is not text."""
+    """One line about an internal error, or about an argument that is not valid text."""
     wrong = [word for word in arguments if not word.isascii() and _has_surrogates(word)]
     if isinstance(error, UnicodeEncodeError) and wrong:
         return f"error: the argument {wrong[0]!a} is not UTF-8 text"
@@ -303,7 +303,7 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
             type=_limit,
             action="append",
             default=[],
-            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; may be repeated",
+            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; repeatable",
         )
         command.add_argument(
             "--traceback", action="store_true", help="show the traceback of an internal fault"

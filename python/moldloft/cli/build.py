@@ -85,7 +85,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--sides",
         choices=["both", "one"],
         default="both",
-        help="count a mirrored model with its image (the default), or one side alone",
+        help="figures of both sides of a mirrored model (the default), or of one side",
     )
     figures.add_argument(
         "--quality", action="store_true", help="the worst panels of each patch, with their indices"
@@ -288,7 +288,7 @@ def _build(
 
 
 def _is_partly_made(model: Model) -> bool:
-    """True when all errors are of objects, beside which others were made."""
+    """True if all errors are of objects and other objects are valid."""
     own = all(d.object for d in model.diagnostics if d.is_error)
     return own and any(o["ok"] for o in _objects(model))
 

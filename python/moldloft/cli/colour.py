@@ -1,4 +1,4 @@
-"""Colours of what is printed: on a terminal, unless ``NO_COLOR`` is set or they are refused."""
+"""Colours of printed text: on a terminal, unless ``NO_COLOR`` or an option disables them."""
 
 from __future__ import annotations
 

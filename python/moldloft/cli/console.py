@@ -81,14 +81,14 @@ def add_model(
             type=assignment,
             action="append",
             default=[],
-            help="a parameter, or a literal of an object such as P21.y; may be repeated",
+            help="a parameter, or a literal of an object such as P21.y; repeatable",
         )
     parser.add_argument(
         "--library",
         metavar="DIR",
         action="append",
         default=[],
-        help="a further folder for `load`; may be repeated",
+        help="additional folder for `load`; repeatable",
     )
     if refined:
         parser.add_argument(
@@ -187,12 +187,12 @@ def add_name(parser: argparse._ActionsContainer) -> None:
 
 
 def stem_of(options: argparse.Namespace) -> str:
-    """The name of a model's files without ending: by ``--name``, or that of its own file.
+    """File name of a model's output without extension: from ``--name``, or from its own file.
 
     Raises
     ------
     Error
-        When files of that name cannot be written on every system.
+        If the name is not valid on every system.
     """
     from moldloft.errors import Error, FileError
     from moldloft.permissions import checked_name

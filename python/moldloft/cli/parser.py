@@ -1,4 +1,4 @@
-"""The command line's grammar: argparse, with what people expect of a command today.
+"""Command line parser: argparse with suggestions, examples and short usage errors.
 
 No abbreviations of options, negative numbers as values, the nearest name where a word is unknown,
 one line for a usage error instead of the whole usage, and colours on a terminal.
@@ -64,7 +64,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-(?!h$|-)")
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As in argparse; the error of an unknown option suggests the nearest one."""
+        """As in argparse; the error about an unknown option suggests the nearest one."""
         found, left = self.parse_known_args(args, namespace)
         if left:
             own = getattr(found, "parser", self)
@@ -75,7 +75,7 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As in argparse; the words are kept for messages about them."""
+        """As in argparse; stores the words for error messages."""
         self._words = list(sys.argv[1:] if args is None else args)
         return super().parse_known_args(args, namespace)
 

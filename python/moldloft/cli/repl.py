@@ -55,7 +55,7 @@ class Session:
         Raises
         ------
         Error
-            When it has errors; it is left out then.
+            If it has errors; it is then omitted.
         """
         if not entry.strip():
             return []
@@ -92,7 +92,7 @@ class Session:
         return model.printed[printed:] + [str(d).rstrip() for d in new]
 
     def undo(self) -> bool:
-        """Takes back the last entry; false when there is none."""
+        """Removes the last entry; false if there is no entry."""
         if not self._before:
             return False
         self.model.text = self._before.pop()

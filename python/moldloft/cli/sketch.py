@@ -36,7 +36,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="a dimension or variable of the last object, after FILE was run; may be repeated",
+        help="a dimension or variable of the last object, after FILE was run; repeatable",
     )
     parser.add_argument("--json", action="store_true", help="the objects as data, and the replies")
     parser.add_argument("--edit", action="store_true", help="open the prompt after running FILE")

@@ -124,7 +124,7 @@ def _sweep(study: Study, options: argparse.Namespace) -> Results:
                 progress=tell,
             )
         except KeyboardInterrupt:
-            print(f"stopped; `moldloft study resume {options.study}` goes on", file=sys.stderr)
+            print(f"stopped; `moldloft study resume {options.study}` continues", file=sys.stderr)
             raise
 
 

@@ -1,4 +1,4 @@
-"""Points as arrays, and what is refused about them."""
+"""Points as arrays, with checks."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def refuse_repeats(points: Floats, closed: bool) -> None:
 
 
 def radii(tol: ArrayLike | None, count: int) -> list[float]:
-    """The tolerance of each point; infinite for none."""
+    """The tolerance of each point; infinite without a limit."""
     if tol is None:
         return [np.inf] * count
     given = np.asarray(tol, dtype=np.float64)
@@ -112,7 +112,7 @@ def motions_of(
 
 
 def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
-    """A remark about a tolerance of more than a twentieth of the extent, as for curves."""
+    """A warning about a tolerance above a twentieth of the extent."""
     if tol is None or not len(points):
         return ()
     most = float(np.max(np.asarray(tol, np.float64)))

@@ -65,7 +65,7 @@ class _Row:
 
 @dataclass
 class _Grid:
-    """A table with a row for each line, whichever way it was written."""
+    """A table with a row for each line, independent of its layout in the file."""
 
     names: list[str]
     head: int

@@ -1,4 +1,4 @@
-"""Cells of a table at their places in its text, and lengths in the notation of a cell."""
+"""Cells of a table with their positions in the text, and lengths in the notation of a cell."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MOST_DECIMALS = 15
 
 @dataclass
 class Cells:
-    """The cells of a table that hold its coordinates."""
+    """The cells of a table that contain coordinates."""
 
     text: str
     """The text as it was read, with its byte order mark and ends of lines."""

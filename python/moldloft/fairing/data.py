@@ -37,7 +37,7 @@ def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: i
 
 @dataclass
 class Data:
-    """Data and what is asked of the curve near them, in the words of the caller."""
+    """Data and the options of the curve near them, as given by the caller."""
 
     points: ArrayLike
     tol: ArrayLike | None

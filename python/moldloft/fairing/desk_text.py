@@ -1,4 +1,4 @@
-"""What was decided at a fairing desk as statements of a model, which give the same curves."""
+"""The result of a fairing desk as statements of a model, which give the same curves."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _list(items: Iterable[Any]) -> str:
 
 
 def _wrapped(statement: str) -> str:
-    """A statement on lines of no more than so many columns, broken between words."""
+    """A statement wrapped between words."""
     out, line = [], ""
     for word in statement.split(" "):
         if line and len(line) + 1 + len(word) > WIDTH:
@@ -127,7 +127,7 @@ def _curves(source: DeskSource, state: DeskState, result: DeskResult, name: str)
 
 
 def _as_it_is(name: str, spline: Spline) -> str:
-    """A spline of these control points and knots: no other statement knows of ranges."""
+    """A spline of these control points and knots, since no other statement has ranges."""
     knots, control, _ = spline.open_form()
     rows = ", ".join(_place(p) for p in control)
     return (

@@ -1,4 +1,4 @@
-"""How light plays on a surface: normals, curvatures, reflections on a grid of parameters."""
+"""Normals, curvatures and reflections of a surface on a grid of parameters."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Look:
 
     @property
     def normals(self) -> Floats:
-        """Unit normals along the product of the derivatives by u and v."""
+        """Unit normals in the direction S_u x S_v."""
         return self._core.normals
 
     @property

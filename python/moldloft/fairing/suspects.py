@@ -79,7 +79,7 @@ class Suspect:
     expected: float
     """The coordinate that the neighbours predict."""
     error: float
-    """The error of that prediction."""
+    """Error of the prediction."""
     score: float
     """The deviation as a multiple of its error; the rank is by this times the deviation."""
     meant: float | None
@@ -87,9 +87,9 @@ class Suspect:
     reading: str
     """The coordinate as it is written in the table."""
     meant_reading: str
-    """The reading that was probably meant, in the notation of the table; nothing for none."""
+    """The probable reading in the notation of the table; empty if unknown."""
     slip: str
-    """The kind of slip, such as ``an inch`` or ``a digit``; nothing where none explains it."""
+    """The kind of slip, such as ``an inch`` or ``a digit``; empty if unknown."""
     gain: float
     """Share of the squared third differences beside it, on all its lines, that is gone with the
     reading meant, or with the expected one."""
@@ -275,7 +275,7 @@ class _Search:
         return out
 
     def neighbours(self, index: int, axis: int) -> list[int]:
-        """The points beside one, on lines along which the coordinate changes."""
+        """The adjacent points on lines along which the coordinate changes."""
         out = []
         for line in self.lines:
             if index in line and np.ptp(self.data[line, axis]) > 0:
@@ -284,7 +284,7 @@ class _Search:
         return out
 
     def gain(self, index: int, values: dict[tuple[int, int], float]) -> float:
-        """Share of the squared third differences beside a point that is gone with other values."""
+        """Relative reduction of the squared third differences near a point by other values."""
         before = after = 0.0
         moved = self.data.copy()
         axes = set()
@@ -359,7 +359,7 @@ class _Search:
         value: float,
         middle: float,
     ) -> bool:
-        """Whether each side alone leads to the point, and both together past it."""
+        """True if extrapolation from each side meets the point, and interpolation misses it."""
         if len(low) < _SIDE or len(high) < _SIDE:
             return False
         ends = []
@@ -386,7 +386,7 @@ def _combined(own: list[_Prediction]) -> tuple[float, float]:
 
 
 def _monotone(t: Floats, here: float, before: int) -> bool:
-    """Whether places rise or fall along a line, past the point's own."""
+    """True if positions along a line are monotone without the point itself."""
     whole = np.insert(t, before, here)
     steps = np.diff(whole)
     return bool((steps > 0).all() or (steps < 0).all())

@@ -54,7 +54,7 @@ class Edged:
         return type(self)(self._core.offset(float(distance)))
 
     def shell(self, thickness: float) -> Self:
-        """The wall of that thickness inside of the surface.
+        """A wall of given thickness inside the surface.
 
         Parameters
         ----------
@@ -64,7 +64,7 @@ class Edged:
         Returns
         -------
         Set
-            A new one, solid where the set is thinner than twice the wall.
+            A new set, solid where the original is thinner than twice the wall.
 
         Raises
         ------

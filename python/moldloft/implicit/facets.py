@@ -312,7 +312,7 @@ class Facets:
         *,
         width: float = 160,
     ) -> str:
-        """Sections through a point, as a drawing: one view beside the other, solid parts filled.
+        """Sections through a point, as a drawing of adjacent views with filled solid parts.
 
         Parameters
         ----------
@@ -333,7 +333,7 @@ class Facets:
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> Path:
         """Write the facets to a file, whole or not at all; the ending selects the format.
 
-        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
+        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` contain solids and sheets; wires and
         points are written to ``obj`` and ``vtp``, and are an error in the others.
 
         Parameters

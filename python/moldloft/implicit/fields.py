@@ -1,4 +1,4 @@
-"""Implicit functions, and the primitives to make them of."""
+"""Implicit functions, and the primitives that they consist of."""
 
 from __future__ import annotations
 

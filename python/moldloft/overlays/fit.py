@@ -78,7 +78,7 @@ def fit(
     Returns
     -------
     Fit
-        The parameters, what they were, and the deviation that is left.
+        The parameters, their previous values, and the remaining deviation.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def _slopes(model: Model, now: Deviation, names: list[str]) -> Floats:
 
 
 def _unit(vectors: Floats) -> Floats:
-    """The directions of vectors; zero where they have none."""
+    """The directions of vectors; zero for zero vectors."""
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     unit: Floats = np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0)
     return unit

@@ -123,7 +123,7 @@ def _checked(
     if not np.isfinite(points).all():
         raise FileError("a coordinate is not a finite number")
     if faces.size and not (faces.min() >= 0 and faces.max() < len(points)):
-        raise FileError(f"a face has a corner that is none of the {len(points)} vertices")
+        raise FileError(f"a face has a vertex number beyond the {len(points)} vertices")
     return Overlay(name, points, faces.astype(np.uint32), groups, remarks=remarks)
 
 

@@ -1,4 +1,4 @@
-"""Sets of files that are replaced together, and what a killed process left.
+"""Sets of files that are replaced together, and recovery after a killed process.
 
 A set is first written as drafts. The old files then get second names, and a record in the folder
 lists the operation; the drafts take the files' names; finally the record is removed, which is the
@@ -56,9 +56,9 @@ class _Entry:
 
 
 def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> list[Path]:
-    """Write all files or none: as drafts first, synced, then renamed.
+    """Write all files or no file: first synced drafts, then renames.
 
-    Who reads them by :func:`read_set` meanwhile sees all old or all new ones. Mode, owner and links
+    Concurrent readers by :func:`read_set` get all old or all new files. Mode, owner and links
     of old files are kept.
 
     Parameters
@@ -238,7 +238,7 @@ def recover(folder: Path) -> None:
     """Put back and remove what killed processes left in a folder.
 
     A half-written set is undone at once. Each process looks for drafts once. Files of living
-    processes are left alone.
+    processes are not touched.
     """
     try:
         status = folder.stat()

@@ -125,7 +125,7 @@ def remove_folder(path: Path) -> None:
 
 
 def keep_attributes(file: int, old: Path, was: os.stat_result) -> None:
-    """Give an open draft the owner, the mode and the extended attributes of what it replaces."""
+    """Give an open draft the owner, mode and extended attributes of the file that it replaces."""
     if not hasattr(os, "fchown"):
         return
     now = os.fstat(file)

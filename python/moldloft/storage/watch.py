@@ -1,4 +1,4 @@
-"""Noticing that files change, by what is in them."""
+"""Detection of changed files by their content."""
 
 from __future__ import annotations
 
