@@ -253,7 +253,7 @@ def _command_first(arguments: list[str]) -> list[str]:
 def _parsed(arguments: list[str]) -> Namespace:
     from moldloft.cli.parser import meant, usage_error
 
-    arguments = _command_first(arguments)
+    arguments = _command_first(arguments) or ["--help"]
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
         usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
@@ -273,7 +273,8 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
     parser = Parser(
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
-        description="Describe a shape, relate its parts, panel it, measure it.",
+        description="Describe a shape, relate its parts, panel it, measure it.\n\nTo start: "
+        "`moldloft new hull.sdl`, then `moldloft view hull.sdl`.",
         epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples. "
         "--color, --limit and --traceback may stand before it.",
     )

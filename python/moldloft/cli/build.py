@@ -205,8 +205,9 @@ def _build(
         inexact: list[Any] = []
         folder = Path("." if options.output == "-" else options.output)
         stem = stem_of(options) if options.to else ""
-        for name in dict.fromkeys(options.to):
-            progress.stage(f"writing {name}")
+        names = list(dict.fromkeys(options.to))
+        for number, name in enumerate(names):
+            progress.stage("writing", name, number / len(names))
             path = folder / file_name(stem, name)
             row = formats()[name]
             lids = options.lids and row.lids

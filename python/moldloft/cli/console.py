@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import shutil
 import sys
 import threading
 import time
@@ -354,25 +355,39 @@ def _finite(data: Any) -> Any:
 
 
 class Progress:
-    """Says on standard error what is being done, once it takes more than a second.
+    """A line about the current stage of long work, on terminals, from the second second on.
 
-    On a terminal one line is kept up to date; elsewhere each stage is said once.
+    It shows the seconds of the stage or, if the fraction done is known, percent and time left.
+    Nothing is printed into pipes and files.
     """
 
     def __init__(self) -> None:
-        self._stage = ""
-        self._said = ""
-        self._began = time.monotonic()
-        self._over = threading.Event()
         self._terminal = sys.stderr.isatty()
+        self._over = threading.Event()
+        self._shown = False
+        self._now: tuple[str, str, float | None] = ("", "", None)
+        self._began = time.monotonic()
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
-    def stage(self, words: str, detail: str = "") -> None:
-        """Present stage of the work; the detail is shown on terminals only."""
-        self._stage = f"{words}: {detail}" if detail and self._terminal else words
+    def stage(self, words: str, detail: str = "", done: float | None = None) -> None:
+        """Set the current stage.
+
+        Parameters
+        ----------
+        words
+            Name of the stage; a new name restarts its clock.
+        detail
+            Text after the name.
+        done
+            Fraction of the stage that is done, 0 to 1, if known.
+        """
+        if words != self._now[0]:
+            self._began = time.monotonic()
+        self._now = (words, detail, done)
 
     def __enter__(self) -> Progress:
-        self._thread.start()
+        if self._terminal:
+            self._thread.start()
         return self
 
     def __exit__(
@@ -382,21 +397,35 @@ class Progress:
         trace: TracebackType | None,
     ) -> None:
         self._over.set()
-        self._thread.join()
-        if self._said and self._terminal:
+        if self._terminal:
+            self._thread.join()
+        if self._shown:
             print(OwnText("\r\x1b[K"), end="", file=sys.stderr, flush=True)
 
     def _watch(self) -> None:
         wait = 1.0
         while not self._over.wait(wait):
             wait = 0.25
-            seconds = time.monotonic() - self._began
-            if self._terminal:
-                line = OwnText(f"\r\x1b[K{shown(self._stage)} … {seconds:.0f} s; Ctrl-C ends it")
-                print(line, end="", file=sys.stderr, flush=True)
-            elif self._said != self._stage:
-                print(f"{self._stage} …", file=sys.stderr, flush=True)
-            self._said = self._stage
+            line = progress_line(*self._now, time.monotonic() - self._began)
+            end = shutil.get_terminal_size().columns - 1
+            print(OwnText(f"\r\x1b[K{shown(line)[:end]}"), end="", file=sys.stderr, flush=True)
+            self._shown = True
+
+
+def progress_line(words: str, detail: str, done: float | None, seconds: float) -> str:
+    """The line of a stage after a number of seconds.
+
+    >>> progress_line("dividing", "", None, 12.3)
+    'dividing … 12 s; Ctrl-C ends it'
+    >>> progress_line("evaluating cases", "64 of 256", 0.25, 30)
+    'evaluating cases: 64 of 256, 25 %, 1:30 left; Ctrl-C ends it'
+    """
+    line = f"{words}: {detail}" if detail else words
+    if not done:
+        return f"{line} … {seconds:.0f} s; Ctrl-C ends it"
+    left = round(seconds * (1 - done) / done)
+    clock = f"{left // 60}:{left % 60:02d}" if left >= 60 else f"{left} s"
+    return f"{line}, {100 * done:.0f} %, {clock} left; Ctrl-C ends it"
 
 
 def format_argument(name: str) -> str:
