@@ -176,6 +176,9 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     if here == "diagnostics.md":
         markdown = _index_of_diagnostics(markdown)
     up = "../" * here.count("/")
+    markdown = markdown.replace(
+        "(https://moldloft.github.io/moldloft/terms.html)", f"({up}terms.md)"
+    )
 
     def moved(found: re.Match[str]) -> str:
         target = _target(here, found[1])

@@ -379,6 +379,7 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
             for path in images.glob(f"{folder}-*")
             if path.stem.removeprefix(f"{folder}-") in stems and f"{folder}-" in script
         }
+    names.add("drag.webp")
     names |= {f"gallery/{path.stem}.png" for path in (ROOT / "examples" / "gallery").glob("*.sdl")}
     there = {path.relative_to(images).as_posix() for path in images.rglob("*.*")}
     assert there == names
@@ -386,4 +387,5 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in used)
     assert not [name for name in there if f"images/{name}" not in text]
     large = {n: (images / n).stat().st_size for n in there}
+    assert large.pop("drag.webp") < 1_500_000
     assert max(large.values()) < 250_000, max(large, key=large.__getitem__)
