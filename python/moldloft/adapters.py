@@ -261,7 +261,7 @@ def to_capytaine(
     Raises
     ------
     Error
-        When no panel is below z = 0.
+        If no panel is below z = 0.
     """
     from moldloft import _core
 

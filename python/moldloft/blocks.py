@@ -235,7 +235,7 @@ class Blocks:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         FormatError
             If the format is unknown or cannot represent the blocks.
         """

@@ -190,7 +190,7 @@ def write_booklet(
     Raises
     ------
     Error
-        When the ending is another one, or reportlab is not installed.
+        If the ending is another one, or reportlab is not installed.
     """
     from moldloft.files import Output, commit
 

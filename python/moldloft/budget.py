@@ -136,7 +136,7 @@ def within_limits() -> Iterator[None]:
     Raises
     ------
     FileError
-        When the work inside takes more than is allowed.
+        If the work inside takes more than is allowed.
     """
     watch = _Watch(limits())
     watch.start()
@@ -181,7 +181,7 @@ class _Watch(threading.Thread):
                     self._raise(ctypes.py_object(_OverspentError))
 
     def end(self) -> None:
-        """Nothing is raised once this returns."""
+        """End the signal: nothing is raised after this call."""
         with self._lock:
             self._ended.set()
             self._raise(None)

@@ -189,7 +189,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -225,7 +225,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -265,7 +265,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -318,7 +318,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language, or the default out of the range.
+            If the name is not one of the language, or the default out of the range.
 
         Examples
         --------
@@ -412,7 +412,7 @@ def param(
     Raises
     ------
     ValueError
-        When one end of the range is missing, or the default out of it.
+        If one end of the range is missing, or the default out of it.
 
     Examples
     --------
@@ -509,7 +509,7 @@ def model(function: Callable[P, object]) -> ModelFunction[P]:
     Raises
     ------
     TypeError
-        When an argument has no number as its default.
+        If an argument has no number as its default.
 
     Examples
     --------

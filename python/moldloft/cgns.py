@@ -76,7 +76,7 @@ class Zone:
 
 @dataclass(frozen=True)
 class Interface:
-    """A run of an edge that is a run of another, vertex by vertex."""
+    """A range of vertices that two edges share."""
 
     zone: int
     side: int

@@ -255,7 +255,7 @@ class Box:
         Raises
         ------
         Error
-            When a fixed control point would move.
+            If a fixed control point would move.
         """
         chosen = np.zeros(self.counts, dtype=bool)
         try:
@@ -549,7 +549,7 @@ def _mirrored(variable: Variable, points: Floats, axis: int) -> Floats:
         if flat[image].any() and not np.allclose(flat[image], flat[k] * flip, atol=1e-12):
             raise Error(
                 f"`{variable.name}` moves the control points {k} and {image}, images of each "
-                "other, in ways that are no images; name those of one side"
+                "other, differently; name only those of one side"
             )
         found[image] = flat[k] * flip
     return found.reshape(moved.shape)

@@ -108,9 +108,9 @@ class Floating:
         Raises
         ------
         Error
-            When a density or accuracy is out of its range, or both level and draft are given.
+            If a density or accuracy is out of its range, or both level and draft are given.
         ModelError
-            When the model has no surfaces, or cannot float so.
+            If the model has no surfaces, or cannot float so.
 
         Examples
         --------
@@ -179,7 +179,7 @@ class Floating:
         Raises
         ------
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------
@@ -194,7 +194,7 @@ class Floating:
             total = self.weights()
             if not total.rows:
                 raise Error(
-                    "no mass floats\nhelp: give the displacement, or declare weights: "
+                    "no floating mass is known\nhelp: give the displacement, or declare weights: "
                     "Weight engine({2, 0, 0.5}, mass = 3);"
                 )
             if cg is not None:
@@ -263,9 +263,9 @@ class Floating:
         Raises
         ------
         Error
-            When a density or accuracy is out of its range, or both level and draft are given.
+            If a density or accuracy is out of its range, or both level and draft are given.
         ModelError
-            When the model has no surfaces, or cannot float so.
+            If the model has no surfaces, or cannot float so.
 
         Examples
         --------
@@ -317,7 +317,7 @@ class Floating:
         Raises
         ------
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------
@@ -501,7 +501,7 @@ class Floating:
         Error
             Without a mass, a centre of gravity or a density.
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------

@@ -130,7 +130,7 @@ def read_plot3d(
     Raises
     ------
     FileError
-        When the file cannot be read, or no variant explains it: cut off, or no Plot3D.
+        If the file cannot be read, or no variant explains it: cut off, or no Plot3D.
     """
     try:
         return decode_plot3d(_read(path))
@@ -156,7 +156,7 @@ def decode_plot3d(
     Raises
     ------
     FormatError
-        When no variant explains the bytes.
+        If no variant explains the bytes.
     """
     blocks, found = _core.read_plot3d(data)
     surfaces = [block[:, :, 0, :] if block.shape[2] == 1 else block for block in blocks]

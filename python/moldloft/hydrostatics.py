@@ -297,7 +297,7 @@ class Hydrostatics:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         if figure not in {each.name for each in fields(self)}:
             known = ", ".join(_NUMBERS)
@@ -342,7 +342,7 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When the figures have no density, or are of one side.
+            If the figures have no density, or are of one side.
         UnknownNameError
             If the figures have no derivatives with respect to ``by``.
 
@@ -379,9 +379,9 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When the figures have no density, or are of one side.
+            If the figures have no density, or are of one side.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
         from moldloft.stiffness import kh_files
@@ -469,7 +469,7 @@ class _Rows:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         import numpy as np
 
@@ -554,7 +554,7 @@ class _Rows:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         wanted = columns or [n for n in _NUMBERS if any(getattr(r, n) is not None for r in self)]
         for name in wanted:
@@ -583,7 +583,7 @@ class _Rows:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -619,7 +619,7 @@ class HydrostaticTable(_Rows):
         Error
             If Matplotlib does not support the extension.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         figure, axes = _axes(3)
         draft = self.column("draft")
@@ -719,7 +719,7 @@ class RightingCurve(_Rows):
         Error
             If Matplotlib does not support the extension.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         figure, (axis,) = _axes(1)
         axis.plot([math.degrees(heel) for heel in self.heels], self.gz, label="GZ")

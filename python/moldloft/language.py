@@ -444,7 +444,7 @@ def format_text(name: str, text: bytes) -> str:
     Raises
     ------
     ModelError
-        When it is not a program, or states a newer version of the language.
+        If it is not a program, or states a newer version of the language.
 
     Examples
     --------
@@ -468,7 +468,7 @@ def check_language(text: str, name: str) -> None:
     Raises
     ------
     ModelError
-        When its first line states a version that is not read here.
+        If its first line states a version that is not read here.
 
     Examples
     --------

@@ -104,9 +104,9 @@ def load(
     Raises
     ------
     ModelError
-        When the model has an error.
+        If the model has an error.
     FileError
-        When the file cannot be read, or states a later version of the language.
+        If the file cannot be read, or states a later version of the language.
 
     Examples
     --------
@@ -170,9 +170,9 @@ def loads(
     Raises
     ------
     ModelError
-        When the model has an error.
+        If the model has an error.
     FileError
-        When the text states a later version of the language: ``# moldloft 2`` in its first line.
+        If the text states a later version of the language: ``# moldloft 2`` in its first line.
 
     Examples
     --------

@@ -126,7 +126,7 @@ class Mesh:
         Raises
         ------
         UnknownNameError
-            When no surface of this name has panels.
+            If no surface of this name has panels.
 
         Examples
         --------

@@ -251,7 +251,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such object.
+            If there is no such object.
 
         Examples
         --------
@@ -350,7 +350,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         Error
-            When the level is negative.
+            If the level is negative.
         ModelError
             If the level is too fine.
 
@@ -363,7 +363,7 @@ class Model(Floating, Writable, Adapted):
         5.0
         """
         if times < 0:
-            raise Error(f"the level of refinement is 0 or more, not {times}")
+            raise Error(f"refine: expected 0 or more, found {times}")
         self._document.refine(times)
         self._refined = times
 
@@ -476,7 +476,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When a value is not a number or out of its range, or a name unknown; nothing is
+            If a value is not a number or out of its range, or a name unknown; nothing is
             changed then.
 
         Examples
@@ -526,7 +526,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When the targets are not reached; the message has the range that was found within the
+            If the targets are not reached; the message has the range that was found within the
             ranges of the parameters. The model is as before then.
 
         Examples
@@ -620,7 +620,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When no patch has such a tag, a tolerance or angle is not positive, or the model is not
+            If no patch has such a tag, a tolerance or angle is not positive, or the model is not
             whole; see :attr:`partial`.
 
         Examples
@@ -700,7 +700,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When there is no solid, divisions contradict each other, or there are too many cells.
+            If there is no solid, divisions contradict each other, or there are too many cells.
         """
         from moldloft.blocks import Blocks
 
@@ -722,7 +722,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
         ModelError
             See :meth:`blocks`.
         """
@@ -744,7 +744,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -781,9 +781,9 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When the text is not an expression, or has no number as value.
+            If the text is not an expression, or has no number as value.
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -812,9 +812,9 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When a text is not an expression, or has no number as value.
+            If a text is not an expression, or has no number as value.
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -855,7 +855,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         Error
-            When the package has no engine for pages, the model calls Python functions, or a
+            If the package has no engine for pages, the model calls Python functions, or a
             parameter was given a value that the text cannot state as a number.
         """
         from moldloft.notebook import shown

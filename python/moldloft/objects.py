@@ -177,7 +177,7 @@ class Object:
         Raises
         ------
         ModelError
-            When the name is not one of the language, or used already.
+            If the name is not one of the language, or used already.
 
         Examples
         --------
@@ -307,7 +307,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When the object is not a curve or surface, the shape is not ``(…, 3)``, or a number is
+            If the object is not a curve or surface, the shape is not ``(…, 3)``, or a number is
             not finite.
 
         Examples
@@ -346,7 +346,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When one of the two is something else, or a plane has no normal.
+            If one of the two is something else, or a plane has no normal.
 
         Examples
         --------
@@ -386,7 +386,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When the object is something else.
+            If the object is something else.
         Error
             If no NURBS reaches the accuracy, with the bound reached and its position.
 
@@ -510,7 +510,7 @@ class Surface(SurfaceCalculus, _Located):
         Raises
         ------
         Error
-            When a number is below 2.
+            If a number is below 2.
 
         Examples
         --------
@@ -591,7 +591,7 @@ class Solid(Object):
         Raises
         ------
         ModelError
-            When the object is something else.
+            If the object is something else.
         Error
             If no NURBS reaches the accuracy, with the bound reached and its position.
         """

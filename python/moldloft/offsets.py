@@ -185,9 +185,9 @@ def read(path: str | os.PathLike[str]) -> Offsets:
     Raises
     ------
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     Error
-        When it is not a table of offsets; the message names the line.
+        If it is not a table of offsets; the message names the line.
     """
     return parse(read_text(path), os.fspath(path))
 

@@ -96,7 +96,7 @@ def check_not_source(path: Path, sources: Iterable[str], *, force: bool = False)
     Raises
     ------
     FileError
-        When ``path`` is one of the sources.
+        If ``path`` is one of the sources.
     """
     if force or not path.exists():
         return

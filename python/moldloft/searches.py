@@ -63,7 +63,7 @@ class Branch:
 
     @property
     def closed(self) -> bool:
-        """True when it comes back to its beginning."""
+        """True for a closed branch."""
         return self.ends[0] == "closed"
 
     def __len__(self) -> int:

@@ -132,7 +132,7 @@ class Sketch:
         FileError
             If it cannot be read.
         SketchError
-            When a command was refused and ``strict`` is true.
+            If a command was refused and ``strict`` is true.
         """
         path = Path(utf8_path(path))
         text = read_text(path)
@@ -193,9 +193,9 @@ class Sketch:
         Raises
         ------
         SketchError
-            When there is nothing to save.
+            If there is nothing to save.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -230,7 +230,7 @@ class Sketch:
         SketchError
             If it has no body.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -262,7 +262,7 @@ class Sketch:
         Raises
         ------
         SketchError
-            When a command is refused.
+            If a command is refused.
         """
         rows, changes = self._session.report(text)
         replies = [Reply.from_row(row) for row in rows]
@@ -519,7 +519,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or view.
+            If there is no such object or view.
 
         Examples
         --------
@@ -676,7 +676,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or dimension.
+            If there is no such object or dimension.
         """
         of = self._name(name)
         if by is None:
@@ -706,7 +706,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or dimension.
+            If there is no such object or dimension.
         """
         wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
         return self._session.sweep(self._name(name), by, wanted)

@@ -710,7 +710,7 @@ class Assessment:
 
     @property
     def passed(self) -> bool:
-        """True when every clause that applies is passed: missing data are no pass."""
+        """True when every clause that applies is passed: missing data do not pass."""
         return all(c.result in ("pass", "not applicable") for c in self.checks)
 
     def as_list(self) -> list[dict[str, Any]]:

@@ -81,11 +81,11 @@ class Writable:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         FormatError
             If the format is unknown, cannot represent the model, or the model has nothing to write.
         ModelError
-            When the model has errors, or no patch has such a tag.
+            If the model has errors, or no patch has such a tag.
 
         Examples
         --------
@@ -197,7 +197,7 @@ class Writable:
     def export_remarks(self) -> list[_core.Diagnostic]:
         """Content of the model that the last text or file omits or approximates.
 
-        Notes, such as the error of fitted surfaces, are no warnings of Python.
+        Notes, such as the error of fitted surfaces, are not Python warnings.
         """
         return self._document.export_remarks()
 
@@ -213,7 +213,7 @@ class Writable:
         Parameters
         ----------
         width, height
-            In points of the picture.
+            Size in pixels.
 
         Returns
         -------
@@ -223,7 +223,7 @@ class Writable:
         Raises
         ------
         ModelError
-            When a side is not 1 to 8192.
+            If a side is not 1 to 8192.
 
         Examples
         --------
@@ -258,9 +258,9 @@ class Writable:
         Raises
         ------
         UnknownNameError
-            When there is no such kind.
+            If there is no such kind.
         ModelError
-            When a side is not 1 to 8192.
+            If a side is not 1 to 8192.
 
         Examples
         --------
@@ -305,7 +305,7 @@ class Writable:
         Raises
         ------
         Error
-            When ``to`` is another word, or an object would come back as another.
+            If ``to`` is another word, or an object would come back as another.
 
         Warns
         -----

@@ -37,7 +37,7 @@ class IgesText:
         Raises
         ------
         FileError
-            When the file is cut short before its entities are listed.
+            If the file is cut short before its entities are listed.
         """
         lines = text.splitlines()
         sections: dict[str, list[str]] = {letter: [] for letter in "SGDPT"}

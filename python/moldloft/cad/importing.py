@@ -49,7 +49,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     Raises
     ------
     FormatError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     if units not in UNITS:
         raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
@@ -185,7 +185,7 @@ _PALETTE = np.array(
 
 
 def nearest_colour(rgb: tuple[float, float, float]) -> int:
-    """The number of the model's colour that is nearest to one of a file.
+    """Index of the model colour nearest to a colour of a file.
 
     Parameters
     ----------

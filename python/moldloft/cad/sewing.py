@@ -106,7 +106,7 @@ class Sewn:
         return 0 if self.body is None else _shared(self.body) - _shared(self.shape)
 
     def say(self, remarks: list[str], *, iges: bool) -> None:
-        """Says how many edges were found to be one, and of IGES how many are open.
+        """Reports the number of merged edges and, for IGES, of open ones.
 
         Parameters
         ----------

@@ -130,7 +130,7 @@ def expanded(words: list[str]) -> list[str]:
     Raises
     ------
     Error
-        When nothing matches a pattern.
+        If nothing matches a pattern.
     """
     from glob import glob
 
@@ -288,13 +288,13 @@ def open_model(options: argparse.Namespace) -> Model:
     written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
     if written and named not in ("sdl", "ms2"):
         raise Error(
-            f"{options.model} is not a model but what models are written to: {written[0].about};"
+            f"{options.model} is an output format, not a model ({written[0].about});"
             " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
         )
     place = Path(options.model)
     if place.suffix.lower() not in ("", ".sdl", ".ms2", ".skt") and place.is_file():
         raise Error(
-            f"{options.model} is not a model by its name: expected a program (.sdl), a model file "
+            f"{options.model} is not a model: expected a program (.sdl), a model file "
             "(.ms2) or a sketch (.skt)\nhelp: a program of another name can be given on standard "
             "input, as `-`"
         )

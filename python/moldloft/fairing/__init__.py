@@ -98,7 +98,7 @@ def fair(
     Raises
     ------
     FairingError
-        When there is too little to fair, a number is not finite, the tolerance is negative, or
+        If there is too little to fair, a number is not finite, the tolerance is negative, or
         conditions contradict each other.
 
     Examples

@@ -182,7 +182,7 @@ def blocks(text: str) -> OffsetTable | None:
     Raises
     ------
     FairingError
-        With the line of a cell that is no length, or of a station without a position.
+        With the line of a cell that is not a length, or of a station without a position.
 
     Examples
     --------

@@ -171,7 +171,7 @@ def changed(source: DeskSource, state: DeskState, command: str, eyes: Eyes) -> D
     words = command.replace("\u2212", "-").split()
     word = words[0].lower() if words else ""
     if word not in COMMANDS:
-        raise FairingError(f"`{command}` is no command; expected one of: {', '.join(COMMANDS)}")
+        raise FairingError(f"`{command}` is not a command; expected one of: {', '.join(COMMANDS)}")
     parse = _Words(source, state, word, words[1:])
     if word in _SPANS:
         return _shaped(state, word, parse)

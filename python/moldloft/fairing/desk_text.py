@@ -148,7 +148,7 @@ def _network(source: DeskSource, state: DeskState, name: str) -> list[str]:
         if not own:
             out.append(f"AbsPoint {names[-1]}({', '.join(map(_number, at))});")
     if state.span is not None:
-        raise FairingError("a range is no statement of a network: end it, or lock its line")
+        raise FairingError("a range cannot be a statement of a network: end it, or lock its line")
     lists = [
         _list(names[p] for p in (line.points + line.points[:1] if line.closed else line.points))
         for line in state.lines
@@ -175,7 +175,7 @@ def _network(source: DeskSource, state: DeskState, name: str) -> list[str]:
 
 def _surface(source: DeskSource, state: DeskState, name: str) -> list[str]:
     if state.span is not None or state.held:
-        raise FairingError("ranges and locks are no statements of a surface: end them")
+        raise FairingError("ranges and locks cannot be statements of a surface: end them")
     m, n = source.grid
     grid = np.array(state.points).reshape(m, n, 3)
     out = [f"surface {name}_points[{m}, {n}];"]

@@ -120,7 +120,7 @@ def read_points(path: str | os.PathLike[str], data: bytes | None = None) -> Poin
     FairingError
         With the line at fault.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     path = Path(path)
     data = _bytes(path) if data is None else data
@@ -173,7 +173,7 @@ _WORKBOOKS = (".xlsx", ".xlsm", ".xls", ".ods")
 
 
 def _refuse_binary(path: Path, data: bytes) -> None:
-    """Workbooks and other files that are no text are refused by name."""
+    """Workbooks and other binary files are rejected by name."""
     zipped = data.startswith(b"PK\x03\x04")
     compound = data.startswith(b"\xd0\xcf\x11\xe0")
     if path.suffix.lower() in _WORKBOOKS:
@@ -181,7 +181,7 @@ def _refuse_binary(path: Path, data: bytes) -> None:
             raise FairingError(f"`{path}` is a workbook: save its sheet as CSV")
         raise FairingError(f"`{path}` is text and no workbook: give it the ending .csv")
     if zipped or compound or b"\0" in data[:4096]:
-        raise FairingError(f"`{path}` is no text: expected rows of points")
+        raise FairingError(f"`{path}` is not text: expected rows of points")
 
 
 def _of_table(path: Path, table: OffsetTable, encoding: str) -> PointFile:
@@ -401,11 +401,11 @@ def cell_texts(
     Raises
     ------
     FairingError
-        When a coordinate changed that has no cell.
+        If a coordinate changed that has no cell.
     """
     cells, given = like.cells, like.points if like.table is None else like.table
     if cells is None:
-        raise FairingError(f"`{like.path}` is no table with cells")
+        raise FairingError(f"`{like.path}` is not a table with cells")
     changed = {(int(k), int(axis)) for k, axis in np.argwhere(points != given)}
     if beyond := changed - set(cells.owners):
         row, axis = min(beyond)
@@ -451,7 +451,7 @@ def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     FairingError
         With the line of a word that is not a number.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     path = Path(path)
     out = []

@@ -139,7 +139,7 @@ def _reversed_run(points: Floats, steps: Floats) -> list[Finding]:
     if not text or whole - gain > _SHORTER * whole:
         return []
     share = f"{100 * gain / whole:.0f} %"
-    return [_order(index, f"{text} the way through all points is {share} shorter so")]
+    return [_order(index, f"{text} the line through all points is {share} shorter so")]
 
 
 def along_lines(

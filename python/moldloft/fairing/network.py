@@ -37,7 +37,7 @@ __all__ = ["NetworkFairing", "network"]
 
 @dataclass(frozen=True)
 class NetworkFairing:
-    """A faired network and all that is to be said about it."""
+    """A faired network, with its report."""
 
     points: Floats
     """The faired points, with as many columns as were given."""

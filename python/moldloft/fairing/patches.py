@@ -169,7 +169,7 @@ def patches(
     Raises
     ------
     FairingError
-        When surfaces cannot be joined, or not run on within the tolerance.
+        If surfaces cannot be joined, or not run on within the tolerance.
 
     Examples
     --------

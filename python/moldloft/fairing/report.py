@@ -82,7 +82,7 @@ def certificate_of(value: float, gap: float, relative: float, *, moved: bool) ->
     Returns
     -------
     str
-        The measure and how far it is from the least, or that no such thing is claimed.
+        The measure and its distance from the minimum, or a note that there is no bound.
     """
     said = f"relative optimality gap <= {relative:.1e} with these knots and parameters"
     if not math.isfinite(gap):

@@ -44,7 +44,7 @@ def encoded(
     Raises
     ------
     FairingError
-        When the ending is none of :data:`SPLINES`.
+        If the ending is none of :data:`SPLINES`.
     """
     ending = path.suffix.lower()
     if ending in (".igs", ".iges"):

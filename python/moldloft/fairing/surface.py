@@ -749,7 +749,7 @@ def fair_surface(
     Raises
     ------
     FairingError
-        When there is too little to fair or something is wrong.
+        If there is too little to fair or something is wrong.
     """
     if isinstance(points, SurfaceFairing):
         as_, points = points.as_, points.data

@@ -3,7 +3,7 @@
 Each offset is predicted by the neighbours on each of its lines: by polynomials of different degree
 and width, whose disagreement is the error of the prediction. The predictions of its lines are
 weighed by their errors. The clearest suspect is put aside before the next is looked for, so that it
-hides no other and accuses no neighbour. The list is ranked; it is no test of significance.
+hides no other and accuses no neighbour. The list is a ranking, not a test of significance.
 """
 
 from __future__ import annotations

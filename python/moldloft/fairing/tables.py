@@ -222,7 +222,7 @@ def _openfast(lines: list[str], out: Plain) -> list[str]:
         )
     if rows:
         made[rows[0]] = f"# {made[rows[0]]}"
-        out.notes.append(f"line {rows[0] + 1}: the reference of the aerofoil is no point of it")
+        out.notes.append(f"line {rows[0] + 1}: the reference point is not on the aerofoil")
     out.axes = [0, 1]
     return made
 

@@ -61,9 +61,9 @@ class Division:
     Raises
     ------
     Error
-        When the set has no end and no box is given.
+        If the set has no end and no box is given.
     ValueError
-        When the depth is negative.
+        If the depth is negative.
 
     Examples
     --------
@@ -125,7 +125,7 @@ class Division:
         Raises
         ------
         ValueError
-            When the point is outside of the whole box.
+            If the point is outside of the whole box.
         """
         at = np.array(triple(point, "point"))
         if (at < self.low).any() or (at > self.high).any():
@@ -175,7 +175,7 @@ class Division:
         Raises
         ------
         ValueError
-            When the axis is another, or the plane does not cut the box.
+            If the axis is another, or the plane does not cut the box.
         """
         if axis not in ("x", "y", "z"):
             raise ValueError(f"an axis is x, y or z, found {axis!r}")

@@ -69,7 +69,7 @@ class Edged:
         Raises
         ------
         Error
-            When the thickness is not above 0, or a primitive has no offset: see :meth:`offset`.
+            If the thickness is not above 0, or a primitive has no offset: see :meth:`offset`.
 
         Examples
         --------
@@ -98,7 +98,7 @@ class Edged:
         Raises
         ------
         Error
-            When the width is not above 0, or no edge is between faces of these names.
+            If the width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------
@@ -133,7 +133,7 @@ class Edged:
         Raises
         ------
         Error
-            When the width is not above 0, or no edge is between faces of these names.
+            If the width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------
@@ -178,7 +178,7 @@ class Edged:
         Raises
         ------
         Error
-            When a width is not above 0, or no edge is between faces of these names.
+            If a width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------

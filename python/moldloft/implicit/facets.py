@@ -190,7 +190,7 @@ class Facets:
         if missed:
             cells = "cell" if missed == 1 else "cells"
             warn_of(
-                f"note[volume-uncertain]: the facets are not their set in {missed} {cells}\n"
+                f"note[volume-uncertain]: the facets may deviate from the set in {missed} {cells}\n"
                 "help: look at `blunt` and `unresolved`; `Set.mass` says how well it is known"
             )
         return float(self.summary["best_volume"])

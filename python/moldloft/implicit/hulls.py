@@ -81,7 +81,7 @@ def convex_hull(*sets: Set | Field) -> Set:
     Raises
     ------
     Error
-        When the sets are others, or the hull has no volume.
+        If the sets are others, or the hull has no volume.
 
     Examples
     --------

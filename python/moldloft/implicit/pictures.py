@@ -98,9 +98,9 @@ class Pictured:
         Raises
         ------
         Error
-            When the set has no end and no box is given.
+            If the set has no end and no box is given.
         ValueError
-            When a number is beyond its range, or a name in ``mirrors`` is not one of a primitive.
+            If a number is beyond its range, or a name in ``mirrors`` is not one of a primitive.
         FileError
             If ``path`` cannot be written.
 

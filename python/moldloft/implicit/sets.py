@@ -141,7 +141,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the colour is not of the palette, or the tolerance negative.
+            If the colour is not of the palette, or the tolerance negative.
 
         Examples
         --------
@@ -231,7 +231,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the low corner is not below the high one, or a coordinate is not finite.
+            If the low corner is not below the high one, or a coordinate is not finite.
 
         Examples
         --------
@@ -260,7 +260,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the matrix is singular.
+            If the matrix is singular.
 
         Examples
         --------
@@ -314,7 +314,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When a primitive is a function from outside, which has no text.
+            If a primitive is a function from outside, which has no text.
 
         Examples
         --------
@@ -336,7 +336,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.storage import put
 
@@ -358,9 +358,9 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When that is not a name.
+            If that is not a name.
         Error
-            When a primitive is a function from outside, which has no text.
+            If a primitive is a function from outside, which has no text.
 
         Examples
         --------
@@ -463,7 +463,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -496,7 +496,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -527,7 +527,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the low corner is not below the high one, or a coordinate is not finite.
+            If the low corner is not below the high one, or a coordinate is not finite.
 
         Examples
         --------
@@ -555,7 +555,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end.
+            If the set has no end.
 
         Examples
         --------
@@ -663,7 +663,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end and no box is given.
+            If the set has no end and no box is given.
 
         Examples
         --------
@@ -709,7 +709,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When a set has no end and no box is given.
+            If a set has no end and no box is given.
 
         Examples
         --------
@@ -746,7 +746,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the direction or the length is 0.
+            If the direction or the length is 0.
 
         Examples
         --------
@@ -797,7 +797,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end and no box is given, or more cells are needed than ``limit``.
+            If the set has no end and no box is given, or more cells are needed than ``limit``.
 
         Examples
         --------

@@ -93,7 +93,7 @@ def read_panels(data: bytes, ending: str) -> Panels:
     Raises
     ------
     FileError
-        When the file is another, or cut short; the message has the line.
+        If the file is another, or cut short; the message has the line.
 
     Examples
     --------

@@ -59,7 +59,7 @@ def lock(journal: Path) -> Lock:
     Raises
     ------
     BusyError
-        When somebody does.
+        If somebody does.
     """
     return Lock(journal.with_name(f".{journal.name}.lock"), journal.name)
 
@@ -178,7 +178,7 @@ class Journal:
     Raises
     ------
     BusyError
-        When somebody else keeps it.
+        If somebody else keeps it.
     """
 
     def __init__(

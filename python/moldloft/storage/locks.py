@@ -83,9 +83,9 @@ class Lock:
     Raises
     ------
     BusyError
-        When somebody has it for longer than that.
+        If somebody has it for longer than that.
     OSError
-        When the lock's file cannot be made.
+        If the lock's file cannot be made.
     """
 
     def __init__(self, path: Path, what: str, *, wait: float = 0.0) -> None:

@@ -125,7 +125,7 @@ def digest_of(path: str | os.PathLike[str]) -> str | None:
     Raises
     ------
     FileError
-        When there is one that cannot be read.
+        If there is one that cannot be read.
     """
     try:
         return digest(read_bytes(path))

@@ -44,7 +44,7 @@ class Target:
     Raises
     ------
     FileError
-        When something is there that is not a file, or that may not be written.
+        If something is there that is not a file, or that may not be written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -155,7 +155,7 @@ def put(path: Path, data: bytes, *, expected: str | None = None, private: bool =
     Raises
     ------
     ChangedError
-        When the file is not what was expected.
+        If the file is not what was expected.
     FileError
         If it cannot be written; the file is then unchanged.
     """

@@ -73,7 +73,7 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
     Raises
     ------
     FileError
-        When a file may not be written, or the folder or the disk refuses; then nothing has changed.
+        If a file may not be written, or the folder or the disk refuses; then nothing has changed.
     """
     if not outputs:
         return []
@@ -297,7 +297,7 @@ def read_set(folder: Path, names: Sequence[str]) -> dict[str, bytes | None]:
     Raises
     ------
     FileError
-        When one cannot be read, or the folder is being written all the time.
+        If one cannot be read, or the folder is being written all the time.
     """
     folder = Path(folder)
     end = time.monotonic() + _WAIT

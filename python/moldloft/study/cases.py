@@ -184,7 +184,7 @@ class NumberError(Error):
 
 
 REASONS: dict[type[Error], str] = {ConstraintError: "constraint", OpenError: "not-closed"}
-"""Ids of refusals that are no diagnostic of the model."""
+"""Ids of errors that are not diagnostics of the model."""
 
 
 def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) -> dict[str, float]:
@@ -285,7 +285,7 @@ def _of_command(
 
 def _fill(template: Path, place: Path, words: Mapping[str, float]) -> None:
     if not template.is_dir():
-        raise SolverError(f"the template `{template}` is no folder")
+        raise SolverError(f"the template `{template}` is not a folder")
     for source in sorted(template.rglob("*")):
         target = place / source.relative_to(template)
         if source.is_dir():

@@ -261,7 +261,7 @@ class Study:
                 )
         for name in self.goal.start if self.goal else ():
             if name not in {i.name for i in self.inputs}:
-                raise StudyError(f"`optimize.start.{name}` is no input")
+                raise StudyError(f"`optimize.start.{name}` is not an input")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -287,7 +287,7 @@ def read(path: str | os.PathLike[str]) -> Study:
     StudyError
         With the invalid key and the expected value.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     place = Path(path)
     data = _parsed(place)
@@ -493,7 +493,7 @@ def _goal(table: Table) -> Goal:
     if not objectives:
         raise StudyError("`optimize` needs `minimize` or `maximize`, names of outputs")
     if len({o.output for o in objectives}) < len(objectives):
-        raise StudyError("`optimize` has an objective twice")
+        raise StudyError("`optimize` has the same objective twice")
     several = len(objectives) > 1
     default = FOR_SEVERAL[0] if several else "slsqp"
     method = _choice(table.take("method", "text", default), tuple(OPTIMISERS), table.at("method"))

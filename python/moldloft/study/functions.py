@@ -147,7 +147,7 @@ def function(
     Raises
     ------
     Error
-        For inputs that cannot be set and outputs that are no numbers.
+        For inputs that cannot be set and outputs that are not numbers.
     """
     named = dict(outputs) if isinstance(outputs, Mapping) else {text: text for text in outputs}
     return Function(model, inputs, named)

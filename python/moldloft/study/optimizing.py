@@ -194,11 +194,11 @@ def optimize(
     Raises
     ------
     StudyError
-        When the study has no goal, or a method needs derivatives that an analysis has not.
+        If the study has no goal, or a method needs derivatives that an analysis has not.
     MissingPackageError
-        When the optimiser's package is not installed.
+        If the optimiser's package is not installed.
     Error
-        When the model has no numbers at the start.
+        If the model has no numbers at the start.
     """
     from moldloft.study.optimizers import METHODS
 
@@ -380,7 +380,7 @@ class Search:
         return objectives, constraints
 
     def violations(self, constraints: Floats) -> Floats:
-        """By how much constraints exceed their limits, ``(points, constraints)``; else 0."""
+        """Excess of constraints over their limits, ``(points, constraints)``; else 0."""
         found: Floats = np.maximum(np.maximum(self.low - constraints, constraints - self.high), 0)
         return found
 

@@ -79,7 +79,7 @@ def _terms(results: Results, tolerances: Mapping[str, float]) -> dict[str, list[
         if not tolerance >= 0 or not math.isfinite(tolerance):
             raise Error(f"the tolerance of `{name}` is at least 0, found {tolerance}")
         if name not in results.inputs:
-            raise Error(f"`{name}` is no input; inputs: {', '.join(results.inputs)}")
+            raise Error(f"unknown input `{name}`; inputs: {', '.join(results.inputs)}")
     found = {}
     for output in by_value(results):
         slopes = {n: f"d {output} / d {n}" for n, t in tolerances.items() if t > 0}

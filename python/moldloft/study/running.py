@@ -62,9 +62,9 @@ class Cases:
     Raises
     ------
     StudyError
-        When an input or output is unknown to the model.
+        If an input or output is unknown to the model.
     ModelError
-        When the model has an error.
+        If the model has an error.
     """
 
     def __init__(self, study: Study) -> None:
@@ -247,7 +247,7 @@ def sweep(
     StudyError
         For a definition that the model does not fit.
     BusyError
-        When another process runs the study.
+        If another process runs the study.
 
     Notes
     -----

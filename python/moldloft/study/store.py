@@ -63,16 +63,16 @@ class Store:
     Parameters
     ----------
     path
-        The SQLite file; it is made when it is not there.
+        The SQLite file; created if missing.
     writing
         True if results are added: one process at a time may.
 
     Raises
     ------
     BusyError
-        When another process runs the study.
+        If another process runs the study.
     FileError
-        When the file is no store of this version, is damaged, or cannot be made.
+        If the file is not a store of this version, is damaged, or cannot be made.
     """
 
     def __init__(self, path: str | os.PathLike[str], *, writing: bool = False) -> None:

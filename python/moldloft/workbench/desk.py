@@ -289,7 +289,7 @@ def _knots(curve: Any, count: int) -> list[float]:
 
 
 def _detail(desk: Desk, result: DeskResult, k: int) -> dict[str, Any]:
-    """A line in full."""
+    """All details of a line."""
     curve = result.curves[k]
     state = result.state
     given = np.array([state.points[p] for p in curve.points])

@@ -27,7 +27,7 @@ class Draft:
     Raises
     ------
     Error
-        When another workbench has the model.
+        If another workbench has the model.
     """
 
     def __init__(self, model: Path) -> None:

@@ -55,7 +55,7 @@ def exported_page(
     Raises
     ------
     Error
-        When a value cannot be set, or the page was not built.
+        If a value cannot be set, or the page was not built.
     """
     folder = path.resolve().parent
     return page_of(
@@ -91,7 +91,7 @@ def page_of(
     Raises
     ------
     Error
-        When a value cannot be set, or the page was not built.
+        If a value cannot be set, or the page was not built.
     """
     session = _core.Session(name, text, None if folder is None else str(folder), list(library))
     asked = partial(_asked, session)
