@@ -87,7 +87,7 @@ def test_a_mesh_with_a_pole_opens_everywhere(tmp_path: Path) -> None:
         ("build hull.sdl --to xyzz", 2, "did you mean `xyz`"),
         ("check twice.sdl", 1, "mirrored-twice"),
         ("build twice.sdl --to stl", 1, "mirrored-twice"),
-        ("check hull.gdf", 1, "it holds no panels"),
+        ("check hull.gdf", 1, "it contains no panels"),
         ("check hull.txt", 1, "is not a model: expected"),
         ("check furlong.sdl", 1, "furlong"),
         ("hydro hull.sdl --immm", 2, "unknown option"),

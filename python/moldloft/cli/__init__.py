@@ -245,7 +245,9 @@ def _command_first(arguments: list[str]) -> list[str]:
         words = 1 if "=" in rest[0] else 1 + _COMMON[name]
         moved += rest[:words]
         rest = rest[words:]
-    if not rest or rest[0].startswith("-"):
+    if not rest:
+        return []
+    if rest[0].startswith("-"):
         return arguments
     return [rest[0], *moved, *rest[1:]]
 
