@@ -294,7 +294,7 @@ def to_capytaine(
 
 
 def _scaled_gdf(text: str, factor: float) -> str:
-    """A GDF with its vertices times a factor; the four lines before them stay."""
+    """A GDF with scaled vertices; the four lines before them are unchanged."""
     if factor == 1:
         return text
     lines = text.splitlines()
@@ -385,7 +385,7 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
 
 @contextlib.contextmanager
 def _kept_signals() -> Iterator[None]:
-    """Gmsh makes a broken pipe end the process; within, it stays the exception that it was."""
+    """Keeps a broken pipe an exception, since Gmsh makes it end the process."""
     pipe = getattr(signal, "SIGPIPE", None)
     before = pipe and signal.getsignal(pipe)
     yield

@@ -69,7 +69,7 @@ _WORDS = {
 
 
 def explain(module: dict[str, Any]) -> None:
-    """Has the public functions and classes of a module name the argument that is wrong.
+    """Makes errors of the public functions and classes of a module name the wrong argument.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _fault(
 def _misspelt(
     where: str, signature: inspect.Signature, options: Mapping[str, Any]
 ) -> tuple[str, str] | None:
-    """The named argument that a function does not have, with the nearest that it has."""
+    """An unknown named argument of a function, with the nearest known one."""
     parameters = signature.parameters.values()
     known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     takes_others = any(p.kind is p.VAR_KEYWORD for p in parameters)

@@ -100,7 +100,7 @@ def cut(blocks: Blocks, every: int = 0) -> list[Hex]:
 
 
 def _spread(cuts: Cuts, interfaces: Sequence[Interface]) -> None:
-    """Carries cuts over to what is joined, until nothing is new."""
+    """Propagates cuts to joined blocks until there are no new ones."""
     changed = True
     while changed:
         changed = False
@@ -137,7 +137,7 @@ def _line(indices: NDArray[np.uint32], part: Hex, axis: int, edge: int) -> NDArr
 
 
 def _separate(blocks: Blocks, parts: Sequence[Hex], cuts: Cuts) -> bool:
-    """Cuts edges that run between the vertices of another one. True when any was."""
+    """Cuts edges between vertices of another edge. True if any edge was cut."""
     known: dict[tuple[int, int], tuple[int, ...]] = {}
     new = False
     for part in parts:

@@ -105,7 +105,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Boundary:
-    """A rectangle of a block's face that meets no other."""
+    """A rectangle of a block face without a neighbour."""
 
     block: int
     """The block, counted from 0."""
@@ -181,7 +181,7 @@ class Blocks:
 
     @cached_property
     def boundaries(self) -> tuple[Boundary, ...]:
-        """The parts of faces that meet nothing. Faces that are a line or a point are left out."""
+        """The parts of faces without a neighbour. Degenerate faces are omitted."""
         size = float(np.abs(self.vertices).max(initial=1.0))
         found = []
         for part in self._core.boundaries():
@@ -217,7 +217,7 @@ class Blocks:
         return len(self.blocks)
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> list[Path]:
-        """Write the blocks to a file, whole or not at all.
+        """Write the blocks to a file atomically.
 
         Parameters
         ----------

@@ -151,11 +151,11 @@ def within_limits() -> Iterator[None]:
 
 
 class _OverspentError(BaseException):
-    """Raised in the thread that is watched; no reader takes it for a fault of its file."""
+    """Raised in the watched thread; readers do not mistake it for an error of their file."""
 
 
 class _Watch(threading.Thread):
-    """Looks at what the thread that made it uses, and raises :class:`_OverspentError` there."""
+    """Watches the resources of the creating thread, and raises :class:`_OverspentError` in it."""
 
     _LOOK = 0.02
     """Seconds between two looks."""

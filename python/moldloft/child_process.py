@@ -1,4 +1,4 @@
-"""A process of Python that answers requests, one after the other, and may end over one.
+"""A Python process that answers requests one after the other, and that a request may crash.
 
 Requests and answers are JSON, each behind its length; only answers come from the process's standard
 output, whatever its libraries print.
@@ -72,7 +72,7 @@ class ChildProcess:
         return self._process.poll() is None
 
     def ask(self, request: Mapping[str, Any], seconds: float) -> dict[str, Any] | ProcessEnd:
-        """The answer to a request, or how the process ended over it.
+        """The answer to a request, or the end of the process.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class ChildProcess:
 
 
 def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> None:
-    """Answer the requests of the process that began this one, until it asks no more.
+    """Answer requests of the parent process until it closes the connection.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> No
 
 
 def bounded(memory: int, seconds: float = math.inf) -> None:
-    """Bounds what this process takes from now on, where the system can.
+    """Limits the resources of this process, if the system supports it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Display of models, objects, meshes and figures in a notebook: HTML and SVG without a server."""
+"""Display of models, objects, meshes and figures in notebooks, as HTML and SVG without a server."""
 
 from __future__ import annotations
 
@@ -204,7 +204,7 @@ def lines_svg(lines: Sequence[Floats]) -> str:
 
 
 def worst_panel(patch: Patch, metric: str) -> str:
-    """The largest value of a metric of quality; a dash for a patch without panels, as lines are."""
+    """The largest value of a quality metric; a dash for a patch without panels."""
     figures = patch.quality.get(metric)
     return "-" if figures is None else f"{figures['max']:.3g}"
 

@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Error(Exception):
-    """Anything that went wrong in Moldloft by a user's or a file's fault.
+    """Base class of errors due to a model, a file or an argument.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ _MOST_RAISED = 64
 
 
 def record_raised(function: str, error: BaseException) -> None:
-    """Keep what a model's Python function raised, for the error that the model raises then."""
+    """Store the exception of a model's Python function for the error that the model raises."""
     _raised.pop(key := f"{function} raised {type(error).__name__}: {error}", None)
     _raised[key] = error
     while len(_raised) > _MOST_RAISED:
@@ -162,7 +162,7 @@ class UnknownNameError(Error, KeyError):
 
 
 class FileError(Error, OSError):
-    """A file or folder cannot be read or written; nothing was left half-written."""
+    """A file or folder cannot be read or written; no file is left partly written."""
 
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         Error.__init__(self, message, diagnostics)

@@ -69,7 +69,7 @@ def file_name(stem: str, format: str) -> str:
 
 
 def ending(path: Path) -> str:
-    """Format by the name of a file: its ending, or the format of a longer one.
+    """Format of a file name: its extension, or a longer known one.
 
     Parameters
     ----------

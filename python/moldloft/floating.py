@@ -153,7 +153,7 @@ class Floating:
         by: Sequence[str] = (),
         accuracy: float = 1e-6,
     ) -> Hydrostatics:
-        """The attitude at rest of a body of given mass.
+        """The equilibrium attitude of a body of given mass.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The table of formats that models are written in.
+"""The table of output formats of models.
 
 The rows are those of the Rust crate ``export``, and those of the formats that Python writes:
 :data:`PYTHON_ROWS`, each with the function that makes its file.
@@ -85,7 +85,7 @@ class Format:
         return self.holds == "volumes"
 
     def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
-        """The bytes that a row of Python makes; surfaces are fitted within the tolerance.
+        """The bytes of a format implemented in Python; surfaces are fitted within the tolerance.
 
         Parameters
         ----------

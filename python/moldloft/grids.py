@@ -107,7 +107,7 @@ def _grids(grids: Sequence[ArrayLike]) -> list[NDArray[np.float64]]:
 def read_plot3d(
     path: str | Path,
 ) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
-    """The blocks of a Plot3D grid file, whatever its variant.
+    """The blocks of a Plot3D grid file of any variant.
 
     Text, plain binary and Fortran records, single and double precision, one block and several, two
     and three coordinates, blanking and both byte orders are detected from the length of
@@ -225,7 +225,7 @@ def write_plot3d(
     *,
     iblank: Sequence[ArrayLike] | None = None,
 ) -> Path:
-    """Write grids as a Plot3D file, whole or not at all.
+    """Write grids as a Plot3D file, atomically.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def _commit(path: str | Path, data: bytes) -> Path:
 def write(
     path: str | Path, grids: Sequence[ArrayLike], *, names: Sequence[str] | None = None
 ) -> list[Path]:
-    """Write grids in the format that the file's name ends in.
+    """Write grids in the format of the file extension.
 
     Parameters
     ----------
@@ -449,7 +449,7 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
 
 
 def write_csv(path: str | Path, points: ArrayLike) -> Path:
-    """Write points (n, 2) or (n, 3) as lines of numbers with commas, under a heading.
+    """Write points (n, 2) or (n, 3) as comma-separated values with a header.
 
     Every digit that is needed to read the same numbers back is written.
 

@@ -31,7 +31,7 @@ _RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
 
 
 def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
-    """Trimmed surfaces, and twice what their triangles miss of volume and area.
+    """Trimmed surfaces, with twice their faceting errors of volume and area.
 
     The triangles' figures are compared with the integrals over the surfaces themselves. Twice, as
     what is missed above the water may cancel what is missed below.
@@ -254,7 +254,7 @@ class Hydrostatics:
         return lines
 
     def as_dict(self) -> dict[str, Any]:
-        """All figures that have a meaning, by name, in a fixed order.
+        """All defined figures by name, in a fixed order.
 
         Returns
         -------
@@ -454,7 +454,7 @@ class _Rows:
         return iter(self.rows)
 
     def column(self, name: str) -> NDArray[np.float64]:
-        """One figure of all rows; ``nan`` where it has no meaning.
+        """One figure of all rows; ``nan`` where it is undefined.
 
         Parameters
         ----------
@@ -568,7 +568,7 @@ class _Rows:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all.
+        """Write :meth:`csv` to a file atomically.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The language itself: its reference, canonical texts, and the shapes that expressions have."""
+"""The language: its reference, canonical texts, and shapes of expressions."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def statements() -> list[dict[str, Any]]:
 
 
 def keywords() -> list[str]:
-    """The words of the language: types, and words that statements are made of.
+    """The reserved words of the language: types and keywords.
 
     >>> "foreach" in keywords()
     True
@@ -456,7 +456,7 @@ def format_text(name: str, text: bytes) -> str:
 
 
 def check_language(text: str, name: str) -> None:
-    r"""Refuse a text that states a newer version of the language, before it is rewritten.
+    r"""Reject a text that states a newer version of the language, before it is rewritten.
 
     Parameters
     ----------

@@ -215,7 +215,7 @@ def _add_functions(
 
 
 def _guarded(model: Model, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function as its model calls it: from inside, that cannot be used."""
+    """The function as called by its model, which cannot be used inside it."""
     inside = model._inside
 
     def call(*arguments: Any) -> Any:

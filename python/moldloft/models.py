@@ -49,7 +49,7 @@ class Param:
 
 @dataclass(frozen=True)
 class Adjustment:
-    """A parameter that has followed in :meth:`Model.solve_for`."""
+    """A parameter adjusted by :meth:`Model.solve_for`."""
 
     before: float
     """Its value before."""
@@ -235,7 +235,7 @@ class Model(Floating, Writable, Adapted):
         return {name: shape for name, shape, _ in self._document.variables()}
 
     def facts(self, name: str) -> dict[str, Any]:
-        """Known facts about an object, without evaluation of its shape.
+        """Data of an object that need no evaluation of its shape.
 
         Parameters
         ----------
@@ -294,7 +294,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def symmetry(self) -> str:
-        """The axes in whose planes the model is mirrored, such as ``"y"``; else empty."""
+        """The normal axes of the symmetry planes, such as ``"y"``; may be empty."""
         return self._document.symmetry()
 
     @property
@@ -324,7 +324,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def written(self) -> dict[str, bytes]:
-        """Files written by the program, by name; ``moldloft run`` puts them on the disk."""
+        """Files written by the program, by name; ``moldloft run`` saves them."""
         files = dict(self._document.written())
         for name, blocks, joints, ends in self._document.written_for_cgns():
             # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
@@ -502,7 +502,7 @@ class Model(Floating, Writable, Adapted):
     def solve_for(
         self, targets: Mapping[str, float], by: Sequence[str] | Mapping[str, float]
     ) -> Solution:
-        """Give numbers of the model values: chosen parameters follow by the least change.
+        """Bring numbers of the model to given values by the least change of chosen parameters.
 
         Of all values within the ranges of the parameters that give the targets, those of the least
         sum of squares of weighted changes, each relative to its range (without one, to its
@@ -596,7 +596,7 @@ class Model(Floating, Writable, Adapted):
         tolerance: float | None = None,
         angle: float | None = None,
     ) -> Mesh:
-        """Panels of all shown surfaces, for the current model; remembered until it changes.
+        """Panels of all shown surfaces; cached until the model changes.
 
         Parameters
         ----------
@@ -764,7 +764,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.jacobian(names_of(by))
 
     def derivative(self, expression: str, by: str) -> Any:
-        """The exact derivative of a number or vector by one parameter or literal.
+        """The exact derivative of a number or vector with respect to a parameter or literal.
 
         Parameters
         ----------
@@ -795,7 +795,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.derivatives([expression], [by])[0][0]
 
     def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
-        """Exact derivatives of several expressions by several parameters, ``[expression][by]``.
+        """Exact derivatives of expressions with respect to parameters, ``[expression][by]``.
 
         Parameters
         ----------
@@ -833,7 +833,7 @@ class Model(Floating, Writable, Adapted):
     # -- for other packages ----------------------------------------------------------------
 
     def view(self, *, height: int = 600, follow: bool = True) -> Any:
-        """The workbench's page in a notebook's cell: sliders, drags, typing, hydrostatics.
+        """The workbench in a notebook cell: sliders, drags, typing, hydrostatics.
 
         The page has its own engine in WebAssembly, with the same bits. With ``anywidget`` installed
         (extra ``notebook``) this model follows changes in the page; after changes in Python

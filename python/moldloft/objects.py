@@ -131,7 +131,7 @@ class Object:
 
     @property
     def ok(self) -> bool:
-        """False when it failed or waits for one that did."""
+        """False if it failed or depends on a failed object."""
         return bool(self._facts()["ok"])
 
     @property
@@ -149,7 +149,7 @@ class Object:
         return wrapped(self._document.eval(self.name))
 
     def delete(self) -> None:
-        """Removes the object from the model and its text; refused while others depend on it.
+        """Removes the object from the model and its text; an error if others depend on it.
 
         Raises
         ------
@@ -289,7 +289,7 @@ class _Located(Object):
     """Targets of searches: curves and surfaces."""
 
     def nearest(self, points: ArrayLike) -> NearestPoints:
-        """The points of a curve or surface that are nearest to given ones, all at once.
+        """The points of a curve or surface nearest to given points.
 
         The first call on a shape prepares it for searches (milliseconds); later calls, of any
         number of points, use that until the shape changes. The answers do not depend on each other.
@@ -492,7 +492,7 @@ class Surface(SurfaceCalculus, _Located):
     def grid(self, nu: int, nv: int, *, normals: Literal[True]) -> tuple[Floats, Floats]: ...
 
     def grid(self, nu: int, nv: int, *, normals: bool = False) -> Floats | tuple[Floats, Floats]:
-        """Positions of a surface on an even grid of its parameters.
+        """Positions of a surface on a uniform parameter grid.
 
         Parameters
         ----------
@@ -661,7 +661,7 @@ class Contours(Object):
 
     @property
     def sections(self) -> list[list[ContourLine]]:
-        """The lines of each section, on one side of planes of symmetry as the model has them."""
+        """The lines of each section of the modelled half or whole."""
         cut = self._model._document.sections_of(self.name)
         return [[ContourLine(*line) for line in lines] for _, lines in cut]
 

@@ -91,7 +91,7 @@ def _fault(name: str) -> str:
 
 
 def check_not_source(path: Path, sources: Iterable[str], *, force: bool = False) -> None:
-    """Refuse to overwrite what was read.
+    """Refuse to overwrite input files.
 
     Raises
     ------

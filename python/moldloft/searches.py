@@ -91,7 +91,7 @@ class Intersection:
     """All branches longer than this are found that cross at an angle somewhere."""
 
     def __bool__(self) -> bool:
-        """True when there is anything in common."""
+        """True if there is a common point."""
         return bool(self.branches) or len(self.points) > 0
 
 

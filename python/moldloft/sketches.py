@@ -108,7 +108,7 @@ class Sketch:
 
     @property
     def session(self) -> _core.SketchSession:
-        """The session behind it, for programs that talk with it line by line."""
+        """The underlying session, for line-by-line use."""
         return self._session
 
     @classmethod
@@ -178,7 +178,7 @@ class Sketch:
         return replies
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write all objects as commands, or as JSON when the name ends so; whole or not at all.
+        """Write all objects as commands or, by the extension, as JSON; atomically.
 
         Parameters
         ----------
@@ -312,7 +312,7 @@ class Sketch:
     def dimension(
         self, axis: str, p: int, q: int, value: float | str, *, name: str | None = None
     ) -> list[ObjectChange]:
-        """Say how much the coordinate of point ``q`` is more than that of ``p``.
+        """Set the difference between the coordinates of point ``q`` and point ``p``.
 
         Parameters
         ----------
@@ -384,7 +384,7 @@ class Sketch:
         return SketchSnap((x, y), point, on, part, axis)
 
     def suggestions(self, *, name: str | None = None) -> list[SketchSuggestion | None]:
-        """The missing dimensions as the picture suggests them, one for each loose part.
+        """The missing dimensions suggested by the drawing, one for each undetermined part.
 
         Parameters
         ----------
@@ -402,7 +402,7 @@ class Sketch:
     def candidates(
         self, *, name: str | None = None
     ) -> list[tuple[NDArray[np.float64], NDArray[np.uint32]]]:
-        """The bodies that fit the wireframe, likeliest first, each as :meth:`mesh` gives it.
+        """The bodies that fit the wireframe, most likely first, in the form of :meth:`mesh`.
 
         Parameters
         ----------
@@ -420,7 +420,7 @@ class Sketch:
     def preview(
         self, *, name: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.uint32]] | None:
-        """The body that the picture and the dimensions suggest, as :meth:`mesh` gives it.
+        """The body estimated from drawing and dimensions, in the form of :meth:`mesh`.
 
         Parameters
         ----------
@@ -569,7 +569,7 @@ class Sketch:
 
     @property
     def active(self) -> str | None:
-        """The name of the active object, which the properties below are about."""
+        """The name of the active object, to which the properties below refer."""
         return self._session.active()
 
     @property
@@ -624,7 +624,7 @@ class Sketch:
 
     @property
     def text(self) -> str:
-        """The commands that make all objects: running them gives the same ones."""
+        """The commands that reproduce all objects."""
         return self._session.text(None)
 
     def mesh(
@@ -656,7 +656,7 @@ class Sketch:
         return self._session.mesh(self._name(name), tolerance)
 
     def gradient(self, by: Sequence[str] | None = None, *, name: str | None = None) -> Gradient:
-        """Exact derivatives of volume, area, centroid and corners by dimensions.
+        """Exact derivatives of volume, area, centroid and corners with respect to dimensions.
 
         Parameters
         ----------
@@ -685,7 +685,7 @@ class Sketch:
         return Gradient(tuple(by), volume, area, centroid, points, tuple(kinks))
 
     def sweep(self, by: str, values: ArrayLike, *, name: str | None = None) -> NDArray[np.float64]:
-        """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.
+        """Volume, area and centroid at values of a dimension, ``(n, 5)``; the sketch is unchanged.
 
         Rows are NaN where there is no body.
 
@@ -789,7 +789,7 @@ class Sketch:
 
 
 class Drag:
-    """A run of edits of a :class:`Sketch` that count as one; see :meth:`Sketch.drag`.
+    """A sequence of edits of a :class:`Sketch` that counts as one; see :meth:`Sketch.drag`.
 
     Attributes
     ----------

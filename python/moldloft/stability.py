@@ -51,7 +51,7 @@ _AREAS = ((0, 30), (0, 40), (30, 40))
 
 @dataclass(frozen=True)
 class Opening:
-    """A point through which water enters when it is under water."""
+    """A downflooding point."""
 
     name: str
     """Its name in reports."""
@@ -214,7 +214,7 @@ class Stability:
         return self.energy(high) - self.energy(low) if dry else math.nan
 
     def slope(self, heel: float) -> float:
-        """The exact derivative of the righting arm by the heel.
+        """The exact derivative of the righting arm with respect to heel.
 
         Parameters
         ----------
@@ -264,7 +264,7 @@ class Stability:
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
     def loll(self, most: float = math.pi) -> float | None:
-        """The least positive heel at which an overturning arm turns righting.
+        """The smallest positive heel at which the arm changes from overturning to righting.
 
         ``None`` for a body that is stable upright, or finds no such heel up to ``most``.
 
@@ -334,7 +334,7 @@ class Stability:
         return None
 
     def range(self, most: float = math.pi) -> float:
-        """The range of positive stability, from upright or the angle of loll on.
+        """The range of positive stability, from upright or from the angle of loll.
 
         Parameters
         ----------
@@ -373,7 +373,7 @@ class Stability:
         return None
 
     def flooding(self, most: float = math.pi) -> tuple[float, str] | None:
-        """The least heel at which an opening or an open edge reaches the water, and its name.
+        """The smallest heel at which an opening or an open edge reaches the water, and its name.
 
         ``None`` if there is no opening, or no opening is reached.
 
@@ -388,7 +388,7 @@ class Stability:
         return min(angles) if angles else None
 
     def _afloat(self, most: float) -> float:
-        """The largest heel up to ``most`` at which the skin keeps the water out."""
+        """The largest heel up to ``most`` at which no open edge is immersed."""
         edge = self.deck_edge(most)
         return most if edge is None else edge
 
@@ -547,7 +547,7 @@ class CrossCurves:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all.
+        """Write :meth:`csv` to a file atomically.
 
         Parameters
         ----------

@@ -76,7 +76,7 @@ class Units:
 
     @classmethod
     def parse(cls, text: str) -> Units:
-        """The units of a text such as ``m t kN``, of each dimension one at most.
+        """The units of a text such as ``m t kN``, at most one per dimension.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Units:
         return Units(self.length, mass, force, self.angle)
 
     def force_scale(self) -> float:
-        """A mass times an acceleration of these units, in that of force; 1 where one is missing.
+        """Mass times acceleration in the unit of force; 1 if a unit is missing.
 
         Returns
         -------

@@ -42,7 +42,7 @@ class Writable:
         whole: bool = False,
         triangles: bool = False,
     ) -> list[Path]:
-        """Write the panels to a file, whole or not at all.
+        """Write the panels to a file atomically.
 
         Parameters
         ----------

@@ -60,7 +60,7 @@ def _clash(purpose: str, package: str) -> str:
 
 
 def identifier(label: str, taken: set[str]) -> str:
-    """A name that the language takes, used once.
+    """A unique valid name of the language.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ _LARGEST = 1e50
 def _check_numbers(
     path: object, listed: dict[int, tuple[int, int, int]], fields: dict[int, list[str]]
 ) -> None:
-    """Refuses numbers beyond those of models."""
+    """Rejects numbers beyond the limits of models."""
     for number, own in fields.items():
         for word in own:
             if _EXPONENT.fullmatch(word) and abs(float(_e(word))) > _LARGEST:

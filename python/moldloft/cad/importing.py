@@ -1,4 +1,4 @@
-"""STEP and IGES files as programs: faces become surfaces to build upon."""
+"""STEP and IGES files as programs, with faces as surfaces that other objects can use."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _blamed(fault: Any, text: str) -> set[str]:
 
 
 def _own_names(face: ImportedFace) -> set[str]:
-    """The names of the objects that a face becomes."""
+    """Names of the objects made from a face."""
     sides = {
         f"{face.name}_s{c}_{k}" for c, cycle in enumerate(face.loops) for k in range(len(cycle))
     }

@@ -46,7 +46,7 @@ _PLACES = 33
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """OCCT prints to the terminal itself: its first descriptor is turned to nowhere."""
+    """Silences OCCT, which prints to the terminal directly, by redirecting its standard output."""
     sys.stdout.flush()
     kept = os.dup(1)
     nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -434,7 +434,7 @@ class _Places:
 
 
 class _Converted:
-    """A shape as NURBS: all of it, or face by face where OCCT cannot convert it in one."""
+    """A shape as NURBS: converted at once, or face by face if that fails in OCCT."""
 
     def __init__(self, shape: Any) -> None:
         from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
@@ -476,7 +476,7 @@ class _Converted:
 
 
 class _Renumbered:
-    """Edges of one face with the numbers that they have in all of the shape."""
+    """Edges of one face with their numbers in the whole shape."""
 
     def __init__(self) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
@@ -611,7 +611,7 @@ class _Names:
         return self._names.get(self._shapes.FindIndex(shape.Located(self._nowhere)), "")
 
     def colour(self, shape: Any) -> tuple[float, float, float] | None:
-        """The colour of a shape, wherever it is, sRGB."""
+        """The colour of a shape or of one that contains it, sRGB."""
         return self._colours.get(self._shapes.FindIndex(shape.Located(self._nowhere)))
 
 
@@ -765,7 +765,7 @@ def _chained(sides: list[tuple[int, bool, Nurbs]]) -> list[tuple[int, bool, Nurb
 
 
 def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs | None:
-    """A side as an edge of the parameters, where that is the same edge in space, or nothing.
+    """A side as an edge of the parameter square, if it is the same curve in space, else None.
 
     Towards a pole one parameter has ever less effect, and programs write it with any error there.
     """
@@ -799,7 +799,7 @@ def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs |
 
 
 def border(trace: Nurbs) -> str:
-    """The edge of the parameters followed by a curve in them, such as ``u0``; or an empty text.
+    """The edge of the parameter square along which a curve runs, such as ``u0``; may be empty.
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ class StepText:
 
     @cached_property
     def entities(self) -> dict[int, str]:
-        """The entities of the text as it was, by number, without the words in their strings."""
+        """The entities of the original text by number, without the contents of their strings."""
         plain = re.sub(_STRING, "''", self.text)
         found = re.findall(r"#(\d+)\s*=\s*([^;]*);", plain)
         return {int(n): body.strip() for n, body in found}
@@ -384,7 +384,7 @@ def _few(numbers: list[int]) -> str:
 
 
 def _ended(text: str) -> str:
-    """The whole statements of a file that is cut short, with an end."""
+    """The complete statements of a truncated file, with an end section."""
     last = 0
     # A string that the cut leaves open holds no end of a statement.
     for token in re.finditer(r"'(?:[^']|'')*(?:'|\Z)|;", text):
@@ -397,7 +397,7 @@ def _ended(text: str) -> str:
 
 
 def _letters(words: str) -> str:
-    """A string of Part 21 as it reads."""
+    """A decoded string of Part 21."""
 
     def wide(found: re.Match[str]) -> str:
         size = 4 if found[1] == "2" else 8

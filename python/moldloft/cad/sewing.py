@@ -81,7 +81,7 @@ class Sewn:
 
     @property
     def whole(self) -> Any:
-        """The shape that its faces are parts of."""
+        """The shape that contains its faces."""
         return self.shape if self.body is None else self.body
 
     @cached_property

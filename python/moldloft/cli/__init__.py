@@ -163,7 +163,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _shown_streams() -> tuple[TextIO, TextIO]:
-    """Standard output and error as they are safe for the texts of others."""
+    """Standard output and error that are safe for untrusted text."""
     from moldloft.cli.shown import ShownStream
 
     return cast("TextIO", ShownStream(sys.stdout)), cast("TextIO", ShownStream(sys.stderr))
@@ -234,7 +234,7 @@ _COMMON = {"--color": 1, "--limit": 1, "--traceback": 0}
 
 
 def _command_first(arguments: list[str]) -> list[str]:
-    """The words with the options of all commands behind the command.
+    """The words with common options moved behind the command.
 
     >>> _command_first(["--color", "never", "--traceback", "check", "a.sdl"])
     ['check', '--color', 'never', '--traceback', 'a.sdl']

@@ -295,7 +295,7 @@ def _is_partly_made(model: Model) -> bool:
 
 
 def _missing(model: Model) -> list[str]:
-    """The objects that could not be made, those of unknown kinds too."""
+    """The failed objects, including those of unknown kinds."""
     blocked = [d.object for d in model.diagnostics if d.is_error and d.object]
     failed = [o["name"] for o in _objects(model) if not o["ok"]]
     return list(dict.fromkeys(failed + blocked))

@@ -102,7 +102,7 @@ def add_model(
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
-    """The option that leaves messages about success out."""
+    """The option that suppresses messages about success."""
     parser.add_argument(
         "-q", "--quiet", action="store_true", help="only errors, warnings and remarks"
     )
@@ -216,7 +216,7 @@ def stem_of(options: argparse.Namespace) -> str:
 
 
 def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | None:
-    """Writes a file whole or not at all; ``-`` is standard output, and then no path is given.
+    """Writes a file atomically; ``-`` is standard output, without a returned path.
 
     One of the sources is not overwritten.
     """
@@ -234,7 +234,7 @@ def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | N
 
 
 def put_text(text: str) -> None:
-    """Writes a text of a person's on standard output: as it is, but on a terminal shown."""
+    """Writes untrusted text to standard output: unchanged, but escaped on a terminal."""
     if sys.stdout.isatty():
         sys.stdout.write(text)
     else:
@@ -355,7 +355,7 @@ def _finite(data: Any) -> Any:
 
 
 class Progress:
-    """A line about the current stage of long work, on terminals, from the second second on.
+    """A line about the current stage of work that takes longer than a second, on terminals.
 
     It shows the seconds of the stage or, if the fraction done is known, percent and time left.
     Nothing is printed into pipes and files.

@@ -66,7 +66,7 @@ def as_data(value: Any) -> Any:
 
 
 def as_text(value: Any) -> str:
-    """The value as a person reads it.
+    """The value as text for a reader.
 
     Numbers with all digits; each row of a surface on a line of its own.
 

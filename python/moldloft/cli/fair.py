@@ -465,12 +465,12 @@ class Source(abc.ABC):
         raise Error("--suspects: for files of points and tables of offsets")
 
     def sheet(self, result: Any, path: Path) -> Path:
-        """Writes the sheet; the path that it was written to."""
+        """Writes the sheet and returns its path."""
         raise Error("--sheet: for files of points and tables of offsets; --report is for others")
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
-        """Writes the result; the path that it was written to."""
+        """Writes the result and returns its path."""
 
 
 def _numbers(path: str | None) -> list[float] | None:
@@ -554,7 +554,7 @@ def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[st
 
 
 def _original(options: argparse.Namespace, count: int) -> Any:
-    """The points that tolerances are counted from, where they are not those of the file."""
+    """The points to which tolerances refer, if they differ from those of the file."""
     if not options.original:
         return None
     from moldloft.fairing.files import read_points
@@ -746,7 +746,7 @@ class _Points(Source):
         return [options.tol[k] for k in rows]
 
     def _across(self, result: NetworkFairing, rows: list[int]) -> None:
-        """Half-breadths that were not below zero and are now."""
+        """Half-breadths that became negative."""
         new, old = result.points[:, 1], self.file.points[rows][:, 1]
         over = (new < 0) & (old >= 0)
         if over.any():

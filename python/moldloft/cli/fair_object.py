@@ -54,7 +54,7 @@ class ObjectSource(Source):
         return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
 
     def facts(self) -> dict[str, Any]:
-        """The source, and how far the points are from the object."""
+        """The source, and the distance of the points from the object."""
         return {"source": self.title, "fit_error": self.error}
 
     def notes(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""The suspects and the sheet of ``moldloft fair``: what a file of points adds to a result."""
+"""The suspects and the sheet of ``moldloft fair`` for a file of points."""
 
 from __future__ import annotations
 

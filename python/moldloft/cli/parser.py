@@ -22,7 +22,7 @@ _NEGATIVE = re.compile(r"-(\d|\.\d)[\d.,eE+:-]*$")
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """The hint about a word that is unknown.
+    """The hint about an unknown word.
 
     >>> meant("bulid", ["build", "check"])
     '; did you mean `build`?'
@@ -32,14 +32,14 @@ def meant(word: str, known: Iterable[str]) -> str:
 
 
 def usage_error(message: str, prog: str) -> NoReturn:
-    """Says what is wrong with the command line and ends with status 2."""
+    """Prints an error about the command line and ends with status 2."""
     text = f"error: {message}\nhelp: `{prog} --help` lists the arguments"
     print(painted(text, sys.stderr), file=sys.stderr)
     raise SystemExit(2)
 
 
 class _Help(argparse.RawDescriptionHelpFormatter):
-    """Help as wide as the terminal up to 100 columns, texts as they were written."""
+    """Help in the width of the terminal, at most 100 columns, with unchanged texts."""
 
     def __init__(self, prog: str, **options: Any) -> None:
         import shutil
@@ -80,7 +80,7 @@ class Parser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Says what is wrong in a line."""
+        """Prints a one-line error."""
         if message.startswith("the following arguments are required"):
             # What is missing may be there under a misspelt name.
             for word in (word.partition("=")[0] for word in self._words):

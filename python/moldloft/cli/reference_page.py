@@ -156,7 +156,7 @@ def groups(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 
 
 def synonyms(row: Row) -> list[str]:
-    """Words that users may look for it by.
+    """Words that users may search for.
 
     >>> synonyms({"name": "CLoftSurf"})
     ['loft', 'skin']

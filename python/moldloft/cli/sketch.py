@@ -203,7 +203,7 @@ class Host:
             self.saved = self.session.journal_length()
 
     def _ask_to_overwrite(self, path: Path) -> None:
-        """On a terminal a file of somebody else is not overwritten without an answer."""
+        """Asks on a terminal before a file of another origin is overwritten."""
         known = self.options.force or path.resolve() in self.own_files
         if known or not path.exists() or not sys.stdin.isatty():
             return
@@ -257,7 +257,7 @@ class Host:
         return line.rstrip("\r\n")
 
     def _begin(self, terminal: bool) -> None:
-        """Opens the journal, after what an earlier session may have left."""
+        """Opens the journal, after recovery of an earlier session."""
         from moldloft.storage import BusyError, Lock, recover
         from moldloft.storage.journal import (
             ENDING,

@@ -17,7 +17,7 @@ __all__ = ["direction", "motions_of", "narrowed", "points_of", "radii", "refuse_
 
 
 def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
-    """Points in three columns, and how many columns they came with."""
+    """Points in three columns, and the number of columns of the input."""
     try:
         given = np.asarray(points, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -36,7 +36,7 @@ def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
 
 
 def refuse_repeats(points: Floats, closed: bool) -> None:
-    """Neighbours that coincide have no direction between them."""
+    """Rejects coincident neighbours, which have no direction between them."""
     after = np.roll(points, -1, axis=0) if closed else points[1:]
     before = points if closed else points[:-1]
     same = (after == before).all(axis=1)
@@ -126,7 +126,7 @@ def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
 
 
 def narrowed(points: Floats, width: int) -> Floats:
-    """Points with the columns that the user's had."""
+    """Points with the number of columns of the input."""
     return np.ascontiguousarray(points[..., :width])
 
 

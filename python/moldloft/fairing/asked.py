@@ -16,7 +16,7 @@ def goal_of(given: Any) -> tuple[str, float | None]:
 
 
 def only_data(goal: Any) -> None:
-    """Refuse goals that tell one result from another where there are no data to be near to."""
+    """Reject goals that need data if there are none."""
     word, _ = goal_of(goal)
     if word not in ("near", "fairest"):
         raise FairingError(f'the goal `{word}` is for optima of data, `as_="fit"`')

@@ -210,7 +210,7 @@ def blocks(text: str) -> OffsetTable | None:
 
 
 class _Reading:
-    """A grid of names becomes offsets, lines and cells."""
+    """Converts a grid of names to offsets, lines and cells."""
 
     def __init__(self, text: str, grid: _Grid, comma: bool, head: str) -> None:
         self.grid, self.comma = grid, comma
@@ -333,7 +333,7 @@ class _Reading:
     def _add(
         self, k: int, line: str, point: Sequence[float], cells: list[tuple[int, _Cell]]
     ) -> int:
-        """An offset; where others are on it they and it stay."""
+        """Adds an offset; it and others at the same position become fixed."""
         out = self.out
         assert out.motions is not None
         row = len(out.points)

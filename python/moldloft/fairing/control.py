@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Own:
-    """Knots and weights of the user's."""
+    """Knots and weights given by the user."""
 
     knots: ArrayLike | None
     weights: ArrayLike | None
@@ -50,7 +50,7 @@ class Own:
 
 @dataclass
 class Prepared:
-    """The spline to fair and where it comes from."""
+    """The spline to fair, with its origin."""
 
     spline: Spline
     data: Floats
@@ -168,7 +168,7 @@ def left(tol: ArrayLike | None, made: Prepared) -> ArrayLike | None:
 
 
 def spread(tol: ArrayLike | None, made: Prepared, n: int) -> list[float]:
-    """The tolerance of data points as that of control points: the least near each."""
+    """Tolerances of control points from those of data points: the smallest near each."""
     if tol is None or np.ndim(tol) == 0:
         return radii(tol, n)
     each = np.asarray(radii(tol, len(made.data)))
@@ -280,7 +280,7 @@ def result(
 
 
 def _counted(numbers: Numbers, spline: Spline) -> Numbers:
-    """The same sums with the counts of the curve that is laid through the points."""
+    """The same sums with the counts of the curve through the points."""
     curvature = spline.samples().curvature
     return Numbers(
         numbers.measure,

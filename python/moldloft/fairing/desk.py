@@ -1,4 +1,4 @@
-"""The fairing desk: a session in which lines are looked at, marked and faired step by step.
+"""The fairing desk: a session to inspect, mark and fair lines step by step.
 
 Every step is a command, a line of text; the log of commands is the session. Replayed on what the
 desk was opened on it gives the same bits, and taking back a step is leaving out its command.
@@ -147,7 +147,7 @@ class Desk:
 
     @property
     def log(self) -> tuple[str, ...]:
-        """The commands that were run and not taken back."""
+        """The commands that were run and not undone."""
         return tuple(self._log)
 
     @property
@@ -191,14 +191,14 @@ class Desk:
             self._take(command)
 
     def _take(self, command: str) -> DeskState:
-        """The state after a command, which is the last of the log then."""
+        """The state after a command, which is appended to the log."""
         state = changed(self.source, self.state, command, self)
         self._states.append(state)
         self._log.append(command)
         return state
 
     def run(self, command: str) -> None:
-        """Carry out a command; one that cannot be faired changes nothing.
+        """Run a command; one that cannot be faired changes nothing.
 
         Parameters
         ----------
@@ -236,7 +236,7 @@ class Desk:
         return self._undone[-1]
 
     def redo(self) -> str | None:
-        """Run the command that was taken back last.
+        """Run the last undone command again.
 
         Returns
         -------
@@ -315,7 +315,7 @@ class Desk:
 
     @property
     def cut(self) -> Fairing | None:
-        """The line that was cut and not put back, faired."""
+        """The faired section line, before it is put back."""
         draft = self.state.draft
         return None if draft is None else fair_line(draft_task(self.source, self.state, draft))
 
@@ -391,7 +391,7 @@ class Desk:
         return cut(self.source, state, normal, at, name)
 
     def drafted(self, state: DeskState) -> tuple[Place, ...]:
-        """The faired points of the line that was cut from a state.
+        """The faired points of the section line of a state.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Results of a fairing desk as files: the table as it came, splines, the sheet."""
+"""Results of a fairing desk as files: the table in its original form, splines, the sheet."""
 
 from __future__ import annotations
 

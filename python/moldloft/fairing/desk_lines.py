@@ -123,7 +123,7 @@ class DeskCurve:
 
     @property
     def worst(self) -> int:
-        """The point that is moved the most, from 0."""
+        """Index of the point with the largest displacement."""
         return self.points[int(np.argmax(self.moved))]
 
     @property
@@ -176,7 +176,7 @@ Progress = Callable[[int, int, str], object]
 def faired(
     source: DeskSource, state: DeskState, *, draft: bool = False, progress: Progress | None = None
 ) -> DeskResult:
-    """A state with its lines faired: the same bits whenever, and whatever was faired before."""
+    """A state with its lines faired; the bits do not depend on earlier fairings."""
     if source.kind == "network":
         return _of_network(source, state)
     if source.kind == "surface":
@@ -255,7 +255,7 @@ def fair_line(asked: Task) -> Fairing:
 
 
 def _ranged(asked: Task, points: Floats) -> Fairing:
-    """The curve through the points, of which the part between two of them is faired.
+    """The curve through the points, faired between two of them.
 
     Control points of which the curve outside hangs stay, so that it stays there to the bit.
     """

@@ -49,7 +49,7 @@ class DeskLine:
 
 @dataclass(frozen=True)
 class DeskSource:
-    """Points and lines as a desk was opened on them: all that a log of commands begins from.
+    """Input of a desk, to which a log of commands applies.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class DeskSource:
         return len(self.points) // rows, rows
 
     def as_dict(self) -> dict[str, Any]:
-        """The source as plain data, which JSON takes without loss."""
+        """The source as plain data for JSON, without loss."""
         return asdict(self)
 
     @staticmethod
@@ -199,7 +199,7 @@ class DeskSource:
 
     @staticmethod
     def of_object(model: Model, name: str) -> DeskSource:
-        """A curve or a surface of a model; of fair objects and splines the points they are of.
+        """A curve or a surface of a model; for fair objects and splines their defining points.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ def is_point(document: Any, name: str) -> bool:
 
 
 def place(p: Any) -> Place:
-    """Three coordinates as numbers of Python, which JSON writes to the bit."""
+    """Three coordinates as Python floats, which JSON stores exactly."""
     x, y, z = (float(c) for c in (*p, 0.0, 0.0)[:3])
     if not np.isfinite([x, y, z]).all():
         raise FairingError(f"expected a place, found {p}")

@@ -69,7 +69,7 @@ class DeskDraft:
 
 @dataclass(frozen=True)
 class DeskState:
-    """All that has been decided at a desk. Points and lines are counted from 0."""
+    """The decisions made at a desk. Points and lines are counted from 0."""
 
     tolerance: float
     """Maximum distance of curves from points."""
@@ -146,7 +146,7 @@ class Eyes(Protocol):
         """The line along a plane."""
 
     def drafted(self, state: DeskState) -> tuple[Place, ...]:
-        """The faired points of the line that was cut."""
+        """The faired points of the section line."""
 
 
 def changed(source: DeskSource, state: DeskState, command: str, eyes: Eyes) -> DeskState:

@@ -65,7 +65,7 @@ def exaggeration(moves: Floats, extent: float) -> float:
 
 
 def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
-    """Samples that follow length and turn alike: enough teeth at a nose.
+    """Samples distributed by length and turning, so that a nose has enough comb teeth.
 
     Parameters
     ----------

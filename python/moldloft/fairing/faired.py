@@ -49,7 +49,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Fairing:
-    """A faired curve and all that is to be said about it."""
+    """A faired curve, with its report."""
 
     points: Floats
     """The faired points, as many and with as many columns as were given: the control points, the
@@ -126,7 +126,7 @@ class Fairing:
 
     @property
     def deviation_data(self) -> float:
-        """No point that was given is farther from the curve than this.
+        """Bound of the distance of the given points from the curve.
 
         The distance from the curve's point at its parameter, or the move of the point itself.
         """

@@ -387,7 +387,7 @@ def _rounded_point(point: Floats, given: Floats, step: float, tol: float) -> Flo
 def cell_texts(
     points: Floats, like: PointFile, tol: Floats | float | None = None, step: float | None = None
 ) -> list[str | None]:
-    """The numbers of the cells of a table that changed, as they are written; ``None`` for others.
+    """Texts of the changed cells of a table; ``None`` for unchanged ones.
 
     Parameters
     ----------
@@ -527,7 +527,7 @@ _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"
 
 
 def is_grid(path: Path) -> bool:
-    """True for a Plot3D grid: by its name, and for names that others use too by its start."""
+    """True for a Plot3D grid, by its name or, for ambiguous names, by its first bytes."""
     if path.suffix.lower() in (".p3d", ".plot3d"):
         return True
     if path.suffix.lower() not in _GRID_SUFFIXES:

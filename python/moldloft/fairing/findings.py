@@ -43,7 +43,7 @@ _FEWEST = 7
 
 
 def order_of(points: Floats, closed: bool) -> list[Finding]:
-    """Points in no order, runs in reversed order, and rings that were given as open.
+    """Findings about points out of order, reversed runs, and closed curves given as open.
 
     Swapped neighbours are found with the wrong digits.
     """

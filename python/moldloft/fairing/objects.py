@@ -64,7 +64,7 @@ def sampled(model: Model, name: str, tol: float | None) -> Sampled:
 
 
 def _corners(model: Model, name: str) -> tuple[list[float], bool]:
-    """Parameters at which the tangent turns, and whether the curve closes smoothly."""
+    """Parameters of corners, and true if the curve closes smoothly."""
     document = model._document
     eps = 1e-7
     _, _, breaks = document.curve_derivatives(name, np.array([0.5]))

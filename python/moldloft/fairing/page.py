@@ -139,7 +139,7 @@ def _figure(picture: _Picture, caption: str) -> str:
 
 
 def _number(x: float, least: float = 0.0) -> str:
-    """A number to six digits; what is smaller than `least` is rounding."""
+    """A number to six digits; zero below `least`."""
     return f"{x:.6g}" if abs(x) > least else "0"
 
 
@@ -367,7 +367,7 @@ def _of_curve(fairing: Fairing) -> list[str]:
 
 
 def _curves(fairing: NetworkFairing, pairs: list[tuple[Spline, Spline]], off: Floats) -> str:
-    """Every curve: its inflections and monotone pieces, and where it moved most."""
+    """Every curve: inflections, monotone pieces, and position of the largest displacement."""
     head = ["curve", "inflections", "faired", "monotone pieces", "faired", "largest move", "at"]
     if fairing.tol:
         head.append("of the tolerance")
@@ -430,7 +430,7 @@ def _surface(
     data: Floats | None = None,
     moved: Floats | None = None,
 ) -> list[str]:
-    """Three views of a surface, with the moves of its points where these are given."""
+    """Three views of a surface, with displacements of its points if given."""
     before, after = (s.grid(61, 41) for s in (original, surface))
     both = np.vstack([before.reshape(-1, 3), after.reshape(-1, 3)])
     parts = []
@@ -518,7 +518,7 @@ def write_page(
     title: str = "Fairing",
     facts: Sequence[tuple[str, str]] = (),
 ) -> Path:
-    """Writes :func:`page` into a file, all of it or nothing.
+    """Writes :func:`page` to a file atomically.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ _EDGES = (("u0", "u1"), ("v0", "v1"))
 
 @dataclass(frozen=True)
 class PatchesFairing:
-    """Faired surfaces and all that is to be said about them."""
+    """Faired surfaces, with their report."""
 
     grids: tuple[Floats, ...]
     """The faired grids: control points, or where the surfaces have the parameters of the points."""

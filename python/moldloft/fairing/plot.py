@@ -1,4 +1,4 @@
-"""Pictures of fairings. Matplotlib is looked for when one is drawn."""
+"""Pictures of fairings; Matplotlib is imported when one is drawn."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ def _decade(x: float) -> float:
 
 
 def _range(ax: Any, before: Floats, after: Floats) -> None:
-    """The faired curve fills the height; what was rougher is cut off, and said to be."""
+    """Range of the faired curve; rougher parts of the original are cut off, with a note."""
     low, high = float(after.min()), float(after.max())
     all_low, all_high = float(before.min()), float(before.max())
     room = max(high - low, 1e-9 * max(abs(high), abs(low), 1e-300))
@@ -497,7 +497,7 @@ def _fields(
 
 
 def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
-    """The three views of a network before and after, and how far its points moved."""
+    """The three views of a network before and after, and the displacements of its points."""
 
     def lines(ax: Any, curves: Sequence[Spline], i: int, j: int, colour: str, width: float) -> None:
         for curve in curves:

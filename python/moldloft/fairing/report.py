@@ -29,7 +29,7 @@ class Numbers:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that noise does not explain."""
+    """A feature of the data that noise does not explain."""
 
     kind: str
     """``"corner"``, probably an intended break, ``"outlier"``, probably a wrong digit, or

@@ -124,7 +124,7 @@ class _Text:
 
 @dataclass
 class _Table:
-    """Rows of texts; a cell that moved has the text before below the one after."""
+    """Rows of texts; a changed cell has the old text below the new one."""
 
     head: list[str]
     rows: list[list[str | tuple[str, str]]]

@@ -206,7 +206,7 @@ class Spline:
         spacing: str = "chord",
         at: ArrayLike | None = None,
     ) -> Spline:
-        """The spline with knots and weights of your own that is nearest to points.
+        """The spline with given knots and weights nearest to points.
 
         It passes through them when it has as many control points as there are points.
 
@@ -347,7 +347,7 @@ class Spline:
         return Samples(**self._core.at(flat))
 
     def samples(self, per_span: int = PER_SPAN) -> Samples:
-        """The same, ``per_span + 1`` times on each span; knots are looked at from both sides.
+        """The same, ``per_span + 1`` times on each span; knots are evaluated from both sides.
 
         Parameters
         ----------
@@ -454,7 +454,7 @@ class Spline:
         return self._core.measure(name)
 
     def monotone_pieces(self, share: float = 1e-3, per_span: int = PER_SPAN) -> int:
-        """In how many pieces the curvature rises or falls.
+        """Number of monotone pieces of the curvature.
 
         Reversals below a fraction of its range are ignored.
 
@@ -592,7 +592,7 @@ def divided_differences(points: ArrayLike, t: ArrayLike) -> Floats:
 
 
 def grid_metric(grid: ArrayLike) -> Floats:
-    """The metric eta_y of a plane grid, ``(m, n)``: how its lines crowd across the body.
+    """The metric eta_y of a plane grid, ``(m, n)``: the density of its lines normal to the body.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Spline curves as files of others: IGES (entity 126), STEP, DXF (SPLINE), 3DM and JSON."""
+"""Spline curves as IGES (entity 126), STEP, DXF (SPLINE), 3DM and JSON files."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _IGES_UNITS = {"in": (1, "INCH"), "mm": (2, "MM"), "ft": (4, "FT"), "m": (6, "M"
 def encoded(
     curves: Sequence[Spline], path: Path, unit: str | None = None, names: Sequence[str] = ()
 ) -> bytes:
-    """The curves in the format that the ending of ``path`` names.
+    """The curves in the format of the extension of ``path``.
 
     ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES, STEP and 3DM say
     millimetres, as they have no word for that; DXF and JSON say nothing. ``names`` are those of the
@@ -62,7 +62,7 @@ def encoded(
 
 
 def _number(x: float) -> str:
-    """A number that reads back to the bit, with a decimal point."""
+    """A number with a decimal point that is read back exactly."""
     text = repr(float(x) + 0.0)
     return text if any(c in text for c in ".en") else text + "."
 

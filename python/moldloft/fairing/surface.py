@@ -1,4 +1,4 @@
-"""Fairing of surfaces, and how light plays on them."""
+"""Fairing of surfaces, with their normals, curvatures and reflections."""
 
 from __future__ import annotations
 
@@ -334,7 +334,7 @@ def _parameters(given: ArrayLike) -> Floats:
 
 @dataclass(frozen=True)
 class SurfaceFairing:
-    """A faired surface and all that is to be said about it."""
+    """A faired surface, with its report."""
 
     points: Floats
     """The faired grid, ``(m, n, 3)``: the net, or where the surface has the parameters of the
@@ -388,7 +388,7 @@ class SurfaceFairing:
 
     @property
     def deviation_data(self) -> float:
-        """No point that was given is farther from the surface than this."""
+        """Bound of the distance of the given points from the surface."""
         if self.residuals is not None:
             return float(self.residuals.max())
         return float(np.linalg.norm(self.points - self.data, axis=2).max())

@@ -1,4 +1,4 @@
-"""Suspects: cells of a table that their neighbours contradict, and the readings that were meant.
+"""Suspects: table cells that contradict their neighbours, with the probable readings.
 
 Each offset is predicted by the neighbours on each of its lines: by polynomials of different degree
 and width, whose disagreement is the error of the prediction. The predictions of its lines are
@@ -66,7 +66,7 @@ _COSTS = {
 
 @dataclass(frozen=True)
 class Suspect:
-    """A coordinate of a point that its neighbours contradict."""
+    """A coordinate of a point that contradicts its neighbours."""
 
     index: int
     """The point, from 0."""
@@ -149,7 +149,7 @@ def suspects(
     point_names: Sequence[str] = (),
     readings: dict[tuple[int, int], str] | None = None,
 ) -> tuple[Suspect, ...]:
-    """Ranked list of coordinates that are probably wrong, with the readings that were meant.
+    """Ranked list of probably wrong coordinates, with the probable readings.
 
     Parameters
     ----------
@@ -375,7 +375,7 @@ class _Search:
 
 
 def _combined(own: list[_Prediction]) -> tuple[float, float]:
-    """Predictions of several lines as one: weighed by their errors, less sure where they differ."""
+    """Combined prediction of several lines, weighted by their errors, uncertain if they differ."""
     weights = np.array([1 / p.error**2 for p in own])
     off = np.array([p.off for p in own])
     mean = float((weights * off).sum() / weights.sum())
@@ -428,7 +428,7 @@ def _shown(value: float, like: str) -> str:
 
 
 def _slips(text: str, value: float) -> list[tuple[float, str]]:
-    """Readings that one slip of the pen turns into this one."""
+    """Readings that a single writing error turns into this one."""
     out: list[tuple[float, str]] = [(-value, "the sign")]
     found = re.fullmatch(r"[-\u2212]?(\d+)-(\d+)-(\d+)([+\u00bd-]?)", text)
     if found or notation(text) == "feet":
@@ -460,7 +460,7 @@ def _slips(text: str, value: float) -> list[tuple[float, str]]:
 
 
 def _meant(text: str, value: float, expected: float, error: float) -> tuple[float | None, str]:
-    """The likeliest reading that one slip turns into this one, and the slip."""
+    """The most likely intended reading, and the writing error."""
     best: tuple[float, float | None, str] = (_WITHIN**2, None, "")
     for reading, slip in _slips(text, value):
         if reading == value:

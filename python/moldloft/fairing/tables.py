@@ -1,4 +1,4 @@
-"""Text of points as people have it, made plain.
+"""Conversion of tables of points in common forms to plain rows.
 
 Aerofoils with prose, decimal commas, named columns, lengths in feet, inches and eighths.
 """
@@ -169,7 +169,7 @@ def spans(line: str) -> list[tuple[int, int]]:
 
 
 def _cells(line: str) -> list[str]:
-    """The cells of a line: between what separates them, else blanks."""
+    """The cells of a line, separated by separators or blanks."""
     line = line.strip().rstrip(f"{SEPARATORS} ")
     for sign in SEPARATORS:
         if sign in line:
@@ -182,7 +182,7 @@ def _numbers(cells: list[str]) -> bool:
 
 
 def plain(text: str) -> Plain:
-    """Text made plain. What it cannot make plain stays, for the reader to refuse with its line.
+    """Plain text of a table. Other content is kept, for the reader to report with its line.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def _openfast(lines: list[str], out: Plain) -> list[str]:
 
 
 def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
-    """Numbers with decimal commas, where something else separates the columns."""
+    """Converts decimal commas, if columns have another separator."""
 
     def pieces(line: str) -> list[str]:
         """Cells and separators, alternating; semicolons and tabs take precedence over blanks."""
@@ -341,7 +341,7 @@ def unit_named(word: str) -> str | None:
 
 
 def _named(lines: list[str], out: Plain) -> list[str]:
-    """Columns by name: x, y, z or station, half-breadth and height, among others that are left."""
+    """Columns by name: x, y, z or station, half-breadth and height; others are ignored."""
     first = next((k for k, s in enumerate(lines) if s.strip() and not s.startswith("#")), None)
     if first is None:
         return lines
@@ -434,7 +434,7 @@ def _in_levels(lines: list[str], axes: list[int], width: int) -> bool:
 
 
 def _prose(lines: list[str], out: Plain) -> list[str]:
-    """Titles, lines of a program's own and prose round the rows of an aerofoil."""
+    """Removes titles, program output and prose around the rows of an aerofoil."""
     rows = [k for k, s in enumerate(lines) if len(c := _cells(s)) in (2, 3) and _numbers(c)]
     if len(rows) < 5:
         return lines

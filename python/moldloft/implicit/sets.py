@@ -180,7 +180,7 @@ class Set(Moving, Edged, Pictured):
         return Set(self._core.complement())
 
     def thin(self) -> Set:
-        """The faces as sheets, without the inside; of sets whose primitives meet.
+        """The faces as sheets without interior, for sets whose primitives intersect.
 
         Returns
         -------
@@ -197,7 +197,7 @@ class Set(Moving, Edged, Pictured):
         return Set(self._core.skin())
 
     def regularized(self) -> Set:
-        """An equal set without parts that combine to nothing new, such as A | A.
+        """An equal set without redundant parts, such as in A | A.
 
         Returns
         -------

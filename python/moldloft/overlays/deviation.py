@@ -57,11 +57,11 @@ class Deviation:
 
     @property
     def worst(self) -> int:
-        """The number of the point farthest off, from 0."""
+        """Index of the point with the largest distance."""
         return int(np.abs(self.distances).argmax())
 
     def summary(self) -> str:
-        """A line for each surface: its points, rms, largest distance and where that is.
+        """A line for each surface: number of points, rms, largest distance and its position.
 
         Returns
         -------

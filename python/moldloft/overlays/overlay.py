@@ -49,7 +49,7 @@ class Overlay:
     """Omitted or doubtful content of the file."""
 
     def scaled(self, factor: float) -> Overlay:
-        """The same in another unit: every length times a factor.
+        """The overlay in another unit: every length times a factor.
 
         Parameters
         ----------

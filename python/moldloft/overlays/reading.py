@@ -1,4 +1,4 @@
-"""Files of other programs as overlays, by their endings."""
+"""Files of other programs as overlays, by extension."""
 
 from __future__ import annotations
 

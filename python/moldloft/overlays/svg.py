@@ -104,7 +104,7 @@ def _tag(element: ElementTree.Element) -> str:
 
 
 def _unit(root: ElementTree.Element) -> float | None:
-    """The metres of a user unit: of the width, and of the box that fills it."""
+    """Size of a user unit in metres, from the width and the view box."""
     size = re.fullmatch(rf"\s*({_NUMBER})\s*(mm|cm|in|pt|pc|px|Q)\s*", root.get("width", ""))
     if size is None:
         return None
@@ -144,7 +144,7 @@ def _transform(text: str) -> Floats:
 
 
 def _placed(piece: Floats, place: Floats) -> Floats:
-    """A piece moved: points are multiplied by weights, so the weight moves along."""
+    """A transformed piece; points are homogeneous, so the weight is transformed as well."""
     moved: Floats = piece.copy()
     flat = piece[:, [0, 1, 3]]
     moved[:, :2] = flat @ place[:2].T

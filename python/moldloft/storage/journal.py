@@ -1,4 +1,4 @@
-"""The journal of a sketch prompt: a killed process loses nothing, every change is on disk at once.
+"""The journal of a sketch prompt, which stores every change on disk at once.
 
 A journal is a text file of commands, one per line, after a header line. Each line begins with a
 checksum over the journal's own number, the line's number and the command: zeros, partial lines and
@@ -54,7 +54,7 @@ def beside(path: Path) -> Path:
 
 
 def lock(journal: Path) -> Lock:
-    """The lock of whoever keeps a journal.
+    """The lock of a journal.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def read(path: Path, present: str | None = None) -> Left | None:
 def left_behind(
     paths: Sequence[Path], present: str | None = None, held: Lock | None = None
 ) -> list[Left]:
-    """Journals with commands that no living process keeps, the newest first.
+    """Journals with commands but without a running owner, the newest first.
 
     ``present`` is as for :func:`read`; ``held`` is the lock of the only one, when that is held.
     """

@@ -68,7 +68,7 @@ class BusyError(FileError):
 
 
 class Lock:
-    """A lock that its holder keeps until it is released, or its process ends.
+    """A lock that is held until it is released or its process ends.
 
     Parameters
     ----------

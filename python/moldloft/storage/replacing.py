@@ -1,4 +1,4 @@
-"""Writing one file whole or not at all."""
+"""Atomic writing of one file."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class Draft:
 
 
 def put(path: Path, data: bytes, *, expected: str | None = None, private: bool = False) -> None:
-    """Write a file whole or not at all, synced, with its mode, owner and links.
+    """Write a file atomically, synced, with its mode, owner and links.
 
     Parameters
     ----------

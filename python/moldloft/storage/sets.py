@@ -280,7 +280,7 @@ def _sweep(path: Path) -> None:
 
 
 def read_set(folder: Path, names: Sequence[str]) -> dict[str, bytes | None]:
-    """Files of a folder as one set: all as they were before a write, or all as after it.
+    """Files of a folder as one consistent set: all before a concurrent write, or all after it.
 
     Parameters
     ----------

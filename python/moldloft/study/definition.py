@@ -193,7 +193,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Study:
-    """A study: which numbers of a model depend how on which others.
+    """A study: inputs and outputs of a model, with plan, analyses and goal.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ class Table:
         return Table(self.data.pop(key, {}), self.at(key))
 
     def end(self) -> None:
-        """Refuses the keys that nobody took."""
+        """Rejects unknown keys."""
         for key in self.data:
             near = nearest(key, self._known)
             hint = f"; did you mean `{near}`?" if near else f"; known: {', '.join(self._known)}"

@@ -1,4 +1,4 @@
-"""Packages that studies use when they are installed."""
+"""Optional packages of studies."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class Function:
         return np.concatenate([self._value(name) for name in self.outputs])
 
     def jacobian(self, x: ArrayLike) -> Floats:
-        """The exact derivatives of the outputs by the inputs, ``(outputs, inputs)``.
+        """The exact derivatives of the outputs with respect to the inputs, ``(outputs, inputs)``.
 
         Parameters
         ----------

@@ -134,7 +134,7 @@ class Points:
         return found
 
     def slope(self, name: str, unit: Floats) -> Floats:
-        """The derivatives of an output by the coordinates of the unit cube."""
+        """The derivatives of an output with respect to the coordinates of the unit cube."""
         outputs = self.at(unit).outputs
         found: Floats = np.array([outputs[f"d {name} / d {by}"] for by in self.cases.names])
         return found * self.scale
@@ -172,7 +172,7 @@ def optimize(
     processes: int = 2,
     progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
-    """Find the inputs with the least or greatest objectives within the constraints.
+    """Minimise or maximise objectives over the inputs within the constraints.
 
     Parameters
     ----------

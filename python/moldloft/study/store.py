@@ -182,7 +182,7 @@ class Store:
             )
 
     def add(self, outcome: Outcome) -> None:
-        """Record the outcome of a case; the end of this process does not lose it.
+        """Record the outcome of a case durably.
 
         Parameters
         ----------
