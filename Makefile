@@ -15,7 +15,7 @@ EXE :=
 endif
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-# What a package that is not there yet is built with.
+# Profile of a first build.
 PROFILE ?= dev
 optimised: PROFILE = release
 
@@ -31,7 +31,7 @@ ENGINE := python/moldloft/workbench/wasm/engine.wasm.xz
 ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine living test check bits reference site release soak fuzz clean help
+.PHONY: setup demo optimised web engine living quick test check bits reference site release soak fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -100,9 +100,20 @@ demo: $(or $(wildcard $(VENV)/.installed),$(VENV)/.for-demo) ## the sailing yach
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
 	@test -e $(VENV)/.installed || echo "this build of the package is not optimised: \`make optimised\` builds the one that users get"
 
-optimised: ## the package in .venv anew, as users get it: for benchmarks
+optimised: ## rebuilds the package in .venv as users get it, for benchmarks
 	@rm -f $(VENV)/.installed
 	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
+
+# Tests without browsers, builds, other programs' solvers and random campaigns, a few of each part of the package.
+QUICK := api array_language bad_input contours degenerate_kinds docstrings errors formats hulls model_files offsets panels \
+	parts profiles searches sketch solve_for types usage_mistakes
+
+quick: $(VENV)/.with-tests ## format, lints and some tests, two minutes; CRATE=name adds the tests of a crate
+	@cargo fmt --all --check
+	@$(BIN)/ruff check --quiet
+	@$(BIN)/ruff format --quiet --check
+	@$(BIN)/python -m pytest --quiet --numprocesses auto $(QUICK:%=tests/python/test_%.py)
+	@$(if $(CRATE),cargo test --quiet -p moldloft-$(CRATE))
 
 test: setup check ## every check and test
 	@$(BIN)/python -m pytest --numprocesses auto --dist worksteal
@@ -115,7 +126,7 @@ check: setup ## formatting, lints, types and the Rust tests
 	@$(BIN)/ruff format --quiet --check
 	@$(BIN)/mypy --no-error-summary
 
-reference: $(VENV)/.installed ## docs/reference.md anew from the declarations
+reference: $(VENV)/.installed ## rewrites docs/reference.md, the pictures of kinds and the stubs from the declarations
 	@$(BIN)/moldloft doc --markdown > docs/reference.md
 	@$(BIN)/moldloft doc --pictures docs/kinds
 	@$(BIN)/python -m moldloft.stubs
@@ -126,7 +137,7 @@ site: $(VENV)/.with-tests ## the documentation with living models, in out/site
 release: ## wheel with language server and page, sdist, notices, bill of materials; in dist/
 	@$(PYTHON) tools/release.py
 
-bits: ## tests/bits.txt anew, after a change of results
+bits: ## rewrites tests/bits.txt after a change of results
 	@cargo run --quiet -p moldloft --example bits > tests/bits.txt
 
 soak: export MOLDLOFT_SOAK = 1

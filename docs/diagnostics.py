@@ -1,7 +1,8 @@
 """Writes docs/diagnostics.md anew: `python docs/diagnostics.py`.
 
-The programs stand in the page itself, the meanings in `moldloft.explanations`; what is printed is what
-each program prints today. A new diagnostic gets a section with a program by hand, and the rest by this.
+The programs are in the page itself, the meanings in `moldloft.explanations`; the messages are those that
+the programs print. For a new diagnostic write a section with a program, and run this for the rest. The
+site has a page for each section.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ PAGE = Path(__file__).with_suffix(".md")
 
 HEAD = """# Diagnostics
 
-Every message has an id, which stays the same when its wording improves: `error[wrong-class]`. Each is listed here with its meaning and
-remedy, a short program that raises it, and what is printed. `moldloft doc wrong-class` shows the first of these in a terminal, and
-`moldloft check --json` prints the facts of a message as data.
+Find the meaning and remedy of a message by its id, such as `wrong-class` in `error[wrong-class]`, with a program that raises it and the
+printed message. Ids are stable, wording may improve. `moldloft doc wrong-class` prints meaning and remedy in a terminal, and
+`moldloft check --json` prints messages as data.
 
-Errors stop what depends on them and nothing else; warnings and notes do not change the result. The programs are run by
+An error blocks only objects that depend on it; warnings and notes do not change results. The programs are run by
 `tests/python/test_diagnostics_page.py`.
 """
 
-#: Diagnostics without a program: they need an interrupt, a fault of ours, a rare failure of an iteration, derivatives, or the workbench.
+#: Diagnostics without a program: they need an interrupt, an internal error, a rare failure of an iteration, derivatives, or the workbench.
 WITHOUT = {
     "accuracy-not-reached",
     "assumed-unit",
@@ -93,7 +94,7 @@ def _elsewhere() -> Iterator[None]:
     here, before = Path.cwd(), moldloft.limits()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        # What messages say of memory is the same on every machine.
+        # Messages about memory are the same on every machine.
         moldloft.limits(memory="4G")
         try:
             yield
@@ -103,7 +104,7 @@ def _elsewhere() -> Iterator[None]:
 
 
 def raised(language: str, text: str) -> list[tuple[str, str]]:
-    """What a program of the page raises: ids and messages, without the folder it ran in."""
+    """Ids and messages that a program of the page raises, without its folder."""
     with _elsewhere():
         folder = str(Path.cwd()) + os.sep
         return [(d.id, str(d).rstrip().replace(folder, "")) for d in _diagnostics(language, text)]

@@ -1,18 +1,19 @@
 """Draws the pictures of the example models and of fairing: `python docs/pictures.py [NAME ...]`.
 
-Those of the gallery are drawn by `docs/gallery.py`, of sketches by `examples/sketch/pictures.py`, of
+`drag` is the animation of the README: a yacht that follows a parameter, with its figures. Pictures of the gallery are drawn by `docs/gallery.py`, of sketches by `examples/sketch/pictures.py`, of
 implicit solids by `examples/implicit/pictures.py`, of the kinds by `moldloft doc --pictures`.
 """
 
 from __future__ import annotations
 
 import io
+import math
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 import moldloft
 
@@ -81,19 +82,77 @@ def deformed() -> bytes:
     return out.getvalue()
 
 
+#: Frames of the animation, their interval in milliseconds, and the size of the picture.
+FRAMES, INTERVAL, SIZE = 40, 80, (860, 400)
+
+#: Parameter of the animation, with its range, and colours of text and highlight.
+DRAGGED, LOW, HIGH = "keel_at", 10.5, 13.0
+INK, ACCENT, PAPER = (36, 48, 56), (196, 78, 38), (250, 251, 252)
+
+
+def _font(size: int, bold: bool = False) -> ImageFont.FreeTypeFont:
+    from matplotlib import get_data_path
+
+    name = "DejaVuSansMono-Bold.ttf" if bold else "DejaVuSansMono.ttf"
+    return ImageFont.truetype(str(Path(get_data_path()) / "fonts" / "ttf" / name), size)
+
+
+def _frame(model: moldloft.Model, value: float) -> Image.Image:
+    model.set({DRAGGED: value})
+    volume, lcb = model.eval("hydrostatics.volume"), model.eval("hydrostatics.lcb")
+    slope = model.derivative("hydrostatics.lcb", DRAGGED)
+    page = Image.new("RGB", (SIZE[0], SIZE[1] + 104), PAPER)
+    with Image.open(io.BytesIO(model.picture(*SIZE))) as drawn:
+        page.paste(drawn.convert("RGB"), (0, 68))
+    draw = ImageDraw.Draw(page)
+    x = 20
+    for text, colour, bold in (
+        (f"param float {DRAGGED} = ", INK, False),
+        (f"{value:.2f}", ACCENT, True),
+        (f" in [{LOW:g}, {HIGH:g}];", INK, False),
+    ):
+        draw.text((x, 12), text, colour, _font(17, bold))
+        x += round(draw.textlength(text, _font(17, bold)))
+    left, right, y = 22, 480, 50
+    at = left + (right - left) * (value - LOW) / (HIGH - LOW)
+    draw.line((left, y, right, y), (176, 188, 196), 4)
+    draw.line((left, y, at, y), ACCENT, 4)
+    draw.ellipse((at - 9, y - 9, at + 9, y + 9), ACCENT)
+    figures = f"volume {volume:.2f} ft³   lcb {lcb:.3f} ft   d lcb / d {DRAGGED} {slope:.4f}"
+    draw.text((20, SIZE[1] + 76), figures, INK, _font(15))
+    return page
+
+
+def dragged() -> bytes:
+    """The yacht while its keel is moved along the hull, as an animation in WebP."""
+    model = moldloft.load(EXAMPLES / "sailboat/yacht.sdl")
+    middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    frames = [
+        _frame(model, middle - half * math.cos(2 * math.pi * k / FRAMES)) for k in range(FRAMES)
+    ]
+    out = io.BytesIO()
+    frames[0].save(
+        out, "WEBP", save_all=True, append_images=frames[1:], duration=INTERVAL, loop=0, quality=72
+    )
+    return out.getvalue()
+
+
 def main() -> None:
     """Draws the pictures that are named, or all."""
-    named = sys.argv[1:] or [*MODELS, *PLOTS, "deformation"]
+    named = sys.argv[1:] or [*MODELS, *PLOTS, "deformation", "drag"]
     for name in named:
         if name in MODELS:
             place, size = MODELS[name]
             data = moldloft.load(EXAMPLES / place).picture(*size)
         elif name == "deformation":
             data = deformed()
+        elif name == "drag":
+            data = dragged()
         else:
             data = plotted(*PLOTS[name])
-        (IMAGES / f"{name}.png").write_bytes(data)
-        print(f"{name}.png: {len(data) / 1000:.0f} kB")
+        file = IMAGES / f"{name}.{'webp' if name == 'drag' else 'png'}"
+        file.write_bytes(data)
+        print(f"{file.name}: {len(data) / 1000:.0f} kB")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""What the site needs besides the pages: sources that pages link to, and the list of changes.
+"""Pages of the site that are generated when it is built.
 
-Links that leave `docs` are those to sources; the files are put into the site, so that it is whole
-when it is opened from a folder.
+A page for each kind, function and diagnostic, the index of terms, the list of changes, and the sources
+that pages link to, so that the site is complete when it is opened from a folder.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pygments.token import Comment, Keyword, Name, Number, Operator, String, Tex
 
 ROOT = Path(__file__).resolve().parents[1]
 
-#: What the editor's highlighting calls the words of the language, and what they are in the site.
+#: The editor's grammar, and the token class in the site for each of its scopes.
 _GRAMMAR = ROOT / "editors" / "vscode" / "syntaxes" / "sdl.tmLanguage.json"
 _CLASSES = {
     "keyword.control.sdl": Keyword,
@@ -39,7 +39,7 @@ def _words() -> list[tuple[str, Any]]:
 
 
 class SdlLexer(RegexLexer):
-    """Highlighting of programs in the pages, with the words of the editor's."""
+    """Highlighting of programs in the pages, with the keywords of the editor's grammar."""
 
     name = "Moldloft SDL"
     aliases = ("sdl",)
@@ -64,7 +64,7 @@ class SdlLexer(RegexLexer):
 
 
 def on_config(config: Any) -> Any:
-    """Makes the lexer known: Pygments finds lexers by the modules that they are in."""
+    """Registers the lexer: Pygments finds lexers by their modules."""
     place = ModuleType("moldloft_site_lexer")
     place.SdlLexer = SdlLexer  # type: ignore[attr-defined]
     place.__all__ = ["SdlLexer"]  # type: ignore[attr-defined]
@@ -73,7 +73,7 @@ def on_config(config: Any) -> Any:
     return config
 
 
-#: `make site` sets it: all examples stand in the site as pages that one can turn and change.
+#: Set by `make site`: all examples are also interactive pages.
 LIVING = bool(os.environ.get("MOLDLOFT_LIVING"))
 
 _LINK = re.compile(r"\]\(((?:\.\./)+[^)#\s]+)(#[^)]*)?\)")
@@ -88,8 +88,11 @@ def _target(page: str, link: str) -> str | None:
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Adds the linked sources and the changes to the site."""
+    """Adds the generated pages, the linked sources and the changes to the site."""
     from mkdocs.structure.files import File
+
+    for name, text in {**_reference(), **_diagnostics(), "changes.md": _changes()}.items():
+        files.append(File.generated(config, name, content=text))
 
     linked = set()
     for file in files.documentation_pages():
@@ -100,15 +103,82 @@ def on_files(files: Any, config: Any) -> Any:
     for target in sorted(linked):
         text = (ROOT / target).read_text(encoding="utf-8")
         files.append(File.generated(config, f"source/{target}.txt", content=text))
-    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    files.append(File.generated(config, "changes.md", content=changes))
     return files
 
 
+def _reference() -> dict[str, str]:
+    """A page for each kind and function, and the index of terms."""
+    from moldloft.cli.doc import has_picture
+    from moldloft.cli.reference_page import entry_pages, terms_page
+    from moldloft.language import reference
+    from moldloft.library import routines
+
+    rows, libraries = reference(), routines()
+
+    def pictured(row: dict[str, Any]) -> bool:
+        there = (ROOT / "docs" / "kinds" / f"{row['name']}.png").is_file()
+        return there and has_picture(row)
+
+    pages = entry_pages(rows, pictured, libraries)
+    found = {f"reference/{name}.md": text for name, text in pages.items()}
+    return {**found, "terms.md": terms_page([*rows, *libraries])}
+
+
+def _changes() -> str:
+    """The list of changes, with links as from a page of `docs`."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\((?!https?:|#)(docs/)?", lambda m: "](" if m[1] else "](../", text)
+
+
+_SECTION = re.compile(r"^## (\S+)\n\n(.*?)(?=^## |\Z)", re.M | re.S)
+
+
+def _diagnostics() -> dict[str, str]:
+    """A page for each diagnostic, from its section in docs/diagnostics.md."""
+    text = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
+    back = "[All diagnostics](../diagnostics.md)"
+    return {
+        f"diagnostics/{name}.md": f"# {name}\n\n{body.strip()}\n\n{back}\n"
+        for name, body in _SECTION.findall(text)
+    }
+
+
+def _index_of_reference(markdown: str) -> str:
+    """The reference with a link from each row to its page."""
+    seen: dict[str, int] = {}
+
+    def linked(found: re.Match[str]) -> str:
+        name = found[1].lower()
+        count = seen[name] = seen.get(name, -1) + 1
+        return f"| [`{found[1]}`](reference/{f'{name}_{count}' if count else name}.md) |"
+
+    head, title, rest = markdown.partition("\n## Points\n")
+    return head + title + re.sub(r"^\| `(\w+)` \|", linked, rest, flags=re.M)
+
+
+def _index_of_diagnostics(markdown: str) -> str:
+    """The list of diagnostics, each with the first sentence of its meaning."""
+    head = markdown.partition("\n## ")[0]
+    lines = [head, "", "| id | meaning |", "| --- | --- |"]
+    for name, body in _SECTION.findall(markdown):
+        meaning = " ".join(body.partition("\n\n")[0].split())
+        first = re.match(r".*?[.](?= [A-Z`]|$)", meaning)
+        shown = (first[0] if first else meaning).replace("|", "\\|")
+        lines.append(f"| [{name}](diagnostics/{name}.md) | {shown} |")
+    return "\n".join(lines) + "\n"
+
+
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
-    """Turns links to sources into links to their copies in the site."""
+    """Links the indexes to the pages of their entries, and sources to their copies in the site."""
     here = page.file.src_uri
+    if here == "reference.md":
+        markdown = _index_of_reference(markdown)
+    if here == "diagnostics.md":
+        markdown = _index_of_diagnostics(markdown)
     up = "../" * here.count("/")
+    markdown = markdown.replace(
+        "(https://moldloft.github.io/moldloft/terms.html)", f"({up}terms.md)"
+    )
 
     def moved(found: re.Match[str]) -> str:
         target = _target(here, found[1])
@@ -135,18 +205,18 @@ def _living(target: str) -> str | None:
     return f"{found[2]}.html" if found[1] == "gallery" else f"{found[1]}-{found[2]}.html"
 
 
-#: What the theme loads from another server when the site is opened from a folder; without it there is no search there.
+#: Script that the theme loads from another server for search in a site opened from a folder.
 _SHIM = re.compile(r'(<script src=")https://unpkg\.com/iframe-worker/shim(")')
 
 
 def on_post_page(output: str, page: Any, config: Any) -> str:
-    """Takes the script for searching in a folder from the site itself."""
+    """Loads the script for search in a folder from the site itself."""
     up = "../" * page.url.count("/")
     return _SHIM.sub(rf"\g<1>{up}iframe-worker.js\g<2>", output)
 
 
 def on_post_template(output_content: str, template_name: str, config: Any) -> str:
-    """The same for the page about addresses that do not exist."""
+    """The same for the page of unknown addresses."""
     return _SHIM.sub(r"\g<1>/iframe-worker.js\g<2>", output_content)
 
 

@@ -1,4 +1,4 @@
-"""``python -m moldloft``: the command where its script is not on the path."""
+"""``python -m moldloft``: the command, if its script is not on the path."""
 
 import sys
 

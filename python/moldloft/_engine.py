@@ -1,4 +1,4 @@
-"""The processes that run models for others: within limits, and ended without loss.
+"""Engine processes, which run models within limits and can be ended without loss of data.
 
 The workbench and the language server start one with :func:`command` and speak to it by its standard
 input and output.

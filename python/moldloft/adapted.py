@@ -45,7 +45,7 @@ class Adapted:
         Raises
         ------
         ModelError
-            When no patch has such a tag.
+            If no patch has such a tag.
         Error
             Without PyVista.
         """
@@ -84,7 +84,7 @@ class Adapted:
         Raises
         ------
         ModelError
-            When no patch has such a tag.
+            If no patch has such a tag.
         Error
             Without trimesh.
         """
@@ -123,7 +123,7 @@ class Adapted:
         Raises
         ------
         ModelError
-            When no patch has such a tag.
+            If no patch has such a tag.
         Error
             Without meshio.
         """

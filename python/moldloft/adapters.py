@@ -71,7 +71,7 @@ def _patch_numbers(mesh: Mesh) -> NDArray[np.int64]:
 
 
 def _split(mesh: Mesh) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64]]:
-    """Which faces are triangles; these, and the quadrilaterals."""
+    """A mask of the triangles, the triangles, and the quadrilaterals."""
     faces = mesh.faces.astype(np.int64)
     triangle = faces[:, 2] == faces[:, 3]
     return triangle, faces[triangle][:, :3], faces[~triangle]
@@ -261,7 +261,7 @@ def to_capytaine(
     Raises
     ------
     Error
-        When no panel is below z = 0.
+        If no panel is below z = 0.
     """
     from moldloft import _core
 
@@ -294,7 +294,7 @@ def to_capytaine(
 
 
 def _scaled_gdf(text: str, factor: float) -> str:
-    """A GDF with its vertices times a factor; the four lines before them stay."""
+    """A GDF with scaled vertices; the four lines before them are unchanged."""
     if factor == 1:
         return text
     lines = text.splitlines()
@@ -385,7 +385,7 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
 
 @contextlib.contextmanager
 def _kept_signals() -> Iterator[None]:
-    """Gmsh makes a broken pipe end the process; within, it stays the exception that it was."""
+    """Keeps a broken pipe an exception, since Gmsh makes it end the process."""
     pipe = getattr(signal, "SIGPIPE", None)
     before = pipe and signal.getsignal(pipe)
     yield

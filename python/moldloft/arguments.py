@@ -1,4 +1,4 @@
-"""Wrong arguments of the API: an error of ours that names the argument, whatever noticed it first.
+"""Errors about wrong arguments, raised as :class:`ArgumentError` with the name of the argument.
 
 Nothing is checked before a call, so that valid calls cost nothing. When a call fails with an error
 of Python or NumPy, its arguments are compared with their annotations, and the first mismatch is
@@ -69,7 +69,7 @@ _WORDS = {
 
 
 def explain(module: dict[str, Any]) -> None:
-    """Has the public functions and classes of a module name the argument that is wrong.
+    """Makes errors of the public functions and classes of a module name the wrong argument.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
 def _fault(
     function: Callable[..., Any], arguments: tuple[Any, ...], options: dict[str, Any]
 ) -> tuple[str, str] | None:
-    """The argument that does not fit, and what to say about it."""
+    """The first mismatching argument, and the message about it."""
     signature = inspect.signature(function)
     # Methods that several classes have from a private one are named without it.
     where = re.sub(r"^_\w+\.", "", function.__qualname__.removesuffix(".__init__"))
@@ -152,7 +152,7 @@ def _fault(
 def _misspelt(
     where: str, signature: inspect.Signature, options: Mapping[str, Any]
 ) -> tuple[str, str] | None:
-    """The named argument that a function does not have, with the nearest that it has."""
+    """An unknown named argument of a function, with the nearest known one."""
     parameters = signature.parameters.values()
     known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     takes_others = any(p.kind is p.VAR_KEYWORD for p in parameters)
@@ -201,7 +201,7 @@ def _fits(value: Any, written: str, names: Mapping[str, Any]) -> bool:
 
 
 def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
-    """True if a value may be of a kind; also for unknown kinds."""
+    """True if a value may have the given kind, or the kind is unknown."""
     head, _, inner = kind.partition("[")
     if kind == "None":
         return value is None

@@ -1,6 +1,6 @@
 """``blockMeshDict`` of OpenFOAM from volume blocks.
 
-blockMesh joins whole faces of blocks and knows an edge by its two vertices. So blocks are cut
+blockMesh joins whole faces of blocks and identifies an edge by its two vertices. So blocks are cut
 where a part of a face meets another block, where two edges would run between the same vertices,
 and where a ring closes on itself. Edges are ``polyLine`` through the vertices of the grid, graded
 cell by cell, so that blockMesh's points on them are the grid's; inside faces and blocks it
@@ -100,7 +100,7 @@ def cut(blocks: Blocks, every: int = 0) -> list[Hex]:
 
 
 def _spread(cuts: Cuts, interfaces: Sequence[Interface]) -> None:
-    """Carries cuts over to what is joined, until nothing is new."""
+    """Propagates cuts to joined blocks until there are no new ones."""
     changed = True
     while changed:
         changed = False
@@ -137,7 +137,7 @@ def _line(indices: NDArray[np.uint32], part: Hex, axis: int, edge: int) -> NDArr
 
 
 def _separate(blocks: Blocks, parts: Sequence[Hex], cuts: Cuts) -> bool:
-    """Cuts edges that run between the vertices of another one. True when any was."""
+    """Cuts edges between vertices of another edge. True if any edge was cut."""
     known: dict[tuple[int, int], tuple[int, ...]] = {}
     new = False
     for part in parts:

@@ -65,7 +65,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Interface:
-    """A rectangle of a block's face that is a rectangle of another's, or of its own."""
+    """A rectangle of a block face that coincides with another one, also of the same block."""
 
     block: int
     """The block, counted from 0."""
@@ -105,7 +105,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Boundary:
-    """A rectangle of a block's face that meets no other."""
+    """A rectangle of a block face without a neighbour."""
 
     block: int
     """The block, counted from 0."""
@@ -146,7 +146,7 @@ class Blocks:
         self.symmetry = symmetry
         """The planes that the model is mirrored in, of ``"xyz"``."""
         self.unit_of_length = unit_of_length
-        """The unit of the positions, as ``"m"``; empty where the model has none."""
+        """Unit of the positions, such as ``"m"``; empty if the model states no unit."""
         summary = core.summary()
         self.cells: int = summary["cells"]
         """Number of cells."""
@@ -181,7 +181,7 @@ class Blocks:
 
     @cached_property
     def boundaries(self) -> tuple[Boundary, ...]:
-        """The parts of faces that meet nothing. Faces that are a line or a point are left out."""
+        """The parts of faces without a neighbour. Degenerate faces are omitted."""
         size = float(np.abs(self.vertices).max(initial=1.0))
         found = []
         for part in self._core.boundaries():
@@ -201,7 +201,7 @@ class Blocks:
 
     @property
     def problems(self) -> list[_core.Diagnostic]:
-        """Folded cells, and joins that do not hold."""
+        """Folded cells, and blocks that do not match at joins."""
         return self._core.problems()
 
     def __getitem__(self, name: str) -> Block:
@@ -217,7 +217,7 @@ class Blocks:
         return len(self.blocks)
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> list[Path]:
-        """Write the blocks to a file, whole or not at all.
+        """Write the blocks to a file atomically.
 
         Parameters
         ----------
@@ -235,9 +235,9 @@ class Blocks:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         FormatError
-            When the format is unknown or cannot hold the blocks.
+            If the format is unknown or cannot represent the blocks.
         """
         from moldloft.files import commit
 
@@ -263,7 +263,7 @@ class Blocks:
         Raises
         ------
         FormatError
-            When the format is unknown or cannot hold the blocks.
+            If the format is unknown or cannot represent the blocks.
         """
         from moldloft.files import Output
 

@@ -1,6 +1,6 @@
 """A stability booklet, as one HTML page or as PDF: weights, hydrostatics, curves, criteria.
 
-:func:`_parts` says what is in it; the two forms are drawn from the same parts.
+:func:`_parts` defines the content; both formats are drawn from the same parts.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def _parts(
 def write_booklet(
     path: str | os.PathLike[str], model: Model, stability: Stability, **options: Any
 ) -> Path:
-    """Write a booklet, whole or not at all; the file's ending, ``.html`` or ``.pdf``, says how.
+    """Write a booklet atomically, in the format of the extension: ``.html`` or ``.pdf``.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def write_booklet(
     Raises
     ------
     Error
-        When the ending is another one, or reportlab is not installed.
+        If the ending is another one, or reportlab is not installed.
     """
     from moldloft.files import Output, commit
 

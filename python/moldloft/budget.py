@@ -32,13 +32,13 @@ class Limits(NamedTuple):
     Attributes
     ----------
     memory
-        Bytes that models hold, all of the process together.
+        Bytes of all models of the process.
     steps
         Statements and calls of one run.
     objects
         Objects of one model.
     seconds
-        Time of one run, one mesh, one measure; ``inf`` where none is stated: work on one set has
+        Time of one run, one mesh, one measure; ``inf`` by default: work on one set has
         10 s of processor time then, and CAD files have theirs.
     """
 
@@ -74,7 +74,7 @@ def limits(
     Raises
     ------
     ModelError
-        When a value is none that can be kept.
+        If a value is not a valid limit.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def limits(
 
 
 def parsed(text: str) -> dict[str, str | int | float]:
-    """The arguments of :func:`limits` that ``NAME=VALUE`` says.
+    """The arguments of :func:`limits` from texts ``NAME=VALUE``.
 
     >>> parsed("memory=500M")
     {'memory': '500M'}
@@ -136,7 +136,7 @@ def within_limits() -> Iterator[None]:
     Raises
     ------
     FileError
-        When the work inside takes more than is allowed.
+        If the work inside takes more than is allowed.
     """
     watch = _Watch(limits())
     watch.start()
@@ -151,11 +151,11 @@ def within_limits() -> Iterator[None]:
 
 
 class _OverspentError(BaseException):
-    """Raised in the thread that is watched; no reader takes it for a fault of its file."""
+    """Raised in the watched thread; readers do not mistake it for an error of their file."""
 
 
 class _Watch(threading.Thread):
-    """Looks at what the thread that made it uses, and raises :class:`_OverspentError` there."""
+    """Watches the resources of the creating thread, and raises :class:`_OverspentError` in it."""
 
     _LOOK = 0.02
     """Seconds between two looks."""
@@ -181,7 +181,7 @@ class _Watch(threading.Thread):
                     self._raise(ctypes.py_object(_OverspentError))
 
     def end(self) -> None:
-        """Nothing is raised once this returns."""
+        """End the signal: nothing is raised after this call."""
         with self._lock:
             self._ended.set()
             self._raise(None)
@@ -206,7 +206,7 @@ class _Watch(threading.Thread):
 
 
 def _resident() -> int:
-    """Bytes of the process that are in memory; 0 where the system does not say it."""
+    """Resident memory of the process in bytes; 0 if the system does not report it."""
     try:
         return int(_STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, AttributeError):

@@ -92,7 +92,7 @@ class Kind:
 
 
 def _check_names(thing: Function | Kind, named: Mapping[str, object]) -> None:
-    """Refuses arguments that a kind or function does not have, at the line that gives them."""
+    """Rejects unknown arguments of a kind or function, at the calling line."""
     known = thing.__signature__.parameters
     for name in named:
         # The language takes the words of Python without the underscore.
@@ -189,7 +189,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -225,7 +225,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -265,7 +265,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language.
+            If the name is not one of the language.
 
         Examples
         --------
@@ -318,7 +318,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is not one of the language, or the default out of the range.
+            If the name is not one of the language, or the default out of the range.
 
         Examples
         --------
@@ -337,7 +337,7 @@ class Builder:
         return Expr(name, float(default if value is None else value))
 
     def model(self) -> Model:
-        """The model of what was declared.
+        """The model of the declared objects.
 
         Returns
         -------
@@ -391,7 +391,7 @@ class Range:
 def param(
     default: float, low: float | None = None, high: float | None = None, *, whole: bool = False
 ) -> Any:
-    """A default of a model function's argument with the range that it may take.
+    """Default and range of an argument of a model function.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ def param(
     Raises
     ------
     ValueError
-        When one end of the range is missing, or the default out of it.
+        If one end of the range is missing, or the default out of it.
 
     Examples
     --------
@@ -509,7 +509,7 @@ def model(function: Callable[P, object]) -> ModelFunction[P]:
     Raises
     ------
     TypeError
-        When an argument has no number as its default.
+        If an argument has no number as its default.
 
     Examples
     --------
@@ -531,7 +531,7 @@ def model(function: Callable[P, object]) -> ModelFunction[P]:
 
 
 class _PythonModel(Model):
-    """A model whose text is written again by its function when a parameter changes."""
+    """A model whose function rewrites its text when a parameter changes."""
 
     def __init__(self, function: ModelFunction[Any], values: dict[str, float]) -> None:
         self._source = function

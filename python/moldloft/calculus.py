@@ -56,7 +56,7 @@ class CurveCalculus:
         def _document(self) -> _core.Document: ...
 
     def derivative(self, t: ArrayLike, order: int = 1, *, beyond: bool = False) -> Floats:
-        """Derivatives of the position by ``t``, ``(…, 3)``.
+        """Derivatives of the position with respect to ``t``, ``(…, 3)``.
 
         Parameters
         ----------
@@ -148,7 +148,7 @@ class SurfaceCalculus:
     def derivative(
         self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0, *, beyond: bool = False
     ) -> Floats:
-        """Derivatives of the position, ``du`` times by ``u``, ``dv`` times by ``v``: ``(…, 3)``.
+        """Derivatives of the position of order ``du`` in ``u`` and ``dv`` in ``v``: ``(…, 3)``.
 
         Parameters
         ----------
@@ -186,7 +186,7 @@ class SurfaceCalculus:
         return found[orders[du, dv]].reshape(*shape, 3)
 
     def normal(self, u: ArrayLike, v: ArrayLike, *, beyond: bool = False) -> Floats:
-        """Unit normals along S_u x S_v, ``(…, 3)``; zero where the surface is singular.
+        """Unit normals in the direction S_u x S_v, ``(…, 3)``; zero where the surface is singular.
 
         Parameters
         ----------

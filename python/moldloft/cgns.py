@@ -76,7 +76,7 @@ class Zone:
 
 @dataclass(frozen=True)
 class Interface:
-    """A run of an edge that is a run of another, vertex by vertex."""
+    """A range of vertices that two edges share."""
 
     zone: int
     side: int
@@ -126,7 +126,7 @@ def zones(model: Model) -> list[Zone]:
 
 
 def unique(name: str, taken: set[str]) -> str:
-    """A node's name: at most 32 characters, no slash, none twice."""
+    """A unique node name of at most 32 characters, without a slash."""
     base = "".join("_" if c in "/\\" or not c.isprintable() else c for c in name) or "unnamed"
     base = base.encode("ascii", "replace").decode().replace("?", "_")
     short, k = base[:_LONGEST], 1

@@ -1,4 +1,4 @@
-"""A process of Python that answers requests, one after the other, and may end over one.
+"""A Python process that answers requests one after the other, and that a request may crash.
 
 Requests and answers are JSON, each behind its length; only answers come from the process's standard
 output, whatever its libraries print.
@@ -29,14 +29,14 @@ _HEAD = struct.Struct("<Q")
 
 @dataclass(frozen=True)
 class ProcessEnd:
-    """How a process ended instead of answering."""
+    """End of a process that sent no answer."""
 
     status: int
     """Its return code; below zero the number of a signal."""
     late: bool
-    """Whether it was ended, for it had taken longer than the answer was waited for."""
+    """True if it was ended because it exceeded the time limit."""
     asked: bool
-    """Whether it had taken the request."""
+    """True if it had taken the request."""
 
     @property
     def by(self) -> str:
@@ -53,7 +53,7 @@ class ChildProcess:
     module
         The module's full name.
     quiet
-        Whether its standard error goes nowhere.
+        True to discard its standard error.
     """
 
     def __init__(self, module: str, *, quiet: bool = False) -> None:
@@ -64,22 +64,22 @@ class ChildProcess:
             stderr=subprocess.DEVNULL if quiet else None,
         )
         self.answered = False
-        """Whether it has answered a request."""
+        """True if it has answered a request."""
 
     @property
     def alive(self) -> bool:
-        """Whether the process lives."""
+        """True if the process is running."""
         return self._process.poll() is None
 
     def ask(self, request: Mapping[str, Any], seconds: float) -> dict[str, Any] | ProcessEnd:
-        """The answer to a request, or how the process ended over it.
+        """The answer to a request, or the end of the process.
 
         Parameters
         ----------
         request
             A message of JSON.
         seconds
-            How long an answer is waited for; the process is ended then.
+            Maximum time for an answer in seconds; the process is ended after it.
 
         Returns
         -------
@@ -117,7 +117,7 @@ class ChildProcess:
         return ProcessEnd(self._process.returncode, late.is_set(), asked)
 
     def end(self) -> None:
-        """Ends the process and closes its pipes; one that is ending by itself keeps its status."""
+        """Ends the process and closes its pipes; one that is already ending keeps its status."""
         self._process.kill()
         self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout):
@@ -127,7 +127,7 @@ class ChildProcess:
 
 
 def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> None:
-    """Answer the requests of the process that began this one, until it asks no more.
+    """Answer requests of the parent process until it closes the connection.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> No
 
 
 def bounded(memory: int, seconds: float = math.inf) -> None:
-    """Bounds what this process takes from now on, where the system can.
+    """Limits the resources of this process, if the system supports it.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def _write(target: BinaryIO | Any, message: Mapping[str, Any]) -> None:
 
 
 def _read(source: BinaryIO | Any) -> dict[str, Any] | None:
-    """The next message; None at the end, which may be within one."""
+    """The next message; None at the end of output, even within a message."""
     head = source.read(_HEAD.size)
     if len(head) < _HEAD.size:
         return None

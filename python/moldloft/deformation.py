@@ -134,7 +134,7 @@ class Box:
                     f"at least {max(degree, 1) + 1} are needed"
                 )
             if min(pair) < 0 or sum(pair) >= count:
-                raise Error(f"{pair} fixed layers along {axis} leave none of {count} free")
+                raise Error(f"{pair} fixed layers along {axis} leave no free layer of {count}")
         object.__setattr__(self, "origin", origin)
         object.__setattr__(self, "edges", edges)
         object.__setattr__(self, "degrees", degrees)
@@ -255,7 +255,7 @@ class Box:
         Raises
         ------
         Error
-            When a fixed control point would move.
+            If a fixed control point would move.
         """
         chosen = np.zeros(self.counts, dtype=bool)
         try:
@@ -269,7 +269,7 @@ class Box:
                 f"`fixed` of the box is {self.fixed}"
             )
         if isinstance(direction, str) and direction not in AXES:
-            raise Error(f"`{name}`: the direction `{direction}` is none of x, y, z")
+            raise Error(f"`{name}`: expected direction x, y or z, found `{direction}`")
         vector = AXES[direction] if isinstance(direction, str) else direction
         moved = chosen[..., None] * np.asarray(vector, dtype=np.float64)
         return Variable(name, self, moved, low, high, start)
@@ -322,7 +322,9 @@ class Deformation:
         self.modes: Floats = np.array(modes)
         for variable, mode in zip(self.variables, self.modes, strict=True):
             if not mode.any():
-                raise Error(f"`{variable.name}` moves no point: the box holds none of the shape")
+                raise Error(
+                    f"`{variable.name}` moves no point: the box contains no point of the shape"
+                )
 
     # -- making ----------------------------------------------------------------------------
 
@@ -341,7 +343,7 @@ class Deformation:
         Parameters
         ----------
         path, units, file_units
-            See :func:`moldloft.read_mesh`. Remarks are in ``remarks``.
+            See :func:`moldloft.read_mesh`. Warnings are in ``remarks``.
         variables
             Variables in the unit of the model.
         symmetry
@@ -483,7 +485,7 @@ class Deformation:
         if isinstance(values, Mapping):
             known = [v.name for v in self.variables]
             if unknown := [name for name in values if name not in known]:
-                raise Error(f"`{unknown[0]}` is no variable; variables: {', '.join(known)}")
+                raise Error(f"unknown variable `{unknown[0]}`; variables: {', '.join(known)}")
             values = [values.get(name, 0.0) for name in known]
         row = np.asarray(values, dtype=np.float64)
         if row.shape != (len(self.variables),):
@@ -492,7 +494,7 @@ class Deformation:
         return found
 
     def gradient(self, weights: ArrayLike) -> Floats:
-        """Derivatives by the variables of a number with known derivatives by the points.
+        """Derivatives with respect to the variables from those with respect to the points.
 
         Parameters
         ----------
@@ -547,14 +549,14 @@ def _mirrored(variable: Variable, points: Floats, axis: int) -> Floats:
         if flat[image].any() and not np.allclose(flat[image], flat[k] * flip, atol=1e-12):
             raise Error(
                 f"`{variable.name}` moves the control points {k} and {image}, images of each "
-                "other, in ways that are no images; name those of one side"
+                "other, differently; name only those of one side"
             )
         found[image] = flat[k] * flip
     return found.reshape(moved.shape)
 
 
 def _untorn(variable: Variable, moved: Floats, points: Floats, edges: Integers) -> None:
-    """Refuses a variable whose layer at a side moves where the shape passes through that side."""
+    """Rejects a variable that would tear the shape where it passes through a side of the box."""
     box = variable.box
     at = box.parameters(points)
     inside = np.asarray(((at >= 0) & (at <= 1)).all(axis=1))

@@ -1,4 +1,4 @@
-"""Display of models, objects, meshes and figures in a notebook: HTML and SVG without a server."""
+"""Display of models, objects, meshes and figures in notebooks, as HTML and SVG without a server."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _is_points(value: object) -> bool:
 
 
 def model_html(model: Model) -> str:
-    """A picture, the parameters with their ranges, the objects by kind, and what is wrong."""
+    """A picture, the parameters with their ranges, the objects by kind, and diagnostics."""
     parts = [f"<strong>{escape(repr(model).strip('<>'))}</strong>"]
     try:
         shown = any(_drawn(fact) for fact in map(model.facts, model.objects))
@@ -107,7 +107,7 @@ def _drawn(fact: dict[str, Any]) -> bool:
 
 
 def object_html(thing: Object) -> str:
-    """A drawing of a curve or surface, its numbers, and what it depends on."""
+    """A drawing of a curve or surface, its numbers, and its dependencies."""
     try:
         fact = thing._facts()
     except Error as error:
@@ -204,7 +204,7 @@ def lines_svg(lines: Sequence[Floats]) -> str:
 
 
 def worst_panel(patch: Patch, metric: str) -> str:
-    """The largest value of a metric of quality; a dash for a patch without panels, as lines are."""
+    """The largest value of a quality metric; a dash for a patch without panels."""
     figures = patch.quality.get(metric)
     return "-" if figures is None else f"{figures['max']:.3g}"
 

@@ -1,4 +1,4 @@
-"""The errors that Moldloft raises: one base class, and what a user would catch besides."""
+"""Exceptions of Moldloft: a base class and the built-in classes that each one also derives from."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Error(Exception):
-    """Anything that went wrong in Moldloft by a user's or a file's fault.
+    """Base class of errors due to a model, a file or an argument.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Error(Exception):
     Attributes
     ----------
     diagnostics : tuple of Diagnostic
-        Each with id, severity, message, places, help. Empty for a fault outside a model, such as a
+        Each with id, severity, message, places, help. Empty for an error outside a model, such as a
         full disk.
 
     Examples
@@ -82,7 +82,7 @@ _MOST_RAISED = 64
 
 
 def record_raised(function: str, error: BaseException) -> None:
-    """Keep what a model's Python function raised, for the error that the model raises then."""
+    """Store the exception of a model's Python function for the error that the model raises."""
     _raised.pop(key := f"{function} raised {type(error).__name__}: {error}", None)
     _raised[key] = error
     while len(_raised) > _MOST_RAISED:
@@ -158,11 +158,11 @@ class FairingError(Error, ValueError):
 
 
 class UnknownNameError(Error, KeyError):
-    """There is no parameter or object of that name."""
+    """A name is not that of a parameter or object."""
 
 
 class FileError(Error, OSError):
-    """A file or folder cannot be read or written; nothing was left half-written."""
+    """A file or folder cannot be read or written; no file is left partly written."""
 
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         Error.__init__(self, message, diagnostics)
@@ -176,7 +176,7 @@ class MissingPackageError(Error, ImportError):
 
 
 class FormatError(Error, ValueError):
-    """Bytes are not a file of a format, a format is unknown, or it cannot hold what it is to hold.
+    """Invalid content of a file, an unknown format, or a format that cannot represent the model.
 
     Attributes
     ----------

@@ -46,7 +46,7 @@ _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 
 
 class Expr:
-    """A number of a model, as an expression of the language; it also knows its value, if it can.
+    """A number of a model, as an expression of the language, with its current value if it is known.
 
     Arithmetic and NumPy's elementary functions give further expressions. Comparisons look at the
     value, so that a model function may branch. Turning an expression into a float would cut it
@@ -327,7 +327,7 @@ _FOUND = frozenset({"status", "residual", "iterations", "start", "alternatives"}
 
 
 class AnyHandle(Handle):
-    """An object of a class without members of its own, such as a list or a weight."""
+    """An object of a class without members, such as a list or a weight."""
 
     def __call__(self, *parameters: object) -> PointHandle:
         """A point of it, if it is a curve or surface."""
@@ -569,7 +569,7 @@ class SetShape(Shape):
 
 
 class AnyShape(Shape):
-    """A value whose class only the language knows, such as that of ``max`` or ``translated``."""
+    """A value whose class depends on arguments, such as that of ``max`` or ``translated``."""
 
     def __add__(self, other: object) -> Any:
         return self._binary(other, "+")

@@ -35,7 +35,7 @@ SOLVERS = tuple(row.name for row in formats().values() if row.panel_code)
 
 
 def format_named(name: str) -> str:
-    """The name of the format of that name or alias.
+    """The name of a format, by name or alias.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def file_name(stem: str, format: str) -> str:
 
 
 def ending(path: Path) -> str:
-    """Format by the name of a file: its ending, or the format of a longer one.
+    """Format of a file name: its extension, or a longer known one.
 
     Parameters
     ----------

@@ -108,9 +108,9 @@ class Floating:
         Raises
         ------
         Error
-            When a density or accuracy is out of its range, or both level and draft are given.
+            If a density or accuracy is out of its range, or both level and draft are given.
         ModelError
-            When the model has no surfaces, or cannot float so.
+            If the model has no surfaces, or cannot float so.
 
         Examples
         --------
@@ -153,7 +153,7 @@ class Floating:
         by: Sequence[str] = (),
         accuracy: float = 1e-6,
     ) -> Hydrostatics:
-        """The attitude at rest of a body of given mass.
+        """The equilibrium attitude of a body of given mass.
 
         Parameters
         ----------
@@ -173,13 +173,13 @@ class Floating:
         Returns
         -------
         Hydrostatics
-            Its ``status`` says whether the attitude is one of rest, its ``stable`` whether small
-            turns in heel and trim are righted.
+            Its ``status`` is ``"converged"`` at an equilibrium; ``stable`` is true for positive
+            stiffness in heel and trim.
 
         Raises
         ------
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------
@@ -194,11 +194,11 @@ class Floating:
             total = self.weights()
             if not total.rows:
                 raise Error(
-                    "no mass floats\nhelp: give the displacement, or declare weights: "
+                    "no floating mass is known\nhelp: give the displacement, or declare weights: "
                     "Weight engine({2, 0, 0.5}, mass = 3);"
                 )
             if cg is not None:
-                raise Error("give both the displacement and cg, or none: those of the weights")
+                raise Error("give both displacement and cg, or neither to use those of the weights")
             displacement, cg = total.mass, total.centre
         held = free is None and cg is not None
         if free is None:
@@ -246,9 +246,10 @@ class Floating:
         density
             ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
         gravity
-            Acceleration, in the model's units; default: that of the earth, if units are known.
+            Acceleration of gravity in model units; default 9.80665 m/s² if the model states its
+            units.
         sides
-            ``"both"`` counts a mirrored model with its image, ``"one"`` alone.
+            ``"both"`` includes the mirror image of a mirrored model, ``"one"`` excludes it.
         by
             Names of parameters.
         accuracy
@@ -262,9 +263,9 @@ class Floating:
         Raises
         ------
         Error
-            When a density or accuracy is out of its range, or both level and draft are given.
+            If a density or accuracy is out of its range, or both level and draft are given.
         ModelError
-            When the model has no surfaces, or cannot float so.
+            If the model has no surfaces, or cannot float so.
 
         Examples
         --------
@@ -316,7 +317,7 @@ class Floating:
         Raises
         ------
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------
@@ -420,7 +421,7 @@ class Floating:
 
     @property
     def length_unit(self) -> tuple[str, float]:
-        """The unit of length and its size in metres; metres where the model states none."""
+        """The unit of length and its size in metres; metres if the model states no unit."""
         unit = self.units.length or "m"
         return unit, Units(unit).metres
 
@@ -452,7 +453,7 @@ class Floating:
         Returns
         -------
         WeightTable
-            Empty where the model declares none.
+            Empty if the model declares no weights.
 
         Examples
         --------
@@ -500,7 +501,7 @@ class Floating:
         Error
             Without a mass, a centre of gravity or a density.
         ModelError
-            When the body cannot carry the mass.
+            If the body cannot carry the mass.
 
         Examples
         --------

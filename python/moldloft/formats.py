@@ -1,4 +1,4 @@
-"""The table of formats that models are written in.
+"""The table of output formats of models.
 
 The rows are those of the Rust crate ``export``, and those of the formats that Python writes:
 :data:`PYTHON_ROWS`, each with the function that makes its file.
@@ -47,7 +47,7 @@ class Format:
     lids: bool = False
     """Lids are written only on request."""
     immersed: bool = False
-    """The immersed part alone can be written."""
+    """True if the immersed part can be written separately."""
     text: bool = False
     """The main file is text."""
     of_grids: bool = False
@@ -68,9 +68,9 @@ class Format:
 
     @property
     def plain_panels(self) -> bool:
-        """True if the files hold panels and cannot name planes of symmetry.
+        """True if the files contain panels and cannot state planes of symmetry.
 
-        Files of a symmetric model hold one half, or the whole on request.
+        Files of a symmetric model contain one half, or the whole on request.
         """
         return self.holds.startswith("panels") and not self.symmetry and not self.writer
 
@@ -81,11 +81,11 @@ class Format:
 
     @property
     def volume(self) -> bool:
-        """True if the files hold the cells of solids."""
+        """True if the files contain the cells of solids."""
         return self.holds == "volumes"
 
     def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
-        """The bytes that a row of Python makes; surfaces are fitted within the tolerance.
+        """The bytes of a format implemented in Python; surfaces are fitted within the tolerance.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ def formats() -> dict[str, Format]:
 
 
 def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
-    """The row of that name or alias.
+    """The row of a format, by name or alias.
 
     Parameters
     ----------
@@ -216,8 +216,8 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
             return row
     ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
     if ends:
-        files = f"files that end in `.{wanted}` may be of several formats"
-        raise FormatError(f"{files}; say which format: {' or '.join(ends)}")
+        files = f"the extension `.{wanted}` belongs to several formats"
+        raise FormatError(f"{files}; expected a longer extension: {' or '.join(ends)}")
     known = [word for row in rows for word in (row.name, *row.aliases)]
     near = nearest(wanted, known)
     if near:

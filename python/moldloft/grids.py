@@ -107,7 +107,7 @@ def _grids(grids: Sequence[ArrayLike]) -> list[NDArray[np.float64]]:
 def read_plot3d(
     path: str | Path,
 ) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
-    """The blocks of a Plot3D grid file, whatever its variant.
+    """The blocks of a Plot3D grid file of any variant.
 
     Text, plain binary and Fortran records, single and double precision, one block and several, two
     and three coordinates, blanking and both byte orders are detected from the length of
@@ -130,7 +130,7 @@ def read_plot3d(
     Raises
     ------
     FileError
-        When the file cannot be read, or no variant explains it: cut off, or no Plot3D.
+        If the file cannot be read, or no variant explains it: cut off, or no Plot3D.
     """
     try:
         return decode_plot3d(_read(path))
@@ -156,7 +156,7 @@ def decode_plot3d(
     Raises
     ------
     FormatError
-        When no variant explains the bytes.
+        If no variant explains the bytes.
     """
     blocks, found = _core.read_plot3d(data)
     surfaces = [block[:, :, 0, :] if block.shape[2] == 1 else block for block in blocks]
@@ -225,7 +225,7 @@ def write_plot3d(
     *,
     iblank: Sequence[ArrayLike] | None = None,
 ) -> Path:
-    """Write grids as a Plot3D file, whole or not at all.
+    """Write grids as a Plot3D file, atomically.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def write_plot3d(
     grids
         Arrays (ni, nj, 3) or (ni, nj, nk, 3).
     variant
-        How; by default plain binary, double precision, several blocks, three coordinates.
+        File variant; by default plain binary, double precision, several blocks, three coordinates.
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
 
@@ -246,8 +246,8 @@ def write_plot3d(
     Raises
     ------
     Error
-        When the variant cannot hold the grids: several blocks in a single-block file, a z in a 2-D
-        file, numbers beyond single precision.
+        If the variant cannot represent the grids: several blocks in a single-block file, a z in a
+        2-D file, numbers beyond single precision.
     """
     return _commit(path, encode_plot3d(grids, variant, iblank=iblank))
 
@@ -265,7 +265,7 @@ def encode_plot3d(
     grids
         Grids of points, each ``(ni, nj, 3)`` or ``(ni, nj, nk, 3)``.
     variant
-        How; by default plain binary, double precision, several blocks, three coordinates.
+        File variant; by default plain binary, double precision, several blocks, three coordinates.
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
 
@@ -308,7 +308,7 @@ def _commit(path: str | Path, data: bytes) -> Path:
 def write(
     path: str | Path, grids: Sequence[ArrayLike], *, names: Sequence[str] | None = None
 ) -> list[Path]:
-    """Write grids in the format that the file's name ends in.
+    """Write grids in the format of the file extension.
 
     Parameters
     ----------
@@ -449,7 +449,7 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
 
 
 def write_csv(path: str | Path, points: ArrayLike) -> Path:
-    """Write points (n, 2) or (n, 3) as lines of numbers with commas, under a heading.
+    """Write points (n, 2) or (n, 3) as comma-separated values with a header.
 
     Every digit that is needed to read the same numbers back is written.
 
@@ -476,7 +476,7 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
 def read_points(path: str | Path) -> NDArray[np.float64]:
     """Points (n, 3) of a text with two or three numbers to a line.
 
-    Blanks, commas, semicolons and tabulators separate; titles, names of columns and what follows a
+    Separators are blanks, commas, semicolons and tabs; titles, names of columns and what follows a
     ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
     trailing edge round the nose.
 

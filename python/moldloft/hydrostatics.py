@@ -31,7 +31,7 @@ _RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
 
 
 def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
-    """Trimmed surfaces, and twice what their triangles miss of volume and area.
+    """Trimmed surfaces, with twice their faceting errors of volume and area.
 
     The triangles' figures are compared with the integrals over the surfaces themselves. Twice, as
     what is missed above the water may cancel what is missed below.
@@ -85,7 +85,7 @@ class Hydrostatics:
     draft: float
     """Depth of the lowest point below the water."""
     open_edges: int
-    """Open edges of the skin below the water, not in the symmetry plane: 0 when it holds water."""
+    """Open edges of the skin below the water, without those in the symmetry plane."""
     closure_error: float
     """Largest difference between the volumes by x, y and z over the volume."""
     waterplane_error: float
@@ -223,7 +223,7 @@ class Hydrostatics:
         """Immersed openings, overlaps, surfaces measured on triangles, inaccurate figures."""
         lines = []
         if self.partial:
-            lines.append("the model is not whole: the figures are those of what was made")
+            lines.append("the model is incomplete: the figures are those of the valid objects")
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
             lines.append(
@@ -249,12 +249,12 @@ class Hydrostatics:
             value = getattr(self, name)
             if value and (share := self.bounds.get(name, 0.0) / abs(value)) > self.accuracy > 0:
                 lines.append(
-                    f"{name} is known to {share:.1g} of itself; {self.accuracy:.1g} was asked for"
+                    f"{name}: relative accuracy {share:.1g}; requested: {self.accuracy:.1g}"
                 )
         return lines
 
     def as_dict(self) -> dict[str, Any]:
-        """All figures that have a meaning, by name, in a fixed order.
+        """All defined figures by name, in a fixed order.
 
         Returns
         -------
@@ -282,7 +282,7 @@ class Hydrostatics:
         return state_html(self)
 
     def unit(self, figure: str) -> str:
-        """The unit of a figure, empty where the model states none.
+        """The unit of a figure; empty if the model states no units.
 
         Parameters
         ----------
@@ -297,7 +297,7 @@ class Hydrostatics:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         if figure not in {each.name for each in fields(self)}:
             known = ", ".join(_NUMBERS)
@@ -342,9 +342,9 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When the figures have no density, or are of one side.
+            If the figures have no density, or are of one side.
         UnknownNameError
-            When the figures have no derivatives by ``by``.
+            If the figures have no derivatives with respect to ``by``.
 
         Examples
         --------
@@ -379,9 +379,9 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When the figures have no density, or are of one side.
+            If the figures have no density, or are of one side.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
         from moldloft.stiffness import kh_files
@@ -405,7 +405,7 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When a word is not a unit, or the model states none to convert from.
+            If a word is not a unit, or the model states no units.
         """
         to = Units.parse(to) if isinstance(to, str) else to
         changed: dict[str, Any] = {}
@@ -454,7 +454,7 @@ class _Rows:
         return iter(self.rows)
 
     def column(self, name: str) -> NDArray[np.float64]:
-        """One figure of all rows; ``nan`` where it has no meaning.
+        """One figure of all rows; ``nan`` where it is undefined.
 
         Parameters
         ----------
@@ -469,7 +469,7 @@ class _Rows:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         import numpy as np
 
@@ -480,7 +480,7 @@ class _Rows:
         return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
 
     def derivative(self, name: str, by: str) -> NDArray[np.float64]:
-        """The derivative of one figure by a parameter in all rows; ``nan`` where it has none.
+        """Derivative of one figure with respect to a parameter in all rows, or ``nan``.
 
         Parameters
         ----------
@@ -544,7 +544,7 @@ class _Rows:
         Parameters
         ----------
         columns
-            Which figures; by default all that have a meaning in some row.
+            Figures; by default all that are defined in some row.
 
         Returns
         -------
@@ -554,7 +554,7 @@ class _Rows:
         Raises
         ------
         UnknownNameError
-            When there is no such figure.
+            If there is no such figure.
         """
         wanted = columns or [n for n in _NUMBERS if any(getattr(r, n) is not None for r in self)]
         for name in wanted:
@@ -568,7 +568,7 @@ class _Rows:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all.
+        """Write :meth:`csv` to a file atomically.
 
         Parameters
         ----------
@@ -583,7 +583,7 @@ class _Rows:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -617,9 +617,9 @@ class HydrostaticTable(_Rows):
         Raises
         ------
         Error
-            When matplotlib knows no such ending.
+            If Matplotlib does not support the extension.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         figure, axes = _axes(3)
         draft = self.column("draft")
@@ -717,9 +717,9 @@ class RightingCurve(_Rows):
         Raises
         ------
         Error
-            When matplotlib knows no such ending.
+            If Matplotlib does not support the extension.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         figure, (axis,) = _axes(1)
         axis.plot([math.degrees(heel) for heel in self.heels], self.gz, label="GZ")

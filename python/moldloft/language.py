@@ -1,4 +1,4 @@
-"""The language itself: its reference, canonical texts, and the shapes that expressions have."""
+"""The language: its reference, canonical texts, and shapes of expressions."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from moldloft._core import Shape
 from moldloft.arguments import explain
 from moldloft.errors import ModelError, UnknownNameError
 from moldloft.spelling import nearest
+from moldloft.terms import targets
 
 __all__ = [
     "Shape",
@@ -49,7 +50,7 @@ def statements() -> list[dict[str, Any]]:
 
 
 def keywords() -> list[str]:
-    """The words of the language: types, and words that statements are made of.
+    """The reserved words of the language: types and keywords.
 
     >>> "foreach" in keywords()
     True
@@ -58,7 +59,7 @@ def keywords() -> list[str]:
 
 
 def attributes() -> list[dict[str, Any]]:
-    """The named arguments that every kind takes besides its own.
+    """The named arguments that every kind takes in addition to its own.
 
     >>> [field["name"] for field in attributes()][:3]
     ['colour', 'visible', 'layer']
@@ -89,7 +90,7 @@ _ATTRIBUTES = (
     ("subdivisions", "integer", "Steps in each division, or in u and in v."),
     ("size", "number", "Aimed length of panels, or along u and along v."),
     ("spacing", "value", "uniform, cosine, start, end, or the growth from panel to panel."),
-    ("tags", "text", "What the patch is: wetted, lid, waterline, symmetry or names of your own."),
+    ("tags", "text", "Roles of the patch: wetted, lid, waterline, symmetry or user-defined names."),
     ("orientation", "integer", "1 reverses the normals of a surface's panels."),
     ("attributes", "text", "Attributes of a model file, kept as they are."),
 )
@@ -101,7 +102,7 @@ def _rows() -> dict[str, dict[str, Any]]:
 
 
 def entry(name: str) -> dict[str, Any]:
-    """The row of a kind or function; an ``UnknownNameError`` where there is none.
+    """The row of a kind or function; ``UnknownNameError`` for other names.
 
     Parameters
     ----------
@@ -291,8 +292,12 @@ def search(words: str) -> list[dict[str, Any]]:
     True
     """
     wanted = _wanted(words)
+    explained = targets(words)
     scored: list[tuple[int, int, dict[str, Any]]] = []
     for row in reference():
+        if row["name"] in explained:
+            scored.append((-100, len(scored), row))
+            continue
         name = row["name"].lower()
         text = f"{row['doc']} {row['class']}".lower()
         summary = str(row["summary"]).lower()
@@ -318,7 +323,7 @@ def search(words: str) -> list[dict[str, Any]]:
 
 SITE = "https://moldloft.github.io/moldloft"
 
-#: Pages of the documentation: file, what it is about, and words that ask for it besides.
+#: Pages of the documentation: file, subject, and further words that it is found by.
 _GUIDES = (
     (
         "hydrostatics",
@@ -357,6 +362,22 @@ _GUIDES = (
         "coming from another program",
         "multisurf openvsp rhino cadquery geomdl gmsh openscad",
     ),
+    ("studies", "parameter studies and optimisation", "study sweep optimise variant plan"),
+    ("deformation", "free-form deformation of meshes and NURBS", "deform ffd morph box"),
+    ("sketch-routines", "equivalents of the SKETCH routines of 1983", "sketch routine"),
+    ("policy", "compatibility of versions", "version stable deprecated"),
+    ("performance", "measured times beside peers", "speed benchmark time"),
+    ("soak", "results of long random tests", "random test fuzz"),
+    ("architecture", "crates and invariants", "crate design"),
+    ("development", "building, testing and extending Moldloft", "build test contribute"),
+    ("tutorials/naval-architect", "tutorial: offsets to GZ curve", "offsets tutorial"),
+    ("tutorials/cfd", "tutorial: wing and body to a solver", "cfd tutorial wing"),
+    ("tutorials/propeller", "tutorial: a propeller from its data sheet", "propeller tutorial"),
+    ("tutorials/dam", "tutorial: a gravity dam and an arch dam", "dam tutorial"),
+    ("tutorials/product", "tutorial: a solid with blends", "product tutorial"),
+    ("tutorials/optimisation", "tutorial: gradients in an optimiser", "optimiser tutorial"),
+    ("inside/certificate", "how the optimum of fairing is certified", "certificate proof"),
+    ("inside/fairing-studies", "studies of fairing", "fairing study"),
 )
 
 
@@ -373,16 +394,17 @@ def guides(words: str) -> list[tuple[str, str]]:
     >>> guides("hydrostatics")[0][1]
     'https://moldloft.github.io/moldloft/hydrostatics.html'
     """
-    found = []
+    abouts = {page: about for page, about, _ in _GUIDES}
+    pages = [page for page in targets(words) if page in abouts]
     for page, about, more in _GUIDES:
         known = f"{page} {about} {more}".lower()
-        if all(_stem(word) in known for word in _wanted(words)):
-            found.append((about, f"{SITE}/{page}.html"))
-    return found
+        if page not in pages and all(_stem(word) in known for word in _wanted(words)):
+            pages.append(page)
+    return [(abouts[page], f"{SITE}/{page}.html") for page in pages]
 
 
 def _wanted(words: str) -> list[str]:
-    """The words of a phrase that say something; all of them where none does."""
+    """The significant words of a phrase; all of them if no word is significant."""
     every = words.lower().split()
     return [word for word in every if word not in _PARTICLES] or every
 
@@ -422,7 +444,7 @@ def format_text(name: str, text: bytes) -> str:
     Raises
     ------
     ModelError
-        When it is not a program, or states a newer version of the language.
+        If it is not a program, or states a newer version of the language.
 
     Examples
     --------
@@ -434,7 +456,7 @@ def format_text(name: str, text: bytes) -> str:
 
 
 def check_language(text: str, name: str) -> None:
-    r"""Refuse a text that states a newer version of the language, before it is rewritten.
+    r"""Reject a text that states a newer version of the language, before it is rewritten.
 
     Parameters
     ----------
@@ -446,7 +468,7 @@ def check_language(text: str, name: str) -> None:
     Raises
     ------
     ModelError
-        When its first line states a version that is not read here.
+        If its first line states a version that is not read here.
 
     Examples
     --------

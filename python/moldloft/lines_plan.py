@@ -121,7 +121,7 @@ class Plan:
         anchor: str = "middle",
         needed: bool = True,
     ) -> bool:
-        """A text at (x, y); a text that would overlap another is left out and listed.
+        """A text at (x, y); one that would overlap another is omitted and listed.
 
         Parameters
         ----------
@@ -180,7 +180,7 @@ def _nice(step: float) -> float:
 
 @dataclass
 class _Curve:
-    """A curve in space: points and tangents at them, each piece as long as its chord."""
+    """A curve in space: points with tangents; the parameter of each piece is its chord length."""
 
     points: np.ndarray[Any, np.dtype[np.float64]]
     tangents: np.ndarray[Any, np.dtype[np.float64]]
@@ -196,7 +196,7 @@ class _Lines:
             if (fact := model.facts(name))["class"] == "surface" and fact["shown"] and fact["ok"]
         ]
         if not names:
-            raise Error("a lines plan is of surfaces, and the model shows none")
+            raise Error("a lines plan needs surfaces, and the model shows no surface")
         self.surfaces = [model[name] for name in names]
         grids = [s.grid(9, 9) for s in self.surfaces]
         points = np.concatenate([g.reshape(-1, 3) for g in grids])
@@ -209,7 +209,7 @@ class _Lines:
         self.size = float(np.linalg.norm(self.high - self.low))
 
     def _whole(self, curves: list[_Curve]) -> list[_Curve]:
-        """The curves with those of the other end."""
+        """The curves, completed by their mirror images."""
         if not self.mirrored:
             return curves
         flip = np.array([-1.0, 1.0, 1.0])
@@ -242,7 +242,7 @@ class _Lines:
         return self._whole(found)
 
     def edges(self) -> list[_Curve]:
-        """The edges of all surfaces that are not points."""
+        """The non-degenerate edges of all surfaces."""
         found = []
         t = np.linspace(0, 1, 41)
         for surface in self.surfaces:
@@ -265,7 +265,7 @@ def _slopes(points: np.ndarray[Any, np.dtype[np.float64]]) -> Any:
 
 
 def _flat(curve: _Curve, across: int, up: int, mirror: float = 1.0) -> Any:
-    """The control points of a curve in a view; collinear where the view sees it from its end."""
+    """The control points of a curve in a view; collinear for a view along it."""
     p = curve.points[:, [across, up]] * [mirror, 1.0]
     t = curve.tangents[:, [across, up]] * [mirror, 1.0]
     chords = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
@@ -712,7 +712,7 @@ def encode_dxf(model: Model, stem: str) -> bytes:
 
 
 def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
-    """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, says how.
+    """Write the lines plan of a model as ``.svg``, ``.pdf`` or ``.dxf``.
 
     Options are those of :func:`lines_plan`.
 

@@ -1,4 +1,4 @@
-"""Loading models from files and texts, and making them again from what a copy holds."""
+"""Loading of models from files and texts, and restoration from copies and pickles."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["Origin", "load", "loads", "restored"]
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of a model besides its text: the data to make it again, here or elsewhere."""
+    """Data that, with its text, restore a model in this or another process."""
 
     name: str
     """The name that messages show."""
@@ -42,7 +42,7 @@ def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
 
 
 def restored(origin: Origin | None, text: str, values: Mapping[str, float], refined: int) -> Model:
-    """A model again in the state that a copy or a pickle holds.
+    """A model in the state stored in a copy or a pickle.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def load(
     path
         An ``.sdl`` program, an ``.ms2`` model file or a ``.skt`` sketch.
     library
-        Folders, besides the model's own, from which it may load.
+        Folders from which it may load, in addition to its own.
     functions
         Python functions that the model may call, by name. They take and return floats, vectors
         ``(3,)`` and arrays; for derivatives they receive :class:`moldloft.numbers.Dual` numbers, on
@@ -104,9 +104,9 @@ def load(
     Raises
     ------
     ModelError
-        When the model has an error.
+        If the model has an error.
     FileError
-        When the file cannot be read, or states a later version of the language.
+        If the file cannot be read, or states a later version of the language.
 
     Examples
     --------
@@ -170,9 +170,9 @@ def loads(
     Raises
     ------
     ModelError
-        When the model has an error.
+        If the model has an error.
     FileError
-        When the text states a later version of the language: ``# moldloft 2`` in its first line.
+        If the text states a later version of the language: ``# moldloft 2`` in its first line.
 
     Examples
     --------
@@ -215,7 +215,7 @@ def _add_functions(
 
 
 def _guarded(model: Model, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function as its model calls it: from inside, that cannot be used."""
+    """The function as called by its model, which cannot be used inside it."""
     inside = model._inside
 
     def call(*arguments: Any) -> Any:

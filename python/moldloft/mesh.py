@@ -28,7 +28,7 @@ class Patch:
     tag: str
     """Its role: ``"wetted"``, ``"lid"``, ``"waterline"``, ``"symmetry"`` or a name."""
     tags: list[str]
-    """All that the model's ``tags`` argument says of it, and the material of an implicit solid."""
+    """The ``tags`` of the patch in the model, and the material of an implicit solid."""
     colour: int | None
     """Index of a palette colour, 0 to 15."""
     start: int
@@ -40,7 +40,7 @@ class Patch:
     area: float
     """Area of its panels."""
     closed: bool
-    """True when its panels alone enclose a volume."""
+    """True if its panels enclose a volume without other patches."""
     volume: float
     """The enclosed volume. For an open patch, the signed volume of the cone from the origin to it:
     meaningless alone, but the sum over a closed mesh is the enclosed volume.
@@ -126,7 +126,7 @@ class Mesh:
         Raises
         ------
         UnknownNameError
-            When no surface of this name has panels.
+            If no surface of this name has panels.
 
         Examples
         --------
@@ -261,7 +261,7 @@ class _Frozen:
             from moldloft.errors import Error
 
             raise Error(
-                "a mesh that was pickled knows its closure for the levels 0 and None only\n"
+                "a pickled mesh has its closure for the levels 0 and None only\n"
                 "help: pickle the model, and take its mesh where it is unpickled"
             ) from None
 

@@ -45,7 +45,7 @@ def holds_mesh(path: str | os.PathLike[str]) -> bool:
 def mesh_program(
     path: str | os.PathLike[str], *, units: str = "", file_units: str = ""
 ) -> tuple[str, list[str]]:
-    """A mesh as a program of one ``MeshBody``, and what of the file is left out or doubtful.
+    """A mesh as a program of one ``MeshBody``, and remarks about omitted or doubtful content.
 
     Parameters
     ----------
@@ -56,12 +56,12 @@ def mesh_program(
         The unit of the model, into which lengths are converted; by default that of the file.
     file_units
         The unit of the file's numbers: m, cm, mm, ft or in. By default metres for panel files;
-        other files say nothing of it.
+        other files do not state it.
 
     Raises
     ------
     FileError
-        When the file cannot be read, or holds no face.
+        If the file cannot be read, or contains no face.
     """
     unit, points, faces, remarks = mesh_of_file(path, units=units, file_units=file_units)
     head = f'Model info(units = "{unit}");\n' if unit else ""
@@ -72,7 +72,7 @@ def mesh_program(
 def mesh_of_file(
     path: str | os.PathLike[str], *, units: str = "", file_units: str = ""
 ) -> tuple[str, NDArray[np.float64], NDArray[np.int64], list[str]]:
-    """Unit, points and faces of a mesh, and what of the file is left out or doubtful.
+    """Unit, points and faces of a mesh, and remarks about omitted or doubtful content.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def mesh_of_file(
     Raises
     ------
     FileError
-        When the file cannot be read, or holds no face.
+        If the file cannot be read, or contains no face.
     """
     from moldloft.overlays import read
 
@@ -98,10 +98,10 @@ def mesh_of_file(
         stated = "m"
     found = read(path, units=units, file_units=stated if units else "")
     if not len(found.faces):
-        raise FileError(f"cannot read `{path}`: it holds no face")
+        raise FileError(f"cannot read `{path}`: it contains no face")
     remarks = list(found.remarks)
     if not stated:
-        remarks.append("the file does not say what unit its numbers are in")
+        remarks.append("the file does not state its unit of length")
     return units or stated, *_joined(found.points, found.faces), remarks
 
 
@@ -124,7 +124,7 @@ def read_mesh(path: str | os.PathLike[str], *, units: str = "", file_units: str 
     Raises
     ------
     FileError
-        When the file cannot be read, or holds no face.
+        If the file cannot be read, or contains no face.
 
     Examples
     --------

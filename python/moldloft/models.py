@@ -49,7 +49,7 @@ class Param:
 
 @dataclass(frozen=True)
 class Adjustment:
-    """A parameter that has followed in :meth:`Model.solve_for`."""
+    """A parameter adjusted by :meth:`Model.solve_for`."""
 
     before: float
     """Its value before."""
@@ -118,7 +118,7 @@ class Model(Floating, Writable, Adapted):
     def _document(self) -> _core.Document:
         if self._inside and threading.get_ident() in self._inside:
             raise ModelError(
-                "a Python function of a model cannot use the model that calls it: give it what it "
+                "a Python function cannot use the model that calls it: pass the values it "
                 "needs as arguments"
             )
         return self._plain_document
@@ -193,7 +193,7 @@ class Model(Floating, Writable, Adapted):
         ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
         each other in their counts; hydrostatics also while the skin is open below the water. With
-        ``True`` they are those of what was made, and the remarks of hydrostatics say so.
+        ``True`` they are those of the valid objects, which the remarks of hydrostatics state.
 
         Examples
         --------
@@ -235,7 +235,7 @@ class Model(Floating, Writable, Adapted):
         return {name: shape for name, shape, _ in self._document.variables()}
 
     def facts(self, name: str) -> dict[str, Any]:
-        """Known facts about an object, without evaluation of its shape.
+        """Data of an object that need no evaluation of its shape.
 
         Parameters
         ----------
@@ -251,7 +251,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such object.
+            If there is no such object.
 
         Examples
         --------
@@ -294,7 +294,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def symmetry(self) -> str:
-        """The axes in whose planes the model is mirrored, such as ``"y"``; else empty."""
+        """The normal axes of the symmetry planes, such as ``"y"``; may be empty."""
         return self._document.symmetry()
 
     @property
@@ -324,7 +324,7 @@ class Model(Floating, Writable, Adapted):
 
     @property
     def written(self) -> dict[str, bytes]:
-        """Files written by the program, by name; ``moldloft run`` puts them on the disk."""
+        """Files written by the program, by name; ``moldloft run`` saves them."""
         files = dict(self._document.written())
         for name, blocks, joints, ends in self._document.written_for_cgns():
             # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
@@ -350,9 +350,9 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         Error
-            When the level is negative.
+            If the level is negative.
         ModelError
-            When it is too fine.
+            If the level is too fine.
 
         Examples
         --------
@@ -363,7 +363,7 @@ class Model(Floating, Writable, Adapted):
         5.0
         """
         if times < 0:
-            raise Error(f"the level of refinement is 0 or more, not {times}")
+            raise Error(f"refine: expected 0 or more, found {times}")
         self._document.refine(times)
         self._refined = times
 
@@ -476,7 +476,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When a value is not a number or out of its range, or a name unknown; nothing is
+            If a value is not a number or out of its range, or a name unknown; nothing is
             changed then.
 
         Examples
@@ -502,10 +502,10 @@ class Model(Floating, Writable, Adapted):
     def solve_for(
         self, targets: Mapping[str, float], by: Sequence[str] | Mapping[str, float]
     ) -> Solution:
-        """Give numbers of the model values: chosen parameters follow by the least change.
+        """Bring numbers of the model to given values by the least change of chosen parameters.
 
         Of all values within the ranges of the parameters that give the targets, those of the least
-        sum of squares of weighted changes, each as a share of its range (without one, of its
+        sum of squares of weighted changes, each relative to its range (without one, to its
         value). The search uses exact derivatives; it finds the solution near the present values.
 
         Parameters
@@ -520,13 +520,13 @@ class Model(Floating, Writable, Adapted):
         Returns
         -------
         Solution
-            What each parameter has become and its share of the change. The model has the new
+            New value of each parameter and its fraction of the change. The model has the new
             values, as after :meth:`set`.
 
         Raises
         ------
         ModelError
-            When the targets are not reached; the message has the range that was found within the
+            If the targets are not reached; the message has the range that was found within the
             ranges of the parameters. The model is as before then.
 
         Examples
@@ -596,7 +596,7 @@ class Model(Floating, Writable, Adapted):
         tolerance: float | None = None,
         angle: float | None = None,
     ) -> Mesh:
-        """Panels of all shown surfaces, for the current model; remembered until it changes.
+        """Panels of all shown surfaces; cached until the model changes.
 
         Parameters
         ----------
@@ -620,7 +620,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When no patch has such a tag, a tolerance or angle is not positive, or the model is not
+            If no patch has such a tag, a tolerance or angle is not positive, or the model is not
             whole; see :attr:`partial`.
 
         Examples
@@ -700,7 +700,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When there is no solid, divisions contradict each other, or there are too many cells.
+            If there is no solid, divisions contradict each other, or there are too many cells.
         """
         from moldloft.blocks import Blocks
 
@@ -722,7 +722,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
         ModelError
             See :meth:`blocks`.
         """
@@ -744,7 +744,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -764,7 +764,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.jacobian(names_of(by))
 
     def derivative(self, expression: str, by: str) -> Any:
-        """The exact derivative of a number or vector by one parameter or literal.
+        """The exact derivative of a number or vector with respect to a parameter or literal.
 
         Parameters
         ----------
@@ -781,9 +781,9 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When the text is not an expression, or has no number as value.
+            If the text is not an expression, or has no number as value.
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -795,7 +795,7 @@ class Model(Floating, Writable, Adapted):
         return self._document.derivatives([expression], [by])[0][0]
 
     def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
-        """Exact derivatives of several expressions by several parameters, ``[expression][by]``.
+        """Exact derivatives of expressions with respect to parameters, ``[expression][by]``.
 
         Parameters
         ----------
@@ -812,9 +812,9 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When a text is not an expression, or has no number as value.
+            If a text is not an expression, or has no number as value.
         UnknownNameError
-            When there is no such parameter or number.
+            If there is no such parameter or number.
 
         Examples
         --------
@@ -833,7 +833,7 @@ class Model(Floating, Writable, Adapted):
     # -- for other packages ----------------------------------------------------------------
 
     def view(self, *, height: int = 600, follow: bool = True) -> Any:
-        """The workbench's page in a notebook's cell: sliders, drags, typing, hydrostatics.
+        """The workbench in a notebook cell: sliders, drags, typing, hydrostatics.
 
         The page has its own engine in WebAssembly, with the same bits. With ``anywidget`` installed
         (extra ``notebook``) this model follows changes in the page; after changes in Python
@@ -855,7 +855,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         Error
-            When the package has no engine for pages, the model calls Python functions, or a
+            If the package has no engine for pages, the model calls Python functions, or a
             parameter was given a value that the text cannot state as a number.
         """
         from moldloft.notebook import shown

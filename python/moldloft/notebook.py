@@ -1,4 +1,4 @@
-"""The workbench's page in a notebook's cell, and the model of Python that follows it."""
+"""The workbench in a notebook cell, and the Python model linked to it."""
 
 from __future__ import annotations
 
@@ -125,14 +125,14 @@ def _widget() -> Any:
             _follow(self._model, change["new"])
 
         def refresh(self) -> None:
-            """Show what the model is now, after a change in Python."""
+            """Show the current model, after a change in Python."""
             self.text = _spelled(self._model)
 
     return ModelWidget
 
 
 def _origin(model: Model) -> tuple[str, Path | None, tuple[str, ...]]:
-    """The name of a model, its folder, and further ones that it may read."""
+    """The name of a model, its folder, and further folders that it may read."""
     origin = model._origin
     if origin is None:
         return "model.sdl", None, ()
@@ -141,7 +141,7 @@ def _origin(model: Model) -> tuple[str, Path | None, tuple[str, ...]]:
 
 
 def _spelled(model: Model) -> str:
-    """The text of a model, with the values that its parameters have."""
+    """The text of a model with its current parameter values."""
     values = {p.name: p.value for p in model.params.values() if p.value != p.default}
     text = model.text
     if not values:
@@ -152,7 +152,7 @@ def _spelled(model: Model) -> str:
 
 
 def _follow(model: Model, text: str) -> None:
-    """Lets a model have a text, and the values that it states."""
+    """Sets the text of a model and the values that it states."""
     if text == _spelled(model):
         return
     model.text = text

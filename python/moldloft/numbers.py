@@ -1,4 +1,4 @@
-"""Numbers that know their derivatives, as a user's functions receive them.
+"""Dual numbers, which carry derivatives through a user's functions.
 
 A Python function in a model is called with plain floats in a plain run, and with :class:`Dual`
 numbers for derivatives. Arithmetic and NumPy's elementary functions work on both; conversion of a

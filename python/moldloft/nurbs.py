@@ -1,4 +1,4 @@
-"""Shapes as NURBS data: control points, knots, weights, degrees, and a bound of the error."""
+"""Shapes as NURBS data: control points, knots, weights, degrees, and an error bound."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ class Nurbs:
         return self._statement(name, {}, points)
 
     def _statement(self, name: str, points_of: Mapping[int, str], points: str = "") -> str:
-        """The statement; some control points, by their number, are objects of these names."""
+        """The statement, with some control points as named objects."""
         if not points:
             flat = self.points.reshape(-1, 3)
             points = _braced(

@@ -53,7 +53,7 @@ class WrongClassError(ModelError, AttributeError):
 
 
 def wrapped(value: Any) -> Any:
-    """Fields and sets as users know them.
+    """Fields and sets in the classes of :mod:`moldloft.implicit`.
 
     Parameters
     ----------
@@ -121,17 +121,17 @@ class Object:
 
     @property
     def parents(self) -> list[str]:
-        """The names of what it depends on directly."""
+        """Names of the objects that it depends on directly."""
         return list(self._facts()["parents"])
 
     @property
     def children(self) -> list[str]:
-        """The names of what depends on it directly."""
+        """Names of the objects that depend on it directly."""
         return list(self._facts()["children"])
 
     @property
     def ok(self) -> bool:
-        """False when it failed or waits for one that did."""
+        """False if it failed or depends on a failed object."""
         return bool(self._facts()["ok"])
 
     @property
@@ -149,7 +149,7 @@ class Object:
         return wrapped(self._document.eval(self.name))
 
     def delete(self) -> None:
-        """Removes the object from the model and its text; refused while others depend on it.
+        """Removes the object from the model and its text; an error if others depend on it.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Object:
         Raises
         ------
         ModelError
-            When the name is not one of the language, or used already.
+            If the name is not one of the language, or used already.
 
         Examples
         --------
@@ -289,7 +289,7 @@ class _Located(Object):
     """Targets of searches: curves and surfaces."""
 
     def nearest(self, points: ArrayLike) -> NearestPoints:
-        """The points of a curve or surface that are nearest to given ones, all at once.
+        """The points of a curve or surface nearest to given points.
 
         The first call on a shape prepares it for searches (milliseconds); later calls, of any
         number of points, use that until the shape changes. The answers do not depend on each other.
@@ -307,7 +307,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When the object is not a curve or surface, the shape is not ``(…, 3)``, or a number is
+            If the object is not a curve or surface, the shape is not ``(…, 3)``, or a number is
             not finite.
 
         Examples
@@ -346,7 +346,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When one of the two is something else, or a plane has no normal.
+            If one of the two is something else, or a plane has no normal.
 
         Examples
         --------
@@ -386,7 +386,7 @@ class _Located(Object):
         Raises
         ------
         ModelError
-            When the object is something else.
+            If the object is something else.
         Error
             If no NURBS reaches the accuracy, with the bound reached and its position.
 
@@ -492,14 +492,14 @@ class Surface(SurfaceCalculus, _Located):
     def grid(self, nu: int, nv: int, *, normals: Literal[True]) -> tuple[Floats, Floats]: ...
 
     def grid(self, nu: int, nv: int, *, normals: bool = False) -> Floats | tuple[Floats, Floats]:
-        """Positions of a surface on an even grid of its parameters.
+        """Positions of a surface on a uniform parameter grid.
 
         Parameters
         ----------
         nu, nv
             Numbers of points along u and v, at least 2.
         normals
-            Also the unit normals, along the product of the derivatives by u and v; zero where
+            Also the unit normals, in the direction S_u x S_v; zero where
             the surface is singular.
 
         Returns
@@ -510,7 +510,7 @@ class Surface(SurfaceCalculus, _Located):
         Raises
         ------
         Error
-            When a number is below 2.
+            If a number is below 2.
 
         Examples
         --------
@@ -591,7 +591,7 @@ class Solid(Object):
         Raises
         ------
         ModelError
-            When the object is something else.
+            If the object is something else.
         Error
             If no NURBS reaches the accuracy, with the bound reached and its position.
         """
@@ -661,7 +661,7 @@ class Contours(Object):
 
     @property
     def sections(self) -> list[list[ContourLine]]:
-        """The lines of each section, on one side of planes of symmetry as the model has them."""
+        """The lines of each section of the modelled half or whole."""
         cut = self._model._document.sections_of(self.name)
         return [[ContourLine(*line) for line in lines] for _, lines in cut]
 

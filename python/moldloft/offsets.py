@@ -68,7 +68,7 @@ class Offsets:
     """For each station x its points (waterline z, half-breadth y), from the keel up."""
 
     def section(self, station: float) -> tuple[tuple[float, float], ...]:
-        """The points of a station's curve: without the zeros below and above the hull.
+        """The points of a station's curve, without zeros below and above the hull.
 
         Parameters
         ----------
@@ -185,15 +185,15 @@ def read(path: str | os.PathLike[str]) -> Offsets:
     Raises
     ------
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     Error
-        When it is not a table of offsets; the message names the line.
+        If it is not a table of offsets; the message names the line.
     """
     return parse(read_text(path), os.fspath(path))
 
 
 def parse(text: str, name: str = "offsets") -> Offsets:
-    """The table of a text; ``name`` is what messages call it.
+    """The table of a text; ``name`` is its name in messages.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def _matrix(
 
 
 def _upwards(points: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """The points from the keel up; those of one height begin with the nearest to what is below."""
+    """The points from the keel up; of equal heights the one nearest to the last comes first."""
     ordered: list[tuple[float, float]] = []
     for z in sorted({z for z, _ in points}):
         flat = sorted(y for height, y in points if height == z)

@@ -49,7 +49,7 @@ def checked_name(name: str) -> PurePosixPath:
     Raises
     ------
     FileError
-        When it may not have this name.
+        If the name is not permitted.
 
     >>> checked_name("grids/wing.p3d")
     PurePosixPath('grids/wing.p3d')
@@ -70,14 +70,14 @@ def _fault(name: str) -> str:
     if name.startswith("/") or ".." in parts:
         return "it leads out of the folder for output"
     if not plain or parts[-1] in (".", ""):
-        return "it is not a name of a file"
+        return "it is not a file name"
     if len(parts) > _DEEPEST:
         return f"it is more than {_DEEPEST} folders deep"
     for part in plain:
         if part.startswith("."):
             return "names that begin with a dot are hidden"
         if re.search(r'[\x00-\x1f\x7f\\:*?"<>|]', part) or not part.isprintable():
-            return 'a name has none of the characters \\ : * ? " < > | and no control characters'
+            return 'a name must not contain \\ : * ? " < > | or control characters'
         if part.endswith((".", " ")) or part.startswith(" "):
             return "a name neither begins nor ends with a blank, nor ends with a dot"
         if _DEVICES.fullmatch(part):
@@ -91,12 +91,12 @@ def _fault(name: str) -> str:
 
 
 def check_not_source(path: Path, sources: Iterable[str], *, force: bool = False) -> None:
-    """Refuse to overwrite what was read.
+    """Refuse to overwrite input files.
 
     Raises
     ------
     FileError
-        When ``path`` is one of the sources.
+        If ``path`` is one of the sources.
     """
     if force or not path.exists():
         return

@@ -64,7 +64,7 @@ class Ship:
     bulb_area: float = 0.0
     """Transverse area of the bulb at the fore perpendicular."""
     bulb_height: float = 0.0
-    """Height of the centre of that area above the keel."""
+    """Height of the centroid of this area above the keel."""
     transom_area: float = 0.0
     """Immersed area of the transom at rest."""
     stern: float = 0.0
@@ -106,7 +106,7 @@ class Resistance:
     """Resistance by parts, in newtons."""
 
     friction: float
-    """Of the flat plate of ITTC 1957."""
+    """Friction coefficient of ITTC 1957."""
     form_factor: float
     """1 + k1."""
     appendages: float
@@ -157,7 +157,7 @@ def holtrop(
     appendage_factor
         Their form factor 1 + k2.
     density, viscosity
-        Of the water, kg/m³ and m²/s.
+        Density and kinematic viscosity of the water, kg/m³ and m²/s.
 
     Returns
     -------
@@ -305,9 +305,9 @@ def michell(
     speed
         Speeds in m/s.
     density
-        Of the water, kg/m³.
+        Density of the water, kg/m³.
     symmetric
-        Whether the mesh is one side (y of one sign) of a ship that is symmetric in y = 0.
+        True if the mesh is one side (y of one sign) of a ship that is symmetric in y = 0.
     accuracy
         Relative accuracy of the integral over the directions of the waves.
 

@@ -63,7 +63,7 @@ class Branch:
 
     @property
     def closed(self) -> bool:
-        """True when it comes back to its beginning."""
+        """True for a closed branch."""
         return self.ends[0] == "closed"
 
     def __len__(self) -> int:
@@ -86,12 +86,12 @@ class Intersection:
     tangent: NDArray[np.bool_]
     """True if the shapes touch at the point without crossing."""
     complete: bool
-    """False when the search ran into its limit, as where shapes coincide: there may be more."""
+    """False if the search reached its limit, as for coincident shapes: there may be more."""
     smallest: float
     """All branches longer than this are found that cross at an angle somewhere."""
 
     def __bool__(self) -> bool:
-        """True when there is anything in common."""
+        """True if there is a common point."""
         return bool(self.branches) or len(self.points) > 0
 
 

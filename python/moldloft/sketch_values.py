@@ -227,7 +227,7 @@ class ObjectChange:
 
 @dataclass(frozen=True)
 class SketchSnap:
-    """A place on the page that a pointer snaps to.
+    """A position on the page to which the pointer snaps.
 
     Attributes
     ----------
@@ -252,7 +252,7 @@ class SketchSnap:
 
 @dataclass(frozen=True)
 class SketchSuggestion:
-    """A missing dimension as the picture suggests it.
+    """A missing dimension with the value suggested by the drawing.
 
     Attributes
     ----------

@@ -56,7 +56,7 @@ __all__ = [
 
 
 class SketchError(Error, ValueError):
-    """A command was refused; ``replies`` holds all answers of the text that was run."""
+    """An invalid command; ``replies`` has all replies to the text up to it."""
 
     def __init__(self, message: str, replies: Sequence[Reply] = ()) -> None:
         super().__init__(message)
@@ -108,7 +108,7 @@ class Sketch:
 
     @property
     def session(self) -> _core.SketchSession:
-        """The session behind it, for programs that talk with it line by line."""
+        """The underlying session, for line-by-line use."""
         return self._session
 
     @classmethod
@@ -120,7 +120,7 @@ class Sketch:
         path
             The file.
         strict
-            Raise when a command is refused, instead of going on.
+            True to raise an error at an invalid command instead of continuing.
 
         Returns
         -------
@@ -130,9 +130,9 @@ class Sketch:
         Raises
         ------
         FileError
-            When it cannot be read.
+            If it cannot be read.
         SketchError
-            When a command was refused and ``strict`` is true.
+            If a command was refused and ``strict`` is true.
         """
         path = Path(utf8_path(path))
         text = read_text(path)
@@ -178,7 +178,7 @@ class Sketch:
         return replies
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write all objects as commands, or as JSON when the name ends so; whole or not at all.
+        """Write all objects as commands or, by the extension, as JSON; atomically.
 
         Parameters
         ----------
@@ -193,9 +193,9 @@ class Sketch:
         Raises
         ------
         SketchError
-            When there is nothing to save.
+            If there is nothing to save.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -228,9 +228,9 @@ class Sketch:
         UnknownNameError
             If there is no such object, or no object is active.
         SketchError
-            When it has no body to write.
+            If it has no body.
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -247,7 +247,7 @@ class Sketch:
     # -- edits as data -----------------------------------------------------------------------
 
     def edit(self, text: str) -> list[ObjectChange]:
-        """Run one line of commands, and say what it changed.
+        """Run one line of commands and report its changes.
 
         Parameters
         ----------
@@ -262,7 +262,7 @@ class Sketch:
         Raises
         ------
         SketchError
-            When a command is refused.
+            If a command is refused.
         """
         rows, changes = self._session.report(text)
         replies = [Reply.from_row(row) for row in rows]
@@ -283,7 +283,8 @@ class Sketch:
         lines
             Ends of lines as rows of ``points``, from 0, ``(m, 2)``.
         types
-            The type of each line (``"X"``, ``"H"``, ``"O"``, ...); ``None`` as its slope says.
+            The type of each line (``"X"``, ``"H"``, ``"O"``, ...); ``None`` to infer it from the
+            slope.
 
         Returns
         -------
@@ -293,7 +294,7 @@ class Sketch:
         places = _pairs("points", points, np.float64)
         ends = _pairs("lines", lines, np.int64)
         if ends.size and (ends.min() < 0 or ends.max() >= len(places)):
-            raise SketchError(f"an end of a line is not a row of the {len(places)} points")
+            raise SketchError(f"lines: expected indices of the {len(places)} points")
         kinds = [None] * len(ends) if types is None else list(types)
         if len(kinds) != len(ends):
             raise SketchError(f"{len(kinds)} types for {len(ends)} lines")
@@ -311,7 +312,7 @@ class Sketch:
     def dimension(
         self, axis: str, p: int, q: int, value: float | str, *, name: str | None = None
     ) -> list[ObjectChange]:
-        """Say how much the coordinate of point ``q`` is more than that of ``p``.
+        """Set the difference between the coordinates of point ``q`` and point ``p``.
 
         Parameters
         ----------
@@ -383,7 +384,7 @@ class Sketch:
         return SketchSnap((x, y), point, on, part, axis)
 
     def suggestions(self, *, name: str | None = None) -> list[SketchSuggestion | None]:
-        """The missing dimensions as the picture suggests them, one for each loose part.
+        """The missing dimensions suggested by the drawing, one for each undetermined part.
 
         Parameters
         ----------
@@ -401,7 +402,7 @@ class Sketch:
     def candidates(
         self, *, name: str | None = None
     ) -> list[tuple[NDArray[np.float64], NDArray[np.uint32]]]:
-        """The bodies that fit the wireframe, likeliest first, each as :meth:`mesh` gives it.
+        """The bodies that fit the wireframe, most likely first, in the form of :meth:`mesh`.
 
         Parameters
         ----------
@@ -419,7 +420,7 @@ class Sketch:
     def preview(
         self, *, name: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.uint32]] | None:
-        """The body that the picture and the dimensions suggest, as :meth:`mesh` gives it.
+        """The body estimated from drawing and dimensions, in the form of :meth:`mesh`.
 
         Parameters
         ----------
@@ -518,7 +519,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or view.
+            If there is no such object or view.
 
         Examples
         --------
@@ -568,7 +569,7 @@ class Sketch:
 
     @property
     def active(self) -> str | None:
-        """The name of the active object, which the properties below are about."""
+        """The name of the active object, to which the properties below refer."""
         return self._session.active()
 
     @property
@@ -623,7 +624,7 @@ class Sketch:
 
     @property
     def text(self) -> str:
-        """The commands that make all objects: running them gives the same ones."""
+        """The commands that reproduce all objects."""
         return self._session.text(None)
 
     def mesh(
@@ -655,7 +656,7 @@ class Sketch:
         return self._session.mesh(self._name(name), tolerance)
 
     def gradient(self, by: Sequence[str] | None = None, *, name: str | None = None) -> Gradient:
-        """Exact derivatives of volume, area, centroid and corners by dimensions.
+        """Exact derivatives of volume, area, centroid and corners with respect to dimensions.
 
         Parameters
         ----------
@@ -675,7 +676,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or dimension.
+            If there is no such object or dimension.
         """
         of = self._name(name)
         if by is None:
@@ -684,7 +685,7 @@ class Sketch:
         return Gradient(tuple(by), volume, area, centroid, points, tuple(kinks))
 
     def sweep(self, by: str, values: ArrayLike, *, name: str | None = None) -> NDArray[np.float64]:
-        """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.
+        """Volume, area and centroid at values of a dimension, ``(n, 5)``; the sketch is unchanged.
 
         Rows are NaN where there is no body.
 
@@ -705,7 +706,7 @@ class Sketch:
         Raises
         ------
         UnknownNameError
-            When there is no such object or dimension.
+            If there is no such object or dimension.
         """
         wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
         return self._session.sweep(self._name(name), by, wanted)
@@ -719,7 +720,7 @@ class Sketch:
         azimuth: float = -60.0,
         elevation: float = 25.0,
     ) -> bytes:
-        """A PNG of the body; the angles say from where, in degrees.
+        """A PNG of the body, seen from the direction of two angles in degrees.
 
         Parameters
         ----------
@@ -788,7 +789,7 @@ class Sketch:
 
 
 class Drag:
-    """A run of edits of a :class:`Sketch` that count as one; see :meth:`Sketch.drag`.
+    """A sequence of edits of a :class:`Sketch` that counts as one; see :meth:`Sketch.drag`.
 
     Attributes
     ----------

@@ -51,7 +51,7 @@ _AREAS = ((0, 30), (0, 40), (30, 40))
 
 @dataclass(frozen=True)
 class Opening:
-    """A point through which water enters when it is under water."""
+    """A downflooding point."""
 
     name: str
     """Its name in reports."""
@@ -105,7 +105,7 @@ class Stability:
     """The righting arm of a loading as a function of heel; see :meth:`moldloft.Model.stability`.
 
     Every figure comes from the equilibrium at its own heel; nothing is interpolated between heels.
-    Angles are in radians. The trim is free at each heel, or kept: ``free_trim`` says which.
+    Angles are in radians. The trim is free at each heel, or fixed if ``free_trim`` is false.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class Stability:
         self.upright = self.at(0.0)
 
     def at(self, heel: float) -> Hydrostatics:
-        """All figures at a heel, at rest but for the heeling moment that keeps it.
+        """All figures at a heel, in equilibrium with the heeling moment.
 
         Parameters
         ----------
@@ -214,7 +214,7 @@ class Stability:
         return self.energy(high) - self.energy(low) if dry else math.nan
 
     def slope(self, heel: float) -> float:
-        """The exact derivative of the righting arm by the heel.
+        """The exact derivative of the righting arm with respect to heel.
 
         Parameters
         ----------
@@ -264,7 +264,7 @@ class Stability:
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
     def loll(self, most: float = math.pi) -> float | None:
-        """The least positive heel at which an overturning arm turns righting.
+        """The smallest positive heel at which the arm changes from overturning to righting.
 
         ``None`` for a body that is stable upright, or finds no such heel up to ``most``.
 
@@ -334,7 +334,7 @@ class Stability:
         return None
 
     def range(self, most: float = math.pi) -> float:
-        """The range of positive stability, from upright or the angle of loll on.
+        """The range of positive stability, from upright or from the angle of loll.
 
         Parameters
         ----------
@@ -348,9 +348,9 @@ class Stability:
         return (self._afloat(most) if end is None else end) - start
 
     def immersed(self, opening: Opening, most: float = math.pi) -> float | None:
-        """The least positive heel at which an opening reaches the water.
+        """The smallest positive heel at which an opening reaches the water.
 
-        ``None`` when it never does up to ``most``: one near the centre line may not.
+        ``None`` if it stays above the water up to ``most``, as one near the centre line may.
 
         Parameters
         ----------
@@ -373,9 +373,9 @@ class Stability:
         return None
 
     def flooding(self, most: float = math.pi) -> tuple[float, str] | None:
-        """The least heel at which an opening or an open edge reaches the water, and its name.
+        """The smallest heel at which an opening or an open edge reaches the water, and its name.
 
-        ``None`` when none does, or there is none.
+        ``None`` if there is no opening, or no opening is reached.
 
         Parameters
         ----------
@@ -388,7 +388,7 @@ class Stability:
         return min(angles) if angles else None
 
     def _afloat(self, most: float) -> float:
-        """The largest heel up to ``most`` at which the skin keeps the water out."""
+        """The largest heel up to ``most`` at which no open edge is immersed."""
         edge = self.deck_edge(most)
         return most if edge is None else edge
 
@@ -547,7 +547,7 @@ class CrossCurves:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all.
+        """Write :meth:`csv` to a file atomically.
 
         Parameters
         ----------
@@ -678,7 +678,7 @@ class Check:
     result: str
     """``pass``, ``fail``, ``not applicable`` or ``data missing``."""
     note: str = ""
-    """Why, where it is not a comparison alone."""
+    """Explanation, if it is more than a comparison."""
 
     @property
     def margin(self) -> float | None:
@@ -689,7 +689,7 @@ class Check:
 
     @property
     def margin_percent(self) -> float | None:
-        """The margin in percent of what is required."""
+        """The margin in percent of the requirement."""
         if self.margin is None or not self.required:
             return None
         return 100 * self.margin / abs(self.required)
@@ -710,7 +710,7 @@ class Assessment:
 
     @property
     def passed(self) -> bool:
-        """True when every clause that applies is passed: missing data are no pass."""
+        """True when every clause that applies is passed: missing data do not pass."""
         return all(c.result in ("pass", "not applicable") for c in self.checks)
 
     def as_list(self) -> list[dict[str, Any]]:
@@ -793,7 +793,7 @@ def _assess(
         kind = clause.get("kind")
         if kind not in _KINDS:
             known = ", ".join(_KINDS)
-            raise Error(f"{name}: a clause of kind `{kind}`; expected one of: {known}")
+            raise Error(f"{name}: unknown kind of clause `{kind}`; expected one of: {known}")
         try:
             checks.append(_KINDS[kind](context, clause))
         except KeyError as error:
@@ -982,7 +982,7 @@ def _weather_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
         note = f"steady heel {degrees(calm):.2f}° is more than {degrees(most):.2f}°"
         return Check(clause["clause"], clause["what"], "m·rad", a, b, "fail", note)
     note = (
-        "" if edge is not None else "no deck edge given: the steady heel is compared with 16° alone"
+        "" if edge is not None else "no deck edge given: the steady heel is compared with 16° only"
     )
     return context.check(clause, "m·rad", a, b, note)
 

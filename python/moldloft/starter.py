@@ -1,4 +1,4 @@
-"""The model that ``moldloft new`` begins with."""
+"""The starter model of ``moldloft new``."""
 
 STARTER = """\
 # {name}: half of a small boat, from stem (x = 0) to transom; the keel lies in y = 0.

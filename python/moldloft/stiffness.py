@@ -53,7 +53,7 @@ def stiffness(
             f"the figures have no derivatives by `{by}`\nhelp: give by=[{by!r}] to hydrostatics"
         )
     if mass is not None:
-        raise Error("with a mass of its own the matrix has no derivative: leave out `mass` or `by`")
+        raise Error("the matrix has no derivatives with a given mass: omit `mass` or `by`")
     moved = {
         name: value + 1j * _IMAGINARY_STEP * slopes.get(name, {}).get(by, 0.0)
         for name, value in values.items()

@@ -6,7 +6,7 @@ __all__ = ["table"]
 
 
 def table(header: list[str], rows: list[list[str]], *, left: int = 1) -> str:
-    """A table; the first ``left`` columns to the left, the others to the right.
+    """A table; the first ``left`` columns are left-aligned, the others right-aligned.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "weight": (0, 0, 1),
     "righting_moment": (1, 0, 1),
 }
-"""Powers of length, mass and force in each figure; figures that are not named have none."""
+"""Powers of length, mass and force in each figure; other figures are dimensionless."""
 
 ANGLES = ("trim", "heel")
 """Figures that are angles: in radians in Python, in degrees in tables and files."""
@@ -76,7 +76,7 @@ class Units:
 
     @classmethod
     def parse(cls, text: str) -> Units:
-        """The units of a text such as ``m t kN``, of each dimension one at most.
+        """The units of a text such as ``m t kN``, at most one per dimension.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Units:
         return Units(self.length, mass, force, self.angle)
 
     def force_scale(self) -> float:
-        """A mass times an acceleration of these units, in that of force; 1 where one is missing.
+        """Mass times acceleration in the unit of force; 1 if a unit is missing.
 
         Returns
         -------
@@ -184,7 +184,7 @@ class Units:
         return float(density)
 
     def of(self, figure: str) -> str:
-        """The unit of a figure as text; empty where it has none or it is not stated.
+        """The unit of a figure as text; empty if it is dimensionless or not stated.
 
         Parameters
         ----------
@@ -242,12 +242,12 @@ explain(globals())
 
 
 def shown(name: str, value: Any) -> Any:
-    """A figure as tables and files have it: angles in degrees.
+    """A figure as in tables and files: angles in degrees.
 
     Parameters
     ----------
     name
-        Which figure it is, such as ``heel``.
+        Name of the figure, such as ``heel``.
     value
         Its value; angles in radians.
 
@@ -270,7 +270,7 @@ def header(name: str, units: Units) -> str:
     Parameters
     ----------
     name
-        Which figure it is.
+        Name of the figure.
     units
         Units of the figures.
 

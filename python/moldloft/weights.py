@@ -22,7 +22,7 @@ class Weight:
     name: str
     """Its name in the model."""
     group: str
-    """The group it is listed in; empty for none."""
+    """The group it is listed in; may be empty."""
     mass: float
     """The mass, with its margin."""
     margin: float

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Writable"]
 
 _OF_FORMATS = {"cannot-write", "unused-option"}
-"""The diagnostics of formats that cannot hold what they are to hold."""
+"""Ids of diagnostics about content that a format cannot represent."""
 
 
 class Writable:
@@ -42,7 +42,7 @@ class Writable:
         whole: bool = False,
         triangles: bool = False,
     ) -> list[Path]:
-        """Write the panels to a file, whole or not at all.
+        """Write the panels to a file atomically.
 
         Parameters
         ----------
@@ -68,7 +68,8 @@ class Writable:
             only ``tolerance`` is given.
         whole
             Both sides of a symmetric model, joined in its planes, in files of plain panels; by
-            default these hold one side. Files of panel codes name the planes instead.
+            default these contain one side. Files of panel codes state the planes of symmetry
+            instead.
         triangles
             Triangles only, in files of plain panels.
 
@@ -80,11 +81,11 @@ class Writable:
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         FormatError
-            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
+            If the format is unknown, cannot represent the model, or the model has nothing to write.
         ModelError
-            When the model has errors, or no patch has such a tag.
+            If the model has errors, or no patch has such a tag.
 
         Examples
         --------
@@ -167,7 +168,7 @@ class Writable:
         Raises
         ------
         FormatError
-            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
+            If the format is unknown, cannot represent the model, or the model has nothing to write.
 
         Examples
         --------
@@ -196,7 +197,7 @@ class Writable:
     def export_remarks(self) -> list[_core.Diagnostic]:
         """Content of the model that the last text or file omits or approximates.
 
-        Notes, such as the error of fitted surfaces, are no warnings of Python.
+        Notes, such as the error of fitted surfaces, are not Python warnings.
         """
         return self._document.export_remarks()
 
@@ -212,7 +213,7 @@ class Writable:
         Parameters
         ----------
         width, height
-            In points of the picture.
+            Size in pixels.
 
         Returns
         -------
@@ -222,7 +223,7 @@ class Writable:
         Raises
         ------
         ModelError
-            When a side is not 1 to 8192.
+            If a side is not 1 to 8192.
 
         Examples
         --------
@@ -257,9 +258,9 @@ class Writable:
         Raises
         ------
         UnknownNameError
-            When there is no such kind.
+            If there is no such kind.
         ModelError
-            When a side is not 1 to 8192.
+            If a side is not 1 to 8192.
 
         Examples
         --------
@@ -304,12 +305,12 @@ class Writable:
         Raises
         ------
         Error
-            When ``to`` is another word, or an object would come back as another.
+            If ``to`` is another word, or an object would come back as another.
 
         Warns
         -----
         UserWarning
-            Which objects have numbers that no longer follow the parameters.
+            Objects whose numbers become independent of the parameters.
         """
         text = self._document.convert(to)
         self._warn_of_export()

@@ -337,7 +337,7 @@ def test_the_command_has_parameters_tolerances_and_stops_of_the_users(cli, tmp_p
         assert made["value"] == pytest.approx(wanted.value, rel=1e-12), arguments
         assert made["steps"] == wanted.steps, arguments
     for arguments, words in (
-        ([*data, "--stop", "soup"], "none of move=SHARE"),
+        ([*data, "--stop", "soup"], "expected move=FRACTION"),
         ([*data, "--across", "1,0", "--box"], "one of these"),
         ([*data, "--original", "tol.txt"], "columns"),
         (["p.csv", "--tol", "soup"], "nor a file of lengths"),

@@ -311,7 +311,7 @@ def test_righting_moments_are_in_the_unit_that_is_stated(
     assert row.righting_moment * newtons * metres == pytest.approx(moment, rel=1e-9)
 
 
-def test_what_is_known_less_well_than_asked_for_is_remarked(barge):
+def test_a_figure_below_the_requested_accuracy_has_a_remark(barge):
     state = barge.hydrostatics(level=T)
     assert state.remarks == [] and state.accuracy == 1e-6
     assert max(state.bounds[name] for name in ("volume", "waterplane_area")) < 1e-6
@@ -319,6 +319,6 @@ def test_what_is_known_less_well_than_asked_for_is_remarked(barge):
     assert worse.remarks == [
         "2 open edges of the skin below the water, which enters there: the figures are not "
         "those of a body",
-        "volume is known to 3e-05 of itself; 1e-06 was asked for",
+        "volume: relative accuracy 3e-05; requested: 1e-06",
     ]
-    assert "volume is known to 3e-05" in worse._repr_html_()
+    assert "relative accuracy 3e-05" in worse._repr_html_()

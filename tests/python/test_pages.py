@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import html
+import json
 import os
 import re
 import shlex
@@ -183,19 +185,46 @@ def test_the_commands_of_a_page_are_commands(page: Path) -> None:
 
 
 def test_the_reference_has_each_entry_once_in_a_group() -> None:
-    from moldloft.cli.reference_page import FUNCTIONS, groups
+    from moldloft.cli.reference_page import FUNCTIONS, entry_pages, groups
     from moldloft.language import reference
+    from moldloft.library import routines
 
     found = groups(reference())
     names = [row["name"] for _, _, rows in found for row in rows]
     assert sorted(names) == sorted(row["name"] for row in reference())
     assert "Other functions" not in [title for title, _, _ in found], found[-1][2]
     assert {n for _, text in FUNCTIONS for n in text.split()} <= set(names)
-    text = (DOCS / "reference.md").read_text(encoding="utf-8")
-    heads = [line[4:].strip().lower() for line in text.splitlines() if line.startswith("### ")]
-    anchors = set(heads) | {f"{head}_1" for head in heads if heads.count(head) == 2}
-    assert set(re.findall(r"\]\(#([a-z0-9_]+)\)", text)) == anchors
-    assert max(len(line) for line in text.splitlines() if line.startswith("AbsPoint ")) <= 110
+    listed = re.findall(r"^\| `(\w+)` \|", _after(DOCS / "reference.md", "## Points"), re.M)
+    rows = [*reference(), *routines()]
+    assert sorted(listed) == sorted(row["name"] for row in rows)
+    pages = entry_pages(reference(), lambda row: False, routines())
+    assert len(pages) == len(rows)
+    for page in pages.values():
+        assert len(page) < 30_000
+        assert set(re.findall(r"\]\(([a-z0-9_]+)\.md\)", page)) <= set(pages)
+
+
+def _after(page: Path, title: str) -> str:
+    return page.read_text(encoding="utf-8").partition(title)[2]
+
+
+def test_terms_of_each_field_are_found() -> None:
+    from moldloft.language import guides, reference, search
+    from moldloft.library import routines
+    from moldloft.terms import FIELDS
+
+    names = {row["name"] for row in reference()}
+    others = {row["name"] for row in routines()}
+    for field, rows in FIELDS.items():
+        terms = [(term, target) for target, line in rows.items() for term in line.split(", ")]
+        assert len({term.lower() for term, _ in terms}) >= 50, field
+        for term, target in terms:
+            if target in names:
+                assert target in [row["name"] for row in search(term)[:15]], term
+            elif target not in others:
+                assert (DOCS / f"{target}.md").is_file(), target
+                addresses = [address for _, address in guides(term)[:4]]
+                assert any(address.endswith(f"/{target}.html") for address in addresses), term
 
 
 def test_every_argument_in_the_reference_has_a_meaning() -> None:
@@ -297,7 +326,9 @@ def searched(page: Path, word: str) -> str | None:
 
 
 def test_the_site_is_whole(tmp_path: Path) -> None:
-    """Built strictly: no page without a place, no link or anchor that is not there."""
+    """Built strictly: every page in the menu, every link and anchor valid."""
+    from moldloft.terms import FIELDS
+
     pytest.importorskip("mkdocs")
     done = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", tmp_path],
@@ -307,11 +338,16 @@ def test_the_site_is_whole(tmp_path: Path) -> None:
         env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
     )
     assert done.returncode == 0, done.stderr
-    index = (tmp_path / "search" / "search_index.js").read_text(encoding="utf-8")
-    for word in ("CLoftSurf", "righting", "geodesic"):
-        assert word in index
+    entries = json.loads((tmp_path / "search" / "search_index.json").read_bytes())["docs"]
+    index = html.unescape(" ".join(entry["text"] for entry in entries))
+    terms = [t for rows in FIELDS.values() for line in rows.values() for t in line.split(", ")]
+    for word in ("CLoftSurf", "righting", *terms):
+        assert word in index, word
     pages = list(tmp_path.rglob("*.html"))
-    assert len(pages) > 30
+    assert len(pages) > 700
+    for page in pages:
+        most = 60_000 if page.parent.name in ("reference", "diagnostics") else 150_000
+        assert page.stat().st_size < most, page
     # Programs are highlighted: kinds, names, numbers, comments.
     relational = (tmp_path / "relational.html").read_text(encoding="utf-8")
     for name, word in (("nc", "AbsPoint"), ("nv", "arch"), ("c1", "# halfway"), ("k", "assert")):
@@ -343,6 +379,7 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
             for path in images.glob(f"{folder}-*")
             if path.stem.removeprefix(f"{folder}-") in stems and f"{folder}-" in script
         }
+    names.add("drag.webp")
     names |= {f"gallery/{path.stem}.png" for path in (ROOT / "examples" / "gallery").glob("*.sdl")}
     there = {path.relative_to(images).as_posix() for path in images.rglob("*.*")}
     assert there == names
@@ -350,4 +387,5 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in used)
     assert not [name for name in there if f"images/{name}" not in text]
     large = {n: (images / n).stat().st_size for n in there}
+    assert large.pop("drag.webp") < 1_500_000
     assert max(large.values()) < 250_000, max(large, key=large.__getitem__)

@@ -140,7 +140,7 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
     ("text", "why"),
     [
         (SVG.format("<g>" * 20_000 + '<path d="M0 0L1 1"/>' + "</g>" * 20_000), "nested too deep"),
-        ('<!DOCTYPE s [<!ENTITY a "b">]>' + SVG.format("&a;"), "entities of its own"),
+        ('<!DOCTYPE s [<!ENTITY a "b">]>' + SVG.format("&a;"), "it declares entities"),
         (SVG.format('<g id="a"><use href="#a"/></g>'), "no points, faces or curves"),
     ],
     ids=["deep", "entities", "use of itself"],

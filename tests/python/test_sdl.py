@@ -196,7 +196,7 @@ def test_repl_goes_on_after_an_interrupt() -> None:
         for patience in (2, 10, 30, 100):
             time.sleep(1)
             os.write(terminal, b"\x03")
-            if b"the line is left out" in until(b"left out", patience):
+            if b"the entry is discarded" in until(b"discarded", patience):
                 break
         else:
             pytest.fail("it was not interrupted")

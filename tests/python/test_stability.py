@@ -283,7 +283,7 @@ def test_what_cannot_float_says_why():
     box = moldloft.loads(BOX)
     with pytest.raises(moldloft.Error, match="density"):
         box.equilibrium(40)
-    with pytest.raises(moldloft.Error, match="no mass floats"):
+    with pytest.raises(moldloft.Error, match="no floating mass"):
         box.equilibrium(density=1)
     with pytest.raises(moldloft.Error, match="unit of length"):
         box.hydrostatics(density="salt")

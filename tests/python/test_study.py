@@ -398,7 +398,7 @@ def test_an_optimum_by_values_alone(tmp_path):
 def test_an_objective_of_an_analysis_needs_a_method_by_values(tmp_path):
     more = FAULTY + "[optimize]\nminimize = 'drag'\n"
     with pytest.raises(
-        study.StudyError, match="by values alone: cobyqa, differential-evolution, nsga2, tpe"
+        study.StudyError, match="without derivatives: cobyqa, differential-evolution, nsga2, tpe"
     ):
         study.optimize(study.read(write(tmp_path, more)), tmp_path / "b.sqlite")
     more = more.replace("'drag'", "'drag'\nmethod = 'cobyqa'\nevaluations = 40")

@@ -59,7 +59,7 @@ def test_tolerances_give_rss_and_worst_cases(tmp_path):
     assert "Tolerances of manufacture" in page and f"{worst['volume'].max():.6g}" in page
     plain = study.sweep(solid(tmp_path), tmp_path / "t.sqlite")
     assert study.spreads(plain, sizes) == {} and "Tolerances" not in html(plain, "s", {}).decode()
-    for wrong, said in (({"a": -1}, "at least 0"), ({"c": 1}, "`c` is no input")):
+    for wrong, said in (({"a": -1}, "at least 0"), ({"c": 1}, "unknown input `c`")):
         with pytest.raises(moldloft.Error, match=said):
             study.worst_cases(results, wrong)
 

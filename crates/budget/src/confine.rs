@@ -1,22 +1,21 @@
-//! The process that runs foreign texts: what the system lets it use, and its end with the one that started it.
-//!
-//! The budget ends work by name; these limits hold where no work looks at it. The engine of the workbench begins
-//! with this.
+//! Confinement of the process that runs untrusted programs: operating system limits, and
+//! termination with its parent.
+//! The budget ends work with an error; these limits also hold for code that does not check the
+//! budget. The engine of the workbench starts with this call.
 
 use crate::{Limits, limits, set_limits};
 
-/// What a process takes besides models, in address space: the program itself, stacks of its threads, what allocators keep.
+/// Address space that a process needs besides models: code, thread stacks, allocator overhead.
 #[cfg(unix)]
 const OWN: u64 = 2 << 30;
 
-/// How soon a process ends after the one that started it.
+/// Maximum time between the end of the parent process and that of this one.
 #[cfg(unix)]
 const LOOK: std::time::Duration = std::time::Duration::from_millis(500);
 
-/// Confines this process: no more memory than that for models, no file written, no core left behind, no life after its
-/// parent. Where the system has no such limit, the budget alone holds.
-///
-/// Its output must be a pipe: a file as standard output or error would be one that is written.
+/// Confines this process: at most `memory` bytes for models, no writing of files, no core dump, and
+/// termination with the parent. Where the system lacks such a limit, only the budget applies.
+/// Standard output and error must be pipes, since writing to a file is denied.
 pub fn confine(memory: u64) {
     set_limits(Limits { memory, ..limits() });
     #[cfg(unix)]
@@ -24,10 +23,10 @@ pub fn confine(memory: u64) {
         use rlimit::{Resource, setrlimit};
         let space = memory.saturating_add(OWN);
         for (what, most) in [(Resource::AS, space), (Resource::CORE, 0), (Resource::FSIZE, 0)] {
-            // A lower limit that was there before stays: it cannot be raised.
+            // A lower existing limit stays: it cannot be raised.
             let _ = setrlimit(what, most, most);
         }
-        // Work that is under way goes on after its input has ended, but not without a parent.
+        // Running work continues after the end of its input, but not without a parent.
         let parent = std::os::unix::process::parent_id();
         let watch = move || {
             while std::os::unix::process::parent_id() == parent {
@@ -35,7 +34,7 @@ pub fn confine(memory: u64) {
             }
             std::process::exit(0);
         };
-        // Without a thread for this there is none for a model either.
+        // If this thread cannot be created, none can be for a model.
         let _ = std::thread::Builder::new().stack_size(256 << 10).spawn(watch);
     }
 }

@@ -1,17 +1,17 @@
-//! What an engine process and its parent say to each other: frames on the pipes of standard input and output.
-//!
-//! `u32 length (little endian), so many bytes`. What the bytes are is the engine's matter: requests and replies of a
-//! session, or messages of the language server.
+//! Messages between an engine process and its parent: frames on standard input and output.
+//! `u32 length (little endian), length bytes`. The engine defines the content: requests and replies
+//! of a session, or messages of the language server.
 
 use std::io::{self, Read, Write};
 
-/// The longest frame.
+/// Maximum length of a frame, in bytes.
 pub const LONGEST_FRAME: u32 = 1 << 30;
 
-/// The next frame; `None` at an orderly end. Memory grows with what has come, not with what is announced.
+/// Reads the next frame; `None` at a regular end of input. Memory grows with the bytes received,
+/// not with the announced length.
 ///
 /// # Errors
-/// When the end comes within a frame, or a frame is longer than [`LONGEST_FRAME`].
+/// If the input ends within a frame, or a frame is longer than [`LONGEST_FRAME`].
 ///
 /// ```
 /// use moldloft_budget::{read_frame, write_frame};
@@ -42,10 +42,10 @@ pub fn read_frame(input: &mut impl Read) -> io::Result<Option<Vec<u8>>> {
     }
 }
 
-/// Sends a frame.
+/// Writes a frame.
 ///
 /// # Errors
-/// When the other side has gone, or the bytes are more than [`LONGEST_FRAME`].
+/// If the reader has closed the pipe, or there are more bytes than [`LONGEST_FRAME`].
 pub fn write_frame(output: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
     let length = u32::try_from(bytes.len()).ok().filter(|length| *length <= LONGEST_FRAME);
     let length = length.ok_or(io::ErrorKind::InvalidInput)?;

@@ -1,10 +1,9 @@
-//! What a run may use, in one place: memory, steps, objects, time; and whether it was cancelled.
-//!
-//! Work that grows asks its [`Budget`]: [`Budget::grow`] before it allocates what a user's number asks for,
-//! [`Budget::poll`] in loops that may take long. What comes back is [`Spent`], with a message that says what was used
-//! up and how to allow more.
-//!
-//! Invariant: a budget never changes a result; work ends as if there were none, or with [`Spent`].
+//! Limits of a run: memory, steps, objects and time; and its cancellation.
+//! Work of user-controlled size checks its [`Budget`]: [`Budget::grow`] before an allocation,
+//! [`Budget::poll`] in long loops. The error is [`Spent`], whose message names the exhausted limit
+//! and how to raise it.
+//! Invariant: a budget never changes a result; work completes as without a budget, or fails with
+//! [`Spent`].
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -28,20 +27,21 @@ use std::time::{Duration, Instant};
 /// The limits of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Bytes on the heap of the process; none without a counting allocator.
+    /// Bytes on the heap of the process; has no effect without a counting allocator.
     pub memory: u64,
-    /// Statements and calls of a program, and the elements of its values; what loops and routines on numbers do in code
-    /// counts a sixteenth, as it takes so much less time.
+    /// Statements and calls of a program, and elements of its values; a step of compiled numeric
+    /// code counts one sixteenth, in proportion to its time.
     pub steps: u64,
-    /// Objects of a model.
+    /// Number of objects of a model.
     pub objects: u64,
-    /// Seconds of one request: a run, a mesh, a measure. Without a limit, work on a set still has [`SET_SECONDS`].
+    /// Seconds per request: a run, a mesh, a measure. Without a limit, work on a set is still
+    /// limited to [`SET_SECONDS`].
     pub seconds: f64,
 }
 
 impl Limits {
-    /// What a program may use unless its host says otherwise: 4 GiB, 20 million steps, 250 000 objects, any time.
-    /// Hosts take [`usual_memory`] instead of 4 GiB.
+    /// Default limits: 4 GiB, 20 million steps, 250 000 objects, unlimited time. Hosts use
+    /// [`usual_memory`] instead of 4 GiB.
     pub const USUAL: Self =
         Self { memory: 4 << 30, steps: 20_000_000, objects: 250_000, seconds: f64::INFINITY };
 }
@@ -51,7 +51,7 @@ static STEPS: AtomicU64 = AtomicU64::new(Limits::USUAL.steps);
 static OBJECTS: AtomicU64 = AtomicU64::new(Limits::USUAL.objects);
 static SECONDS: AtomicU64 = AtomicU64::new(Limits::USUAL.seconds.to_bits());
 
-/// The limits of the process: those of every run that begins.
+/// The limits of the process, which apply to every new run.
 pub fn limits() -> Limits {
     Limits {
         memory: MEMORY.load(Ordering::Relaxed),
@@ -61,8 +61,8 @@ pub fn limits() -> Limits {
     }
 }
 
-/// Sets the limits of the process; no more memory than the system's limit of address space leaves, so that work ends
-/// before the system refuses.
+/// Sets the limits of the process. Memory is reduced to the address space that the system allows,
+/// so that work ends before an allocation fails.
 pub fn set_limits(limits: Limits) {
     MEMORY.store(limits.memory.min(machine::room(held())), Ordering::Relaxed);
     STEPS.store(limits.steps, Ordering::Relaxed);
@@ -70,29 +70,29 @@ pub fn set_limits(limits: Limits) {
     SECONDS.store(limits.seconds.to_bits(), Ordering::Relaxed);
 }
 
-/// Why work ended before it was done.
+/// Reason why work ended before its completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spent {
-    /// The caller asked to stop.
+    /// Cancelled by the caller.
     Cancelled,
-    /// There is not enough memory.
+    /// The memory limit is reached.
     Memory {
-        /// Bytes held, and those that were asked for.
+        /// Bytes in use plus the requested ones.
         needed: u64,
-        /// Bytes that are allowed.
+        /// Limit in bytes.
         allowed: u64,
     },
-    /// The system refuses memory that the budget allows.
+    /// The system refused an allocation that the budget allows.
     Refused,
-    /// The time is over.
+    /// The time limit is reached.
     Time {
-        /// Seconds that were allowed.
+        /// Limit in seconds.
         allowed: f64,
     },
 }
 
 impl Spent {
-    /// A stable id, as diagnostics have it.
+    /// Its stable id in diagnostics.
     pub fn id(self) -> &'static str {
         match self {
             Self::Cancelled => "cancelled",
@@ -101,12 +101,13 @@ impl Spent {
         }
     }
 
-    /// True for the id of a fault that says nothing of the model: the same work may succeed another time.
+    /// True for the id of such a reason: the fault is not one of the model, and the same work may
+    /// succeed later.
     pub fn is_id(id: &str) -> bool {
         matches!(id, "cancelled" | "out-of-memory" | "out-of-time")
     }
 
-    /// What can be done about it.
+    /// The remedy.
     pub fn help(self) -> &'static str {
         match self {
             Self::Cancelled => "",
@@ -144,7 +145,7 @@ impl std::fmt::Display for Spent {
 
 impl std::error::Error for Spent {}
 
-/// What is left to a run. Shared by the threads that work for it and by who may cancel it.
+/// The remaining budget of a run, shared by its threads and by the owner, who may cancel it.
 ///
 /// # Example
 /// ```
@@ -159,19 +160,19 @@ impl std::error::Error for Spent {}
 #[derive(Debug, Default)]
 pub struct Budget {
     cancelled: AtomicBool,
-    /// When the time is over, in nanoseconds after [`elapsed`]'s beginning; 0 for never.
+    /// Deadline in nanoseconds on the clock of [`elapsed`]; 0 without one.
     deadline: AtomicU64,
-    /// The time of a part of the work, and the budget of the whole; none for the whole.
+    /// Time of a part of the work and budget of the whole; `None` in the budget of the whole.
     portion: Option<Portion>,
 }
 
-/// Time since the moment from which deadlines count.
+/// Time since the origin of deadlines.
 fn elapsed() -> Duration {
     static ORIGIN: OnceLock<Instant> = OnceLock::new();
     ORIGIN.get_or_init(Instant::now).elapsed()
 }
 
-/// Time that is counted; it ends with this.
+/// Guard of a timed request, which ends when this is dropped.
 #[derive(Debug)]
 pub struct Timed<'a>(&'a Budget);
 
@@ -183,12 +184,12 @@ impl Drop for Timed<'_> {
 }
 
 impl Budget {
-    /// Has the work end at its next look.
+    /// Ends the work at its next check.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Lets work begin again after it was cancelled.
+    /// Allows new work after a cancellation.
     pub fn resume(&self) {
         self.cancelled.store(false, Ordering::Relaxed);
     }
@@ -199,10 +200,11 @@ impl Budget {
         self.cancelled.load(Ordering::Relaxed) || above()
     }
 
-    /// A budget for the work on one set: a part of this one and, where no time is stated, of [`SET_SECONDS`].
+    /// A budget for the work on one set: part of this one, and without a time limit at most
+    /// [`SET_SECONDS`].
     #[must_use]
     pub fn for_set(self: &Arc<Self>) -> Arc<Self> {
-        // A page in a browser has no clock here; its host ends the engine.
+        // There is no clock in a browser; the page ends the engine.
         match limits().seconds.is_finite() || cfg!(target_family = "wasm") {
             true => self.clone(),
             false => Arc::new(Self {
@@ -212,8 +214,8 @@ impl Budget {
         }
     }
 
-    /// A request begins, until the answer is dropped: its time is counted, where time is limited, and memory is kept back
-    /// for its end when the system refuses more.
+    /// Begins a request, which ends when the guard is dropped. Starts its time limit, if there is
+    /// one, and holds a memory reserve for an orderly end when the system refuses more.
     pub fn timed(&self) -> Timed<'_> {
         memory::enter();
         let seconds = limits().seconds;
@@ -225,10 +227,10 @@ impl Budget {
         Timed(self)
     }
 
-    /// Whether work may go on.
+    /// Checks that work may continue.
     ///
     /// # Errors
-    /// [`Spent`] once it was cancelled, or memory or time are used up.
+    /// [`Spent`] if it is cancelled, or memory or time are exhausted.
     #[inline]
     pub fn poll(&self) -> Result<(), Spent> {
         if self.cancelled.load(Ordering::Relaxed) {
@@ -245,12 +247,12 @@ impl Budget {
         Ok(())
     }
 
-    /// True when work must end; for loops that cannot return an error by themselves.
+    /// True when work must end; for loops that cannot return an error.
     pub fn is_spent(&self) -> bool {
         self.poll().is_err()
     }
 
-    /// Whether so many bytes more may be held.
+    /// Checks that `bytes` more may be allocated.
     ///
     /// # Errors
     /// [`Spent::Memory`].

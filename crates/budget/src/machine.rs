@@ -1,16 +1,15 @@
-//! What the machine leaves to a process: its memory, and the limits that the system sets.
+//! Memory of the machine, and limits that the system sets for a process.
 
 use crate::Limits;
 use std::time::Duration;
 
-/// The most memory that a program takes unasked.
+/// Maximum default memory limit, in bytes.
 const MOST: u64 = 8 << 30;
 
-/// A quarter of the memory that the process may have, as far as the system says it: the rest is for what the budget does
-/// not see, and for other programs.
-///
-/// On Linux that is the least of the machine's memory, the control group's and the address space; elsewhere
-/// [`Limits::USUAL`] is all that is known.
+/// A quarter of the memory available to the process, if the system reports it; the rest is for
+/// memory outside the budget and for other programs.
+/// On Linux the available memory is the minimum of machine memory, control group limit and address
+/// space; elsewhere the result is that of [`Limits::USUAL`].
 pub fn usual_memory() -> u64 {
     let known = [machine(), control_group(), address_space()];
     known.into_iter().flatten().min().map_or(Limits::USUAL.memory, |bytes| (bytes / 4).min(MOST))
@@ -30,19 +29,20 @@ fn address_space() -> Option<u64> {
     number_after(&std::fs::read_to_string("/proc/self/limits").ok()?, "Max address space")
 }
 
-/// Processor time of the process, all threads together; known on Linux alone.
+/// Processor time of all threads of the process; `None` except on Linux.
 pub(crate) fn processor_time() -> Option<Duration> {
     /// The unit of the file, on every machine.
     const TICK: Duration = Duration::from_millis(10);
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name of the program may hold anything, but its parenthesis is the last; user and system time follow.
+    // The program name may contain any character; the fields follow the last parenthesis.
     let (_, fields) = text.rsplit_once(')')?;
     let mut ticks = fields.split_whitespace().skip(11).map(str::parse::<u32>);
     Some(TICK * (ticks.next()?.ok()?.checked_add(ticks.next()?.ok()?)?))
 }
 
-/// Bytes that the heap may have under the system's limit of address space, beside `held` that it has: three quarters of
-/// what is left, for stacks and what allocators keep are address space, too. [`u64::MAX`] without such a limit.
+/// Bytes that the heap, now `held` large, may have under the system's limit of address space: three
+/// quarters of the rest, since stacks and allocator overhead use address space as well.
+/// [`u64::MAX`] without a limit.
 pub(crate) fn room(held: u64) -> u64 {
     let read = |name| std::fs::read_to_string(name).unwrap_or_default();
     room_of(&read("/proc/self/limits"), &read("/proc/self/status"), held)

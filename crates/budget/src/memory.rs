@@ -1,11 +1,11 @@
-//! Bytes that the process has allocated, counted by an allocator around the system's.
-//!
-//! Each thread counts by itself and adds to the sum once it is [`FLUSH`] away from it, so that an allocation costs
-//! what it did. The sum is exact to [`FLUSH`] for each thread. Where no program installs [`Counting`], it stays zero.
-//!
-//! When the system refuses, a reserve is given up: what was asked for, and what is allocated until the work looks at its
-//! budget, is taken from that, and the look ends the work by name. Without it Rust ends the process. What is greater than
-//! [`RESERVE`] / 2 is refused at once, for whoever asks so that it may be.
+//! Heap size of the process, counted by an allocator that wraps the system's.
+//! Each thread has a counter and adds it to the sum when it exceeds [`FLUSH`], which keeps the cost
+//! of an allocation negligible. The sum is accurate to [`FLUSH`] per thread, and stays zero unless
+//! the program installs [`Counting`].
+//! When the system refuses an allocation, a reserve is released. It serves this allocation and
+//! those until the next check of the budget, which ends the work with an error; without it Rust
+//! aborts the process. Allocations above [`RESERVE`] / 2 are refused at once, for callers that
+//! handle refusal.
 #![expect(
     unsafe_code,
     reason = "an allocator is unsafe code; this one hands everything to the system's"
@@ -16,18 +16,19 @@ use std::cell::Cell;
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicPtr, AtomicUsize, Ordering};
 
-/// Bytes that a thread counts by itself.
+/// Bytes that a thread counts before it adds them to the sum.
 pub const FLUSH: i64 = 64 << 10;
 
 static HELD: AtomicI64 = AtomicI64::new(0);
 
 thread_local! {
-    /// Bytes of this thread that are not in the sum yet; blocks may be freed by other threads.
+    /// Bytes of this thread not yet in the sum; may be negative, since other threads may free
+    /// blocks.
     static OWN: Cell<i64> = const { Cell::new(0) };
 }
 
 fn count(bytes: i64) {
-    // Without a place to count, at the end of a thread, nothing is counted.
+    // At the end of a thread the counter no longer exists, and nothing is counted.
     let _ = OWN.try_with(|own| {
         let sum = own.get() + bytes;
         if sum.abs() < FLUSH {
@@ -40,21 +41,21 @@ fn count(bytes: i64) {
     });
 }
 
-/// Adds to the sum what the thread has counted by itself: for the end of a thread, which would take it along.
+/// Adds the counter of this thread to the sum; to be called at the end of a thread.
 pub fn settle() {
     let _ = OWN.try_with(|own| HELD.fetch_add(own.replace(0), Ordering::Relaxed));
 }
 
-/// Bytes that the process holds on its heap.
+/// Heap size of the process in bytes.
 pub fn held() -> u64 {
     u64::try_from(HELD.load(Ordering::Relaxed)).unwrap_or(0)
 }
 
-/// Bytes beside the heap, such as a stack, that count as held until this is dropped.
+/// Memory outside the heap, such as a stack, that is counted until this is dropped.
 #[derive(Debug)]
 pub struct BesideHeap(i64);
 
-/// Counts bytes that are taken beside the heap.
+/// Counts memory outside the heap.
 pub fn beside(bytes: u32) -> BesideHeap {
     HELD.fetch_add(i64::from(bytes), Ordering::Relaxed);
     BesideHeap(i64::from(bytes))
@@ -66,8 +67,8 @@ impl Drop for BesideHeap {
     }
 }
 
-/// Bytes that are kept back for the work under way when the system refuses. Nothing is written there: it is address
-/// space, no memory.
+/// Size of the reserve for running work when the system refuses an allocation, in bytes. It is
+/// never written, so it uses address space but no memory.
 pub const RESERVE: usize = 64 << 20;
 
 const RESERVED: Layout = match Layout::from_size_align(RESERVE, 16) {
@@ -75,25 +76,25 @@ const RESERVED: Layout = match Layout::from_size_align(RESERVE, 16) {
     Err(_) => panic!("a power of two"),
 };
 
-/// The reserve; none before [`reserve`] and after it was given up.
+/// The reserve; null before [`reserve`] and after its release.
 static KEPT_BACK: AtomicPtr<u8> = AtomicPtr::new(null_mut());
 
-/// In [`KEPT_BACK`] while a thread gives the reserve up; no block begins there.
+/// Value of [`KEPT_BACK`] while a thread releases the reserve; not the address of a block.
 const GIVING_UP: *mut u8 = std::ptr::without_provenance_mut(1);
 
-/// The reserve was given up: work must end.
+/// True after the release of the reserve: work must end.
 static REFUSED: AtomicBool = AtomicBool::new(false);
 
-/// Requests under way: while there is one, a reserve that was given up is not taken anew.
+/// Number of running requests; while there is one, a released reserve is not allocated again.
 static UNDER_WAY: AtomicUsize = AtomicUsize::new(0);
 
-/// True from when the system refused memory until a request finds it there again.
+/// True from a refusal by the system until a request can allocate the reserve again.
 #[inline]
 pub(crate) fn refused() -> bool {
     REFUSED.load(Ordering::Relaxed) && still_refused()
 }
 
-/// Work outside of requests sees to the reserve when it asks.
+/// Work outside requests restores the reserve when it checks.
 #[cold]
 fn still_refused() -> bool {
     if UNDER_WAY.load(Ordering::Relaxed) == 0 {
@@ -102,21 +103,22 @@ fn still_refused() -> bool {
     REFUSED.load(Ordering::Relaxed)
 }
 
-/// A request begins; the first of those at one time sees to the reserve.
+/// Begins a request; the first of concurrent requests allocates the reserve.
 pub(crate) fn enter() {
     if UNDER_WAY.fetch_add(1, Ordering::Relaxed) == 0 {
         reserve();
     }
 }
 
-/// A request ends.
+/// Ends a request.
 pub(crate) fn leave() {
     UNDER_WAY.fetch_sub(1, Ordering::Relaxed);
 }
 
-/// Takes the reserve, where there is none, through the program's allocator; without one that counts it would be no use.
+/// Allocates the reserve, if there is none, through the program's allocator; useless without a
+/// counting one.
 fn reserve() {
-    // In a page address space is memory, and the page's own engine is the process that may end.
+    // In a browser address space is memory, and the engine of a page may end.
     if cfg!(target_family = "wasm") || !KEPT_BACK.load(Ordering::Acquire).is_null() {
         return;
     }
@@ -126,7 +128,7 @@ fn reserve() {
         if block.is_null() {
             return;
         }
-        // It is nobody's memory yet.
+        // The reserve does not count as used.
         count(-(RESERVE as i64));
         if KEPT_BACK
             .compare_exchange(null_mut(), block, Ordering::AcqRel, Ordering::Acquire)
@@ -140,10 +142,10 @@ fn reserve() {
     REFUSED.store(false, Ordering::Relaxed);
 }
 
-/// Whether the program's allocator is one of ours: set with the first bytes that are added to the sum.
+/// True when the program uses a counting allocator: set by the first bytes added to the sum.
 static INSTALLED: AtomicBool = AtomicBool::new(false);
 
-/// An allocator with its bytes counted: the system's, or in tests one that refuses.
+/// A counting allocator around the system's, or in tests around one that refuses.
 #[derive(Clone, Copy, Debug)]
 pub struct Counting<A = System>(A);
 
@@ -161,12 +163,12 @@ impl Default for Counting {
 }
 
 impl<A: GlobalAlloc> Counting<A> {
-    /// Another one.
+    /// Counts the bytes of another allocator.
     pub const fn over(inner: A) -> Self {
         Self(inner)
     }
 
-    /// What to do about a block that was refused: asked for once more when the reserve is given up.
+    /// Handles a refused allocation: releases the reserve and tries again.
     #[cold]
     fn again(&self, size: usize, ask: impl Fn() -> *mut u8) -> *mut u8 {
         if size > RESERVE / 2 {
@@ -177,7 +179,7 @@ impl<A: GlobalAlloc> Counting<A> {
             if kept.is_null() {
                 break;
             }
-            // Another thread gives it up: until it has, the system would refuse again.
+            // Another thread is releasing it; the system refuses until that is done.
             if kept == GIVING_UP {
                 std::thread::yield_now();
                 continue;
@@ -195,7 +197,7 @@ impl<A: GlobalAlloc> Counting<A> {
         ask()
     }
 
-    /// A block of that size, which is so much more than before.
+    /// Makes and counts a block of `size` bytes, `more` than before.
     #[inline]
     fn counted(&self, size: usize, more: i64, ask: impl Fn() -> *mut u8) -> *mut u8 {
         let mut block = ask();
@@ -209,7 +211,8 @@ impl<A: GlobalAlloc> Counting<A> {
     }
 }
 
-// SAFETY: every call is the inner allocator's with the same arguments; counting neither allocates nor panics.
+// SAFETY: every call goes to the inner allocator with the same arguments; counting neither
+// allocates nor panics.
 unsafe impl<A: GlobalAlloc> GlobalAlloc for Counting<A> {
     #[inline]
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
@@ -232,7 +235,7 @@ unsafe impl<A: GlobalAlloc> GlobalAlloc for Counting<A> {
 
     #[inline]
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: as above; a block that cannot be moved stays as it is.
+        // SAFETY: as above; a block that cannot be reallocated is unchanged.
         let more = size as i64 - layout.size() as i64;
         self.counted(size, more, || unsafe { self.0.realloc(block, layout, size) })
     }

@@ -1,4 +1,4 @@
-//! A part of the work of a request, with a bound of time of its own.
+//! A part of the work of a request, with its own time limit.
 
 use crate::machine::processor_time;
 use crate::{Budget, Spent, elapsed};
@@ -6,13 +6,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Seconds that work on a set takes at most where no time is stated: its facets, a measure, a picture.
-///
-/// They are of the clock or of the processor, whichever are fewer: neither other programs nor other threads use them up.
-/// A development build is several times slower.
+/// Default time limit of work on a set (facets, a measure, a picture), in seconds.
+/// The smaller of elapsed and processor time counts, so that neither other programs nor other
+/// threads use it up. A development build, which is several times slower, gets more.
 pub const SET_SECONDS: f64 = if cfg!(debug_assertions) { 60.0 } else { 10.0 };
 
-/// How long after a look at the processor's time the next one is due.
+/// Interval between readings of the processor time.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The time of a part, and the budget of the whole.
@@ -20,9 +19,10 @@ const LOOK: Duration = Duration::from_millis(20);
 pub(crate) struct Portion {
     pub whole: Arc<Budget>,
     allowed: Duration,
-    /// Processor time of the process when the part began; none where the system does not say it.
+    /// Processor time of the process at the start of the part; `None` if the system does not report
+    /// it.
     before: Option<Duration>,
-    /// When the part may be over, in nanoseconds; the processor's time is looked at then.
+    /// Time of the next reading of the processor time, in nanoseconds.
     due: AtomicU64,
 }
 
@@ -37,7 +37,7 @@ impl Portion {
         }
     }
 
-    /// Whether the part, and the whole, may go on.
+    /// Checks that the part and the whole may continue.
     #[inline]
     pub fn poll(&self) -> Result<(), Spent> {
         self.whole.poll()?;
@@ -60,7 +60,7 @@ impl Portion {
     }
 }
 
-/// Six hundred years at most.
+/// Nanoseconds, saturated at about 580 years.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
@@ -77,7 +77,7 @@ mod tests {
     fn a_part_ends_by_its_own_time_and_with_the_whole() {
         for before in [None, Some(Duration::ZERO)] {
             let part = of_no_time(before);
-            // Where the processor's time is known it is that of this process, which has had some.
+            // The processor time, if known, is that of this process and not zero.
             while part.poll().is_ok() {}
             assert_eq!(part.poll(), Err(Spent::Time { allowed: 0.0 }));
             assert_eq!(part.whole.poll(), Ok(()));

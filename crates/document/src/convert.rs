@@ -1,9 +1,10 @@
 //! Between the two forms of a model: programs and model files.
 //!
 //! A model file becomes a program with one statement an object, in the order of the file (parents
-//! first); the way back gives the same objects and numbers. What the language has no words for
-//! travels in comments that begin with `#ms2`. A program becomes a model file of the objects that
-//! it makes; its parameters, variables and expressions stay relations where the file has words for them.
+//! first), and converts back to the same objects and numbers. Records without a counterpart in the
+//! language are kept in comments that begin with `#ms2`. A program becomes a model file of the
+//! objects that it makes; its parameters, variables and expressions stay relations where the file
+//! format can state them.
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::Diagnostic;
@@ -12,20 +13,20 @@ use moldloft_lang::source::fault_location::unplaced;
 use moldloft_registry::CallError;
 use moldloft_syntax::sdl;
 
-/// The forms that a model can be written in.
+/// Text formats of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelFormat {
     /// A program.
     Sdl,
-    /// A MultiSurf model file; the version is that of the header, 1.44 without one.
+    /// A MultiSurf model file, in the version of its header or 1.44.
     ModelFile,
 }
 
 impl Document {
-    /// The model in the other form, or in canonical text of its own.
+    /// Text of the model in format `to`; canonical text when it has this format already.
     ///
     /// # Errors
-    /// What is wrong with the model, or which objects the other form cannot hold.
+    /// The errors of the model, or the objects that the format cannot represent.
     ///
     /// # Example
     /// ```
@@ -39,25 +40,25 @@ impl Document {
         self.convert_with_remarks(to).map(|(text, _)| text)
     }
 
-    /// What the file that was written last does not keep of the model.
+    /// Warnings about parts of the model that the last exported file does not represent.
     pub fn export_remarks(&self) -> &[Diagnostic] {
         &self.export_remarks
     }
 
-    /// Keeps what a file does not hold, for [`Document::export_remarks`].
+    /// Stores the warnings that [`Document::export_remarks`] returns.
     pub fn set_export_remarks(&mut self, remarks: Vec<Diagnostic>) {
         self.export_remarks = remarks;
     }
 
-    /// As [`Document::convert`], with what the other form does not keep.
+    /// As [`Document::convert`], with warnings about what the format does not represent.
     ///
     /// # Errors
-    /// What is wrong with the model, or which objects the other form cannot hold.
+    /// The errors of the model, or the objects that the format cannot represent.
     pub fn convert_with_remarks(
         &self,
         to: ModelFormat,
     ) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
-        // Without memory what was written cannot be read again: that says nothing of the objects.
+        // If memory ran out while reading the text back, the fault is not one of the objects.
         self.converted(to).map_err(|faults| match self.budget().poll() {
             Ok(()) => faults,
             Err(spent) => vec![unplaced(&CallError::from(spent))],

@@ -1,30 +1,30 @@
-//! Curves of zero length, surfaces and bodies of zero area, surfaces that cover themselves: valid
-//! for the kernel and rarely intended.
+//! Warnings about curves of zero length, surfaces and bodies of zero area, and surfaces that
+//! overlap themselves: valid for the kernel and rarely intended.
 
 use moldloft_model::{Graph, Object};
 use moldloft_num::{Order, Pace, Real, Vec3};
 use moldloft_registry::{CurveRef, Scalar, SurfaceRef, TriangleBody, Value};
 use std::f64::consts::TAU;
 
-/// The ids of these remarks.
+/// Ids of these warnings.
 pub const IDS: [&str; 3] = ["zero-length", "zero-area", "more-than-one-turn"];
 
-/// A share of the coordinates below which places are one.
+/// Distance, relative to the coordinates, below which two points coincide.
 const ONE_PLACE: f64 = 1e-12;
 
-/// The sine of an angle between the tangents of a surface below which they are one line.
+/// Sine of the angle between the tangents of a surface below which they are parallel.
 const ONE_LINE: f64 = 1e-9;
 
-/// Parameters at which shapes are looked at, those first that tell at once.
+/// Sampled parameters; the first ones decide most cases.
 const PLACES: [f64; 5] = [0.37, 0.81, 0.5, 0.07, 0.96];
 
-/// What is remarkable about the size of an object: id, message, advice.
+/// Warning about the size of an object: id, message, advice.
 pub fn remark<T: Scalar>(
     object: &Object<T>,
     graph: &Graph<T>,
 ) -> Option<(&'static str, &'static str, &'static str)> {
     match object.value()? {
-        // A curve that is made of one point object alone is meant to be one, and so are its parts.
+        // A curve made of a single point object is a point on purpose, and so are its parts.
         Value::Curve(curve)
             if object.parents.len() != 1 && is_point(curve) && !is_part(object, graph) =>
         {
@@ -53,7 +53,8 @@ pub fn remark<T: Scalar>(
     }
 }
 
-/// True when a parent, or the curve that one is on, is a point itself: that is what there is to warn of, if it is.
+/// True when a parent, or the curve that a parent is on, is itself a point: the warning belongs
+/// there.
 fn is_part<T: Scalar>(object: &Object<T>, graph: &Graph<T>) -> bool {
     let values = object.parents.iter().filter_map(|parent| graph.get(*parent)?.value());
     values.into_iter().any(|value| match value {
@@ -70,7 +71,7 @@ fn is_point<T: Real>(curve: &CurveRef<T>) -> bool {
     PLACES.iter().chain(&[1.0]).all(|t| first.distance(at(*t)) <= ONE_PLACE * size)
 }
 
-/// True for a surface that is one line or point.
+/// True for a surface that is degenerate to a line or point.
 pub fn has_no_area<T: Real>(surface: &SurfaceRef<T>) -> bool {
     let flat = |u: f64, v: f64| {
         let j = surface.jet(T::from(u), T::from(v), Order::First);
@@ -81,7 +82,7 @@ pub fn has_no_area<T: Real>(surface: &SurfaceRef<T>) -> bool {
     PLACES.iter().all(|u| PLACES.iter().all(|v| flat(*u, *v)))
 }
 
-/// True for a surface that turns about an axis by more than once.
+/// True for a surface of revolution of more than 360°.
 fn turns_on<T: Real>(surface: &SurfaceRef<T>) -> bool {
     const ROUNDING: f64 = 1e-9;
     let turn = |pace: &Pace| matches!(pace, Pace::Angle(angle) if angle.abs() > TAU + ROUNDING);

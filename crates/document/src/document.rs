@@ -1,4 +1,5 @@
-//! A model under work: its text, its graph, the parameters that were set, and what a run found.
+//! An open model: its text, its graph, the parameter values that were set, and the results of a
+//! run.
 
 use crate::solve::SolveReport;
 use crate::{degenerate, faired};
@@ -24,8 +25,8 @@ use moldloft_sketch::SketchSolid;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// A model as its user sees it: a text, its parameters, the objects it makes, and what is
-/// computed from them. Opening never fails: what is wrong is in [`Document::diagnostics`].
+/// An open model: its text, its parameters, the objects that the text declares, and the values
+/// computed from them. Opening never fails; errors are in [`Document::diagnostics`].
 pub struct Document {
     pub(crate) registry: Registry,
     pub(crate) world: Box<dyn World>,
@@ -36,7 +37,7 @@ pub struct Document {
     pub(crate) export_remarks: Vec<Diagnostic>,
     pub(crate) source: ObjectSource,
     pub(crate) modules: Modules,
-    /// Values of parameters, and of literals of objects, that differ from the text's.
+    /// Values of parameters, and of literals of objects, that differ from those in the text.
     pub(crate) overrides: IndexMap<String, f64>,
     pub(crate) plain: Evaluation<f64>,
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
@@ -44,35 +45,35 @@ pub struct Document {
     pub(crate) bodied: Option<Arc<crate::measures::bodied::Bodied>>,
     pub(crate) whole: HashMap<&'static str, crate::measures::bodied::Whole>,
     pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
-    /// The counts of divisions at the text's own values, and the version of the text.
+    /// Division counts at the parameter values of the text, and the version of the text.
     nominal: Option<(u64, Nominal)>,
     pub(crate) applied: Applied,
-    /// The solve sets of the last run.
+    /// Reports on the solve sets of the last run.
     pub(crate) solved: Vec<SolveReport>,
-    /// The objects whose numbers solve sets find.
+    /// The objects whose numbers are unknowns of solve sets.
     pub(crate) solved_objects: HashSet<String>,
     budget: Arc<Budget>,
-    /// True when the last run was cancelled: what it did not come to is missing.
+    /// True when the last run was cancelled: objects it did not reach are missing.
     cut_short: bool,
-    /// What calls keep, of the plain run and of those with derivatives alike.
+    /// Results cached between calls, for the plain run and for runs with derivatives.
     kept: Kept,
     pub(crate) settings: Settings,
-    /// True when what can be understood of a text with faults is run.
+    /// True when a text with errors is run as far as it can be parsed.
     tolerant: bool,
-    /// True when figures and files may be those of a part of the model.
+    /// True when figures and files of an incomplete model are allowed.
     partial: bool,
 }
 
 /// The unit of length of a sketch that states none.
 const ASSUMED_UNIT: &str = "mm";
 
-/// Where the objects come from.
+/// Source of the objects.
 pub(crate) enum ObjectSource {
     /// A program; its text is module 0.
     Program,
     /// A model file.
     ModelFile(Box<moldloft_lang::model_file::ModelFileSource>),
-    /// A sketch file: module 0 is an empty program, and the sketch is brought in after it.
+    /// A sketch file: module 0 is an empty program, and the sketch is loaded after it.
     Sketch(Arc<SketchFile>),
     /// Nothing: the file could not be read.
     None,
@@ -81,7 +82,7 @@ pub(crate) enum ObjectSource {
 /// The panels of a model and their positions.
 #[derive(Debug)]
 pub struct Panelled {
-    /// Who computes which vertex.
+    /// The objects that compute each vertex.
     pub panelling: Panelling,
     /// The mesh.
     pub mesh: Mesh<f64>,
@@ -93,7 +94,7 @@ impl Document {
         Self::open_within(registry, world, path, Arc::default())
     }
 
-    /// As [`Self::open`]; `budget` is what runs may use, also the first one, which it may cancel.
+    /// As [`Self::open`], with a budget that limits and can cancel every run, including the first.
     pub fn open_within(
         registry: Registry,
         world: Box<dyn World>,
@@ -103,7 +104,7 @@ impl Document {
         Self { budget, ..Self::empty(registry, world) }.opened(path)
     }
 
-    /// As [`Self::open_within`], of a text that is being written: run as [`Self::edited`] does.
+    /// As [`Self::open_within`], for a text in an editor: it is run as in [`Self::edited`].
     pub fn open_edited(
         registry: Registry,
         world: Box<dyn World>,
@@ -127,15 +128,16 @@ impl Document {
         self
     }
 
-    /// A model from a text; the ending of `name` distinguishes a model file (`.ms2`) from a program;
-    /// without one the first word does.
+    /// A model from a text. The extension of `name` distinguishes a model file (`.ms2`) from a
+    /// program; without an extension the first word does.
     pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
         let mut document = Self::empty(registry, world);
         document.take_text(name, text.to_string());
         document
     }
 
-    /// As [`Self::from_text`]; `budget` is what runs may use, also this first one, which it may cancel.
+    /// As [`Self::from_text`], with a budget that limits and can cancel every run, including this
+    /// first one.
     pub fn from_text_within(
         registry: Registry,
         world: Box<dyn World>,
@@ -147,8 +149,8 @@ impl Document {
         document
     }
 
-    /// As [`Self::from_text_within`], of a text that is being written: what can be understood of it is run, whatever
-    /// is at fault elsewhere, so that names have values while one types.
+    /// As [`Self::from_text_within`], for a text in an editor: the statements that can be parsed
+    /// are run despite errors elsewhere, so that names have values while the user types.
     pub fn edited(
         registry: Registry,
         world: Box<dyn World>,
@@ -198,7 +200,7 @@ impl Document {
     }
 
     fn parse(&mut self, name: &str, text: String, file: moldloft_diag::FileId) {
-        // Counts that follow from lengths are those at the text's own values, whatever is set.
+        // Division counts that follow from lengths are those at the parameter values of the text.
         if let Some((at, panelled)) = &mut self.panelled
             && panelled.panelling.is_measured()
         {
@@ -227,7 +229,7 @@ impl Document {
         }
     }
 
-    /// Replaces the text, as an editor does at every keystroke, and runs it.
+    /// Replaces the text and runs it; fast enough for every keystroke of an editor.
     pub fn set_text(&mut self, text: &str) -> Applied {
         let file = self.sources.ids().next();
         let name = file.and_then(|f| self.sources.name(f)).unwrap_or("model.sdl").to_string();
@@ -238,7 +240,7 @@ impl Document {
             }
             None => self.sources.add(name.clone(), text),
         };
-        // Literals of objects were changed in the old text.
+        // Changed literals of objects belong to the old text.
         let params = &self.plain.env.params;
         self.overrides
             .retain(|name, _| !name.contains('.') || params.iter().any(|p| p.name == *name));
@@ -247,7 +249,7 @@ impl Document {
         self.applied
     }
 
-    /// Runs the model again: only what changed is evaluated.
+    /// Runs the model again; only changed objects are evaluated.
     pub fn run(&mut self) -> Applied {
         self.run_diagnostics.clear();
         let mut evaluation = std::mem::take(&mut self.plain);
@@ -257,7 +259,7 @@ impl Document {
         let refused = self.budget.poll() == Err(Spent::Refused);
         let short = self.run_diagnostics.iter().any(|d| d.id == "out-of-memory");
         if earlier && short && !refused {
-            // It may be the results of earlier runs that fill the memory.
+            // Results of earlier runs may be what fills the memory.
             evaluation = Evaluation::default();
             self.forget_results();
             self.run_diagnostics.clear();
@@ -274,7 +276,7 @@ impl Document {
         self.applied
     }
 
-    /// Frees what was computed from the plain run and is kept for the next one.
+    /// Frees results of the plain run that are cached for the next one.
     fn forget_results(&mut self) {
         self.dual = None;
         self.panelled = None;
@@ -285,10 +287,10 @@ impl Document {
         self.kept = Kept::default();
     }
 
-    /// Runs again what a run did not come to that was cancelled, or that the system refused memory.
+    /// Completes a run that was cancelled or that ran out of memory.
     ///
     /// # Errors
-    /// Why, when that is still so: what the run has not come to is not unknown.
+    /// The reason, if the run is still incomplete: objects it did not reach are not unknown names.
     pub(crate) fn complete(&mut self) -> Result<(), Vec<Diagnostic>> {
         let again = !matches!(self.budget.poll(), Err(Spent::Cancelled | Spent::Refused));
         if self.cut_short && again {
@@ -297,20 +299,21 @@ impl Document {
         self.finished()
     }
 
-    /// Lets figures and files be those of what was made, although objects failed or panels do not join.
+    /// Allows figures and files of an incomplete model: one with failed objects or panels that do
+    /// not join.
     pub fn allow_partial(&mut self, partial: bool) {
         self.partial = partial;
     }
 
-    /// Whether figures and files may be those of what was made alone.
+    /// True when figures and files of an incomplete model are allowed.
     pub fn partial(&self) -> bool {
         self.partial
     }
 
-    /// Whether figures and files would be those of the whole model.
+    /// Succeeds when the model is complete, or an incomplete one is allowed.
     ///
     /// # Errors
-    /// Why not: errors of objects, and counts of panels that contradict each other; unless a part is allowed.
+    /// Errors of objects, and contradictory panel counts, unless an incomplete model is allowed.
     pub fn entire(&mut self) -> Result<(), Vec<Diagnostic>> {
         self.complete()?;
         if self.partial {
@@ -320,15 +323,14 @@ impl Document {
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 
-    /// What makes figures those of a part of the model: errors of objects, and counts of panels that contradict each
-    /// other.
+    /// Reasons why the model is incomplete: errors of objects, and contradictory panel counts.
     ///
     /// # Errors
-    /// When panels cannot be made.
+    /// If panels cannot be generated.
     pub fn lacking(&mut self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         let run = self.text_diagnostics.iter().chain(&self.run_diagnostics);
         let mut errors: Vec<Diagnostic> = run.filter(|d| d.is_error()).cloned().collect();
-        // Causes before what they block.
+        // Causes come before the objects they block.
         errors.sort_by_key(|d| d.id == "blocked");
         if errors.is_empty() {
             let panelled = self.panelled().map_err(|d| vec![d])?;
@@ -341,13 +343,13 @@ impl Document {
     /// The panels of the whole model; see [`Self::entire`].
     ///
     /// # Errors
-    /// The first reason why there are none.
+    /// The first reason why there are no panels.
     pub fn entire_panels(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
         self.entire().map_err(|mut faults| faults.swap_remove(0))?;
         self.panelled()
     }
 
-    /// Why nothing was made: that fault, or that memory or time were used up meanwhile.
+    /// The fault to report: `fault`, or exhausted memory or time if that came first.
     pub(crate) fn or_spent(&self, fault: Diagnostic) -> Diagnostic {
         match self.budget.poll() {
             Ok(()) => fault,
@@ -355,10 +357,10 @@ impl Document {
         }
     }
 
-    /// Whether the last run came to everything.
+    /// Succeeds when the last run is complete.
     ///
     /// # Errors
-    /// Why not.
+    /// The reason why it is incomplete.
     pub(crate) fn finished(&self) -> Result<(), Vec<Diagnostic>> {
         if !self.cut_short {
             return Ok(());
@@ -366,8 +368,8 @@ impl Document {
         Err(self.run_diagnostics.iter().filter(|d| Spent::is_id(&d.id)).cloned().collect())
     }
 
-    /// Runs the source on a graph. `report` says whether what is found goes to the user: a run
-    /// with derivatives repeats what the plain run said.
+    /// Runs the source on a graph. `report` is false for runs with derivatives: their diagnostics
+    /// would repeat those of the plain run.
     pub(crate) fn evaluate<T: Scalar>(
         &mut self,
         evaluation: &mut Evaluation<T>,
@@ -404,7 +406,7 @@ impl Document {
             sketch,
             converted: moldloft_lang::model_file::converted,
         };
-        // A program with a fault in its text is another one than was meant.
+        // A program with a syntax error may mean something else than its author intended.
         let faulty = !self.tolerant && self.text_diagnostics.iter().any(Diagnostic::is_error);
         let applied = match &self.source {
             ObjectSource::Program if faulty => {
@@ -428,7 +430,7 @@ impl Document {
         applied
     }
 
-    /// The diagnostics of failed objects; what they block is reported with them, once.
+    /// The diagnostics of failed objects; the objects blocked by one are listed in its diagnostic.
     pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.failed() == 0 {
             return Vec::new();
@@ -474,7 +476,7 @@ impl Document {
         diagnostics
     }
 
-    /// Surfaces that are shown together with their mirror image in a plane in which the model is mirrored anyway.
+    /// Surfaces shown together with their mirror image in a symmetry plane of the model.
     fn doubled<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let letters = match &self.source {
             ObjectSource::ModelFile(source) => source.symmetry(),
@@ -529,7 +531,8 @@ impl Document {
         found
     }
 
-    /// Weights of one side's shapes in a mirrored model that do not say whether the other side counts.
+    /// Weights of shapes of one half of a mirrored model that leave open whether the other half is
+    /// included.
     fn half_weights<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let letters = match &self.source {
             ObjectSource::ModelFile(source) => source.symmetry(),
@@ -568,7 +571,7 @@ impl Document {
         found
     }
 
-    /// The warnings of objects that the user should know something of.
+    /// Warnings about objects.
     pub(crate) fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.remarked() == 0 {
             return Vec::new();
@@ -590,7 +593,7 @@ impl Document {
         diagnostics
     }
 
-    /// The warnings of curves without length, surfaces without area, and doubtful fairings.
+    /// Warnings about curves of zero length, surfaces of zero area, and doubtful fairings.
     pub(crate) fn degeneracies<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let warned = |object| {
             let found = degenerate::remark(object, &evaluation.graph);
@@ -619,8 +622,8 @@ impl Document {
         }
     }
 
-    /// The counts of divisions at the values of parameters that the text states, when some
-    /// parameter has another: what follows from lengths stays what it is for the text.
+    /// Division counts at the parameter values of the text, when a parameter has another value:
+    /// counts that follow from lengths do not change with parameters.
     fn nominal(&mut self) -> Option<Nominal> {
         if !self.overrides.keys().any(|name| self.params().iter().any(|p| p.name == *name)) {
             return None;
@@ -640,7 +643,7 @@ impl Document {
         Some(nominal)
     }
 
-    /// A word that changes with the text, edits of literals included.
+    /// A hash of the text with edited literals.
     fn text_version(&self) -> u64 {
         use std::hash::{DefaultHasher, Hash, Hasher};
         let mut hasher = DefaultHasher::new();
@@ -648,8 +651,8 @@ impl Document {
         hasher.finish()
     }
 
-    /// All that is wrong or remarkable, in the order of the text's faults, then the run's, then
-    /// what was noticed at the joins when panels were made.
+    /// All errors and warnings: first those of the text, then those of the run, then those of joins
+    /// between panels.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let mut all: Vec<_> =
             self.text_diagnostics.iter().chain(&self.run_diagnostics).cloned().collect();
@@ -661,11 +664,11 @@ impl Document {
         all
     }
 
-    /// Edges of patches that lie in one place, and corners on open edges of others, that are not joined:
-    /// errors, for checks.
+    /// Unjoined coincident edges of patches, and corners on open edges of other patches: errors,
+    /// for checks.
     ///
     /// # Errors
-    /// When there would be too many panels.
+    /// If the panels exceed the limit.
     pub fn junctions(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
         let panelled = self.panelled()?;
         let remarks = panelled.panelling.junctions(&self.plain.graph);
@@ -691,7 +694,7 @@ impl Document {
         self.text_diagnostics.iter().chain(&self.run_diagnostics).any(|d| d.is_error())
     }
 
-    /// The texts that diagnostics point into.
+    /// The texts that spans of diagnostics refer to.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
@@ -706,12 +709,12 @@ impl Document {
         &self.plain.graph
     }
 
-    /// The finished body of a sketch, by the name of its mesh.
+    /// The solid of a sketch, by the name of its mesh.
     pub fn sketch_body(&self, name: &str) -> Option<&SketchSolid<f64>> {
         self.plain.env.sketch_bodies.get(name).map(|body| &**body)
     }
 
-    /// What the last change did.
+    /// Result of the last change.
     pub fn applied(&self) -> Applied {
         self.applied
     }
@@ -721,18 +724,18 @@ impl Document {
         &self.registry
     }
 
-    /// Adds or replaces a row, such as a user's function, and runs again.
+    /// Adds or replaces a registry row, such as a user's function, and runs the model.
     pub fn add_row(&mut self, row: Row) -> Applied {
         self.registry.add(row);
         self.modules.relink(&self.registry);
         self.run()
     }
 
-    /// Sets the refinement level: each level halves the spacing of sizes declared by `refined`, and
-    /// runs it.
+    /// Sets the refinement level and runs the model; each level halves the spacings declared by
+    /// `refined`.
     ///
     /// # Errors
-    /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
+    /// If `times` exceeds [`moldloft_lang::MOST_REFINED`].
     pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
         if times > moldloft_lang::MOST_REFINED {
             return Err(Diagnostic::error("out-of-range", "the refinement is too fine")
@@ -743,16 +746,14 @@ impl Document {
         Ok(self.run())
     }
 
-    /// Runs the program with operators applied one after the other to whole arrays: the reference
-    /// that tests compare with.
+    /// Runs the program with each operator applied to whole arrays: the reference for tests.
     #[doc(hidden)]
     pub fn with_plain_operators(&mut self) -> Applied {
         self.settings.plain_operators = true;
         self.run()
     }
 
-    /// Runs the program statement by statement, without code for what is done on numbers: the reference
-    /// that tests compare with.
+    /// Runs the program in the interpreter, without compiled numeric code: the reference for tests.
     #[doc(hidden)]
     pub fn without_code(&mut self) -> Applied {
         self.settings.without_code = true;
@@ -766,19 +767,19 @@ impl Document {
         self.run()
     }
 
-    /// The steps that the last run has counted.
+    /// Number of steps of the last run.
     #[doc(hidden)]
     pub fn steps(&self) -> u64 {
         self.plain.env.steps
     }
 
-    /// What the program wrote, by file name; nothing is on the disk yet.
+    /// Files written by the program, by name; they are not on disk yet.
     pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.plain.env.files.written()
     }
 
-    /// The written files that the host is to make CGNS of, with names, joints and boundaries of their blocks: what
-    /// was written is Plot3D, plain binary in double precision.
+    /// Written files that the host converts to CGNS, with names, joints and boundaries of their
+    /// blocks. Their content is Plot3D, plain binary in double precision.
     pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &moldloft_lang::CgnsBlocks)> {
         self.plain.env.files.cgns()
     }
@@ -809,12 +810,12 @@ impl Document {
         &self.plain.env.printed
     }
 
-    /// What its work may use; it cancels what is under way.
+    /// The budget of its work, which can also cancel it.
     pub fn budget(&self) -> Arc<Budget> {
         self.budget.clone()
     }
 
-    /// The text, with direct edits written into it.
+    /// The text, with direct edits included.
     pub fn text(&self) -> String {
         match &self.source {
             ObjectSource::Program => self.modules.get(0).program.text_with_edits(),
@@ -826,7 +827,7 @@ impl Document {
         }
     }
 
-    /// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
+    /// The symmetry planes of the model, as "y" or "xy"; empty without symmetry.
     pub fn symmetry(&self) -> String {
         match &self.source {
             ObjectSource::ModelFile(source) => source.symmetry(),
@@ -866,11 +867,11 @@ impl Document {
         }
     }
 
-    /// The panels with as many divisions as bring them as near to their surfaces as this; see [`Panelling::within`].
-    /// Panels that stay farther away are among [`Document::export_remarks`].
+    /// The panels, divided until they are within `fineness` of their surfaces; see
+    /// [`Panelling::within`]. Panels that stay farther away are among [`Document::export_remarks`].
     ///
     /// # Errors
-    /// When there would be too many panels, or none.
+    /// If the panels exceed the limit, or there are no surfaces.
     pub fn panelled_within(&mut self, fineness: &Fineness) -> Result<Arc<Panelled>, Diagnostic> {
         self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let graph = &self.plain.graph;
@@ -885,12 +886,12 @@ impl Document {
         Ok(Arc::new(Panelled { panelling, mesh }))
     }
 
-    /// The panels of all shown surfaces, remembered until something changes.
+    /// The panels of all shown surfaces, cached until the model changes.
     ///
     /// # Errors
-    /// When there would be too many panels.
+    /// If the panels exceed the limit.
     pub fn panelled(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
-        // The panels of a part would look like those of the whole.
+        // The panels of an incomplete model look like those of a complete one.
         self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some((at, panelled)) = &self.panelled
@@ -900,7 +901,8 @@ impl Document {
         }
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
-        // Where lengths decided before they most likely do again: the counts to be kept are at hand then.
+        // Counts that followed from lengths before probably do so again: compute those of the text
+        // at once.
         let mut nominal = match before {
             Some(before) if before.is_measured() => self.nominal(),
             _ => None,

@@ -1,18 +1,19 @@
-//! Faired objects whose tolerance is smaller than the noise of their points, and points that do not fit their
-//! neighbours: remarks by the figures that fairing leaves.
+//! Warnings about faired objects whose tolerance is smaller than the noise of their points, and
+//! about outliers, from the results of fairing.
 
 use moldloft_model::Object;
 use moldloft_registry::Scalar;
 
-/// The ids of these remarks.
+/// Ids of these warnings.
 pub const IDS: [&str; 2] = ["unlike-neighbours", "at-its-tolerance"];
 
-/// Squared residuals of the fairest, over those of noise that fills the tolerance, from which on it is at its
-/// tolerances nearly everywhere: 3 is everywhere. On six known shapes under noise of the size of the tolerance it
-/// has 2.6 at most, and of five times the tolerance 2.6 on the average.
+/// Ratio of the squared residuals of the fairest shape to those of noise that fills the tolerance,
+/// above which the shape is at its tolerances nearly everywhere; 3 means everywhere. Measured on
+/// six known shapes: at most 2.6 with noise of the size of the tolerance, 2.6 on average with five
+/// times as much.
 const EVERYWHERE: f64 = 2.6;
 
-/// What is remarkable about a faired object: id, message, advice.
+/// Warning about a faired object: id, message, advice.
 pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static str, &'static str)> {
     let figures = object.value()?.figures();
     let of = |name: &str| figures.iter().find(|f| f.0 == name).map_or(0.0, |f| f.1);

@@ -1,41 +1,41 @@
-//! Numbers that follow: the least change of chosen numbers that brings conditions to zero.
-//!
-//! A step solves, with exact derivatives, the linear least-squares problem in which a condition counts [`CONDITION`]
-//! times as much as the change of a number over its whole range, within the ranges (Stark and Parker, Computational
-//! Statistics 10, 1995). Where the conditions can be met within the ranges they are, by Newton's convergence; where they
-//! cannot, what comes out is the place that misses them least.
+//! The least change of chosen numbers that brings conditions to zero.
+//! Each step solves, with exact derivatives, a linear least-squares problem within the ranges
+//! (Stark and Parker, Computational Statistics 10, 1995); a condition weighs [`CONDITION`] times
+//! the change of a number over its whole range. Conditions that can be met within the ranges are
+//! met with the convergence of Newton's method; otherwise the result is the closest approach.
 
-/// How a condition weighs against the change of a number over its range.
+/// Weight of a condition relative to the change of a number over its range.
 const CONDITION: f64 = 1e5;
 
-/// A condition counts as met when it is off by less, as a share of what the numbers do to it over their ranges.
+/// Residual at which a condition is met, relative to the effect of the numbers over their ranges.
 const MET: f64 = 1e-9;
 
-/// A step smaller than this share of the ranges ends the search.
+/// Step, relative to the ranges, that ends the search.
 const SMALL_STEP: f64 = 1e-9;
 
-/// Where the conditions are met, a step smaller than this share of the ranges would not lessen the change noticeably.
+/// Step, relative to the ranges, that ends the search once the conditions are met: the change would
+/// decrease no further.
 const SMALL_GAIN: f64 = 1e-3;
 
-/// A step is halved at most that many times.
+/// Maximum number of halvings of a step.
 const HALVINGS: usize = 10;
 
-/// Steps that only lessen the change, once the conditions are met.
+/// Maximum number of steps that only reduce the change, once the conditions are met.
 const LESSENING: usize = 4;
 
 /// A number that may change.
 #[derive(Clone, Debug)]
 pub struct FollowingNumber {
-    /// Where changes are counted from.
+    /// The value from which changes are measured.
     pub home: f64,
     /// The least and the largest value.
     pub range: Option<(f64, f64)>,
-    /// How much a change of it counts beside the others'.
+    /// Weight of its change.
     pub weight: f64,
 }
 
 impl FollowingNumber {
-    /// The change that counts as one.
+    /// The change with weight one.
     fn size(&self) -> f64 {
         match self.range {
             Some((low, high)) if high > low => high - low,
@@ -45,54 +45,54 @@ impl FollowingNumber {
     }
 }
 
-/// What the numbers do.
+/// Effect of the numbers on the conditions.
 pub trait Conditions {
-    /// Gives the numbers these values; the conditions there, which are to be zero.
+    /// Sets the numbers to `x` and returns the conditions, which are to be zero.
     ///
     /// # Errors
-    /// Why there are none.
+    /// The reason why they cannot be evaluated.
     fn at(&mut self, x: &[f64]) -> Result<Vec<f64>, String>;
 
-    /// The derivatives at the values that were given last: `[condition][number]`.
+    /// The derivatives at the last values: `[condition][number]`.
     ///
     /// # Errors
-    /// Why there are none.
+    /// The reason why they cannot be evaluated.
     fn slopes(&mut self) -> Result<Vec<Vec<f64>>, String>;
 }
 
-/// How a search is done.
+/// Options of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct FollowSearch<'a> {
-    /// How much each condition counts: where not all can be met, one of a smaller importance gives way.
+    /// Weight of each condition: if not all can be met, those of small weight are violated first.
     pub importance: &'a [f64],
-    /// True for conditions of one unit, such as the coordinates of a point: what the numbers hardly do to one of them
-    /// counts no more than what they do to the others.
+    /// True for conditions of one unit, such as the coordinates of a point: all are scaled alike,
+    /// so that a condition on which the numbers have little effect gets no larger weight.
     pub alike: bool,
-    /// Conditions that are off by no more are met.
+    /// Residual below which a condition is met.
     pub enough: f64,
-    /// Steps at most.
+    /// Maximum number of steps.
     pub steps: usize,
 }
 
-/// Where the search ended.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub struct Followed {
     /// The numbers.
     pub x: Vec<f64>,
-    /// The conditions there.
+    /// Residuals of the conditions.
     pub left: Vec<f64>,
-    /// How many steps were taken.
+    /// Number of steps.
     pub steps: usize,
-    /// What the numbers do to each condition over their ranges, at the start.
+    /// Effect of the numbers on each condition over their ranges, at the start.
     pub reach: Vec<f64>,
-    /// Why the last values that were tried have no conditions, if they had none.
+    /// The reason why the conditions could not be evaluated at the last trial values, if so.
     pub refused: Option<String>,
 }
 
 /// Brings the conditions to zero by the least change from `home`, beginning at `start`.
 ///
 /// # Errors
-/// Why there is nothing at the start.
+/// The reason why the conditions cannot be evaluated at the start.
 pub fn follow(
     conditions: &mut dyn Conditions,
     followers: &[FollowingNumber],
@@ -119,7 +119,7 @@ pub fn follow(
                 reach.fill(largest);
             }
         }
-        // A condition that nothing moves is left out: it would only add what is not finite.
+        // A condition on which no number has an effect is left out: its scale would be infinite.
         let scale = |i: usize| {
             if reach[i] > 0.0 { CONDITION * how.importance[i] / reach[i] } else { 0.0 }
         };
@@ -184,7 +184,8 @@ pub fn follow(
                 })
                 .collect();
             match conditions.at(&next) {
-                // On the conditions a step may leave them by its square: the next one comes back.
+                // A step along the conditions may violate them by its square; the next step
+                // corrects this.
                 Ok(found)
                     if found.iter().all(|c| c.is_finite())
                         && (merit(&found, &next) <= now - 0.1 * share * hoped
@@ -211,7 +212,7 @@ pub fn follow(
     Ok(Followed { x, left, steps, reach, refused })
 }
 
-/// The x of least |a x - b| within bounds; `None` where something is not finite.
+/// The x that minimises |a x - b| within bounds; `None` for values that are not finite.
 fn bounded_least_squares(a: &[Vec<f64>], b: &[f64], bounds: &[(f64, f64)]) -> Option<Vec<f64>> {
     let n = bounds.len();
     let within = |x: &[f64]| x.iter().zip(bounds).all(|(x, (low, high))| low <= x && x <= high);
@@ -222,7 +223,7 @@ fn bounded_least_squares(a: &[Vec<f64>], b: &[f64], bounds: &[(f64, f64)]) -> Op
     }
     let mut x: Vec<f64> = bounds.iter().map(|(low, high)| 0f64.clamp(*low, *high)).collect();
     let mut free = vec![false; n];
-    // Each turn frees one number, and every set of free numbers is met once at most.
+    // Each iteration frees one number, and no set of free numbers occurs twice.
     for _ in 0..8 * n + 8 {
         let residual = rest(a, b, &x);
         let pull: Vec<f64> =
@@ -242,7 +243,7 @@ fn bounded_least_squares(a: &[Vec<f64>], b: &[f64], bounds: &[(f64, f64)]) -> Op
             if set.is_empty() {
                 break;
             }
-            // The others stay where they are.
+            // The others keep their values.
             let mut fixed = x.clone();
             set.iter().for_each(|j| fixed[*j] = 0.0);
             let wish = least_squares(a, &rest(a, b, &fixed), &set)?;
@@ -272,7 +273,7 @@ fn bounded_least_squares(a: &[Vec<f64>], b: &[f64], bounds: &[(f64, f64)]) -> Op
                 break;
             }
             if set.iter().all(|j| free[*j]) {
-                // Rounding hides which one is at its end.
+                // Rounding hides which number is at its bound.
                 break;
             }
         }

@@ -1,10 +1,9 @@
-//! What a user does with a model: open, run, set, rename, convert, solve, measure, derive.
+//! Operations on a model: open, run, set, rename, convert, solve, measure, differentiate.
 //!
 //! `text -> run -> Graph -> numbers, panels, derivatives`
-//!
-//! A [`Document`] holds a model as its user sees it: a text, its parameters, the objects it makes.
-//! It is run again at every change; only what changed is evaluated. A run with seeded dual numbers
-//! gives exact derivatives of everything that a plain run computes.
+//! A [`Document`] holds the text of a model, its parameters and its objects. It runs at every
+//! change and evaluates only what changed. A run with seeded dual numbers gives exact derivatives
+//! of everything that a plain run computes.
 //!
 //! ```
 //! use moldloft_document::{Document, NoFiles, registry};
@@ -17,8 +16,7 @@
 //! model.set(&[("w".into(), 3.0)]).unwrap();
 //! assert!(matches!(model.eval("l.length"), Ok(Value::Number(x)) if (x - 3.0).abs() < 1e-12));
 //! ```
-//!
-//! Invariant: this crate opens no file; what it reads comes from the host's [`World`].
+//! Invariant: this crate opens no file; the host's [`World`] reads them.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,4 +1,4 @@
-//! Where objects and numbers are in the text, for those who change a model by hand.
+//! Positions of objects and numbers in the text, for interactive changes.
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, Span};
@@ -6,15 +6,15 @@ use moldloft_lang::run::program::{self, ArgumentInText};
 use moldloft_syntax::sdl::StmtKind;
 
 impl Document {
-    /// The name of an object where it is declared, when that is in the main text.
+    /// Span of the name of an object in its declaration; `None` outside the main text.
     pub fn declaration(&self, name: &str) -> Option<Span> {
         let graph = self.graph();
         let span = self.declared_at(&self.plain, graph.get(graph.find(name)?)?)?;
         (self.sources.ids().next() == Some(span.file)).then_some(span)
     }
 
-    /// Where an argument of an object is in the main text, or could be; nothing for model files and for objects that
-    /// share their statement with others.
+    /// Position of an argument of an object in the main text, or where it can be inserted; `None`
+    /// for model files and for objects that share their statement with others.
     pub fn argument_place(&self, object: &str, field: &str) -> Option<ArgumentInText> {
         if !matches!(self.source, ObjectSource::Program) {
             return None;
@@ -25,10 +25,10 @@ impl Document {
         program::argument_place(&self.modules, &self.plain.env, object, field)
     }
 
-    /// Whether [`Document::set`] can change the number of an object, such as `P21.y`.
+    /// Succeeds when [`Document::set`] can change the number of an object, such as `P21.y`.
     ///
     /// # Errors
-    /// Why it cannot, and what else to set.
+    /// The reason, and an alternative to set.
     pub fn settable(&self, name: &str) -> Result<(), Diagnostic> {
         self.literal(name, 0.0).map(drop)
     }
@@ -38,8 +38,8 @@ impl Document {
         self.param_literal(name).is_some()
     }
 
-    /// Writes changed values of parameters into the text, where it states them as numbers; what cannot be
-    /// written stays as it was set. Returns the names of both.
+    /// Writes changed values of parameters into the text where it states them as numbers; the
+    /// others stay set. Returns the names of the written and the other parameters.
     pub fn write_params(&mut self) -> (Vec<String>, Vec<String>) {
         let set: Vec<(String, f64)> = self.overrides.iter().map(|(n, x)| (n.clone(), *x)).collect();
         let (mut written, mut kept) = (Vec::new(), Vec::new());
@@ -56,7 +56,7 @@ impl Document {
         (written, kept)
     }
 
-    /// Parameters take the values of the text again, all but those named; the next run shows it.
+    /// Resets all parameters except `but` to the values of the text, from the next run on.
     pub fn forget_params(&mut self, but: &[String]) {
         self.overrides.retain(|name, _| but.contains(name));
     }

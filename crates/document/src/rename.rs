@@ -7,18 +7,18 @@ use moldloft_model::Applied;
 use moldloft_syntax::sdl::{self, ExprId, ExprKind, StmtId, StmtKind, Symbol};
 
 impl Document {
-    /// Deletes an object that nothing is built on, and its statement.
+    /// Deletes an object without dependents, and its statement.
     ///
     /// # Errors
-    /// When there is no such object, something is built on it or reads it, or its statement makes
-    /// others too.
+    /// If there is no such object, other objects or expressions depend on it, or its statement
+    /// declares other objects as well.
     pub fn delete(&mut self, name: &str) -> Result<Applied, Diagnostic> {
         if matches!(self.source, ObjectSource::ModelFile(_)) {
             return self.delete_line(name);
         }
         let (stmt, span) = self.sole_statement(name)?;
         let graph = self.graph();
-        // A component or the call of a subroutine has a name, but is not an object.
+        // A component or a named subroutine call is not an object.
         let object = graph.find(name).and_then(|key| graph.get(key));
         if let Some(object) = object.filter(|o| !o.children.is_empty()) {
             let names: Vec<_> = object.children.iter().filter_map(|&c| graph.get(c)).collect();
@@ -41,7 +41,7 @@ impl Document {
         let whole = m.program[stmt].span;
         let mut text = m.program.text_with_edits();
         if m.program.is_edited() {
-            // Places moved with the edited numbers: take the text as it is now and look again.
+            // Edited numbers have moved positions: run the current text and search again.
             self.set_text(&text);
             return self.delete(name);
         }
@@ -58,8 +58,8 @@ impl Document {
     /// Renames an object everywhere in the text.
     ///
     /// # Errors
-    /// When there is no such object, the new name is taken or no name, or the old one means
-    /// something else as well.
+    /// If there is no such object, the new name is taken or invalid, or the old name has another
+    /// meaning as well.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<Applied, Diagnostic> {
         if matches!(self.source, ObjectSource::ModelFile(_)) {
             return self.rename_line(old, new);
@@ -105,7 +105,7 @@ impl Document {
         Ok(self.set_text(&text))
     }
 
-    /// Takes edited numbers into the text of a model file, so that places are those of the text.
+    /// Writes edited numbers into the text of a model file, so that positions refer to that text.
     fn settle_model_file(&mut self) {
         if let ObjectSource::ModelFile(source) = &self.source
             && source.model().is_edited()
@@ -213,7 +213,7 @@ impl Document {
         }
     }
 
-    /// The statement of the main file that makes this object and no other, and where it is named.
+    /// The statement of the main file that declares this object only, and the span of its name.
     pub(crate) fn sole_statement(&self, name: &str) -> Result<(StmtId, Span), Diagnostic> {
         let graph = self.graph();
         let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else {
@@ -252,7 +252,7 @@ impl Document {
     }
 }
 
-/// Where a name is used in expressions.
+/// Uses of a name in expressions.
 fn uses(m: &Module, symbol: Symbol) -> Vec<Span> {
     (0..m.program.expr_count() as u32)
         .map(|k| &m.program[ExprId(k)])
@@ -261,7 +261,7 @@ fn uses(m: &Module, symbol: Symbol) -> Vec<Span> {
         .collect()
 }
 
-/// Where a name is declared as a variable, parameter, argument or routine.
+/// Declaration of a name as a variable, parameter, argument or routine.
 fn other_meaning(m: &Module, symbol: Symbol) -> Option<Span> {
     for routine in m.program.routines() {
         let formals = m.program[routine.formals].iter().map(|f| f.name);

@@ -1,7 +1,6 @@
 //! Nearest points and intersections of a model's curves and surfaces, for many points at once.
-//!
-//! Shapes are prepared for searches once, and kept by the name of their object as long as it has the
-//! same shape. Answers do not depend on what is kept.
+//! Shapes are prepared for searches once and cached by the name of their object while its shape is
+//! unchanged. Results do not depend on the cache.
 
 use moldloft_budget::Budget;
 use moldloft_locate::branches::{Branches, CutSurface};
@@ -15,10 +14,10 @@ use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Points that a thread answers at a time.
+/// Points per task of a thread.
 const CHUNK: usize = 256;
 
-/// Prepared shapes that are kept.
+/// Maximum number of cached shapes.
 const KEPT: usize = 64;
 
 /// Shapes prepared for searches.
@@ -27,7 +26,7 @@ pub struct Searches {
     kept: Mutex<SearchCache>,
 }
 
-/// By the name of the object, each with the shape that it was made from.
+/// By the name of the object, each with the shape it was prepared from.
 #[derive(Default)]
 struct SearchCache {
     surfaces: HashMap<String, (SurfaceRef<f64>, Arc<NearestSurface>)>,
@@ -43,7 +42,7 @@ pub enum NearestPoints {
     Surface(Vec<Nearest<2>>),
 }
 
-/// What something is intersected with.
+/// The second operand of an intersection.
 pub enum With {
     /// A plane.
     Plane(Plane<f64>),
@@ -53,27 +52,27 @@ pub enum With {
     Surface(SurfaceRef<f64>, Arc<CutSurface>),
 }
 
-/// Where two things meet.
+/// Result of an intersection.
 pub enum Meeting {
-    /// In points.
+    /// Points.
     Points(CommonPoints),
-    /// In curves; true when both are surfaces with parameters.
+    /// Curves; true when both operands are parametric surfaces.
     Branches(Branches, bool),
 }
 
 /// Isolated common points.
 pub struct CommonPoints {
-    /// The parameters of the first at each, `widths[0]` of them.
+    /// Parameters of the first operand at each point, `widths[0]` each.
     pub ours: Vec<Vec<f64>>,
-    /// The parameters of the second at each, `widths[1]` of them.
+    /// Parameters of the second operand at each point, `widths[1]` each.
     pub theirs: Vec<Vec<f64>>,
-    /// Numbers of parameters.
+    /// Number of parameters of each operand.
     pub widths: [usize; 2],
-    /// Where they are.
+    /// Positions.
     pub xyz: Vec<Vec3>,
-    /// True where the two touch.
+    /// True at points of tangential contact.
     pub tangent: Vec<bool>,
-    /// True when there are no others.
+    /// True when all common points were found.
     pub complete: bool,
 }
 
@@ -128,11 +127,11 @@ impl Searches {
         self.prepared(name, surface, |kept| &mut kept.cuts, SurfaceRef::same, prepare)
     }
 
-    /// Where a curve or surface meets something; `None` for anything else.
+    /// Intersection of a curve or surface with something; `None` for other values.
     pub fn intersection(&self, name: &str, value: &Value<f64>, with: &With) -> Option<Meeting> {
         Some(match (value, with) {
             (Value::Surface(surface), With::Curve(curve)) => {
-                // Ours are u and v, theirs is t.
+                // The first operand has u and v, the second t.
                 CommonPoints::of(&all_curve_surface(&**curve, &**surface), &[1, 2], &[0])
             }
             (Value::Surface(surface), With::Plane(plane)) => {
@@ -160,7 +159,7 @@ impl Searches {
         })
     }
 
-    /// The prepared shape of an object: that of an earlier call, when the object is still the same.
+    /// The prepared shape of an object, from the cache if the object is unchanged.
     fn prepared<S: Clone, P>(
         &self,
         name: &str,
@@ -186,7 +185,7 @@ impl Searches {
     }
 }
 
-/// Answers of many points, in their order.
+/// Results for many points, in order.
 fn answered<const N: usize>(
     points: &[Vec3],
     budget: &Budget,
@@ -201,7 +200,7 @@ fn answered<const N: usize>(
     if points.len() <= CHUNK {
         return chunk(points);
     }
-    // Neighbours share what is near them.
+    // Consecutive points should be near each other, so that they share search results.
     let order = by_place(points);
     let sorted: Vec<Vec3> = order.iter().map(|&k| points[k as usize]).collect();
     let found: Vec<Nearest<N>> = sorted.par_chunks(CHUNK).flat_map_iter(chunk).collect();

@@ -1,4 +1,5 @@
-//! Direct edits: parameters and literals of objects set to numbers, as the text itself would say them.
+//! Direct edits: parameters and literals of objects set to numbers, equivalent to an edit of the
+//! text.
 
 use crate::document::{Document, ObjectSource};
 use crate::{degenerate, faired};
@@ -9,11 +10,11 @@ use moldloft_model::{Applied, Extent};
 use moldloft_registry::{Class, Value};
 
 impl Document {
-    /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates what they
-    /// reach.
+    /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates the objects
+    /// that depend on them.
     ///
     /// # Errors
-    /// What is wrong with the assignments; the model is then as before.
+    /// The errors of the assignments; the model is unchanged.
     pub fn set(&mut self, assignments: &[(String, f64)]) -> Result<Applied, Vec<Diagnostic>> {
         self.complete()?;
         let before = self.overrides.clone();
@@ -21,7 +22,7 @@ impl Document {
         let mut errors = Vec::new();
         let mut rerun = false;
         for (name, value) in assignments {
-            // Minus zero is written as zero, so it is zero.
+            // Minus zero is written as zero.
             let value = &(value + 0.0);
             if self.params().iter().any(|p| p.name == *name) {
                 if let Err(diagnostic) = self.check_param(name, *value) {
@@ -40,7 +41,7 @@ impl Document {
             self.overrides = before;
             return Err(errors);
         }
-        // Conditions may have changed.
+        // Conditions of solve sets may have changed.
         rerun |= !self.solved.is_empty();
         for edit in &edits {
             rerun |= edit.within || self.must_rerun(edit);
@@ -75,8 +76,9 @@ impl Document {
         }
     }
 
-    /// The numbers in the expression that `name` (`P21.y`) is given by, with the derivative of the expression by each:
-    /// those by which it, or its reciprocal, is of first degree, such as 5.046 in `5.046 * beam` and 2 in `beam / 2`.
+    /// The coefficients in the expression that defines `name` (`P21.y`), with the derivative of the
+    /// expression with respect to each: numbers in which the expression or its reciprocal is
+    /// linear, such as 5.046 in `5.046 * beam` and 2 in `beam / 2`.
     pub fn coefficients(&mut self, name: &str) -> Vec<LiteralCoefficient> {
         let Some((span, literals)) = self.literals_within(name) else { return Vec::new() };
         let program = &self.modules.get(0).program;
@@ -123,7 +125,7 @@ impl Document {
         found
     }
 
-    /// The place of the expression that a number of an object is given by, and the numbers in it.
+    /// Span of the expression that defines a number of an object, and the literals in it.
     fn literals_within(&self, name: &str) -> Option<(Span, Vec<moldloft_syntax::sdl::LiteralId>)> {
         if !matches!(self.source, ObjectSource::Program) {
             return None;
@@ -133,10 +135,10 @@ impl Document {
         program::literals_within(&self.modules, &self.plain.env, object, &path)
     }
 
-    /// The object and the argument that `P21.y` means.
+    /// The object and the argument that a name such as `P21.y` refers to.
     fn number_path(&self, name: &str) -> Option<(moldloft_num::trace::Key, NumberPath)> {
         let graph = &self.plain.graph;
-        // The object's own name may contain dots: the longest that is one wins.
+        // Object names may contain dots: the longest match wins.
         let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
         let (key, path) =
             split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)))?;
@@ -161,7 +163,7 @@ impl Document {
         Some((value?, range))
     }
 
-    /// The literal that `name` (`P21.y`) means, or the one in its expression that `P21.y#1` means.
+    /// The literal that `P21.y` refers to, or that in its expression which `P21.y#1` refers to.
     pub(crate) fn literal(&self, name: &str, value: f64) -> Result<LiteralEdit, Diagnostic> {
         if let Some((base, at)) = coefficient_name(name)
             && value.is_finite()
@@ -178,7 +180,7 @@ impl Document {
                 .found(value.to_string()));
         }
         let graph = &self.plain.graph;
-        // The object's own name may contain dots: the longest that is one wins.
+        // Object names may contain dots: the longest match wins.
         let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
         let found =
             split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
@@ -235,7 +237,7 @@ impl Document {
         Ok(LiteralEdit { key, path, place, value, within: false })
     }
 
-    /// The edit, when a run of the edited text would take the number.
+    /// The edit, if a run of the edited text would accept the number.
     fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
         if edit.within {
             return Ok(edit);
@@ -324,7 +326,7 @@ impl Document {
                 let Some(object) = run.graph().get(edit.key) else { continue };
                 let mut args = object.args.clone();
                 if edit.path.change(&mut args, |_| edit.value).is_some() {
-                    // The parents stay the same, so no cycle can arise.
+                    // The parents are unchanged, so there is no cycle.
                     let _ = run.set_args(edit.key, args);
                 }
             }
@@ -348,20 +350,20 @@ impl Document {
     }
 }
 
-/// A number in the expression of another, such as 5.046 in `y = 5.046 * beam`.
+/// A coefficient in the expression of a number, such as 5.046 in `y = 5.046 * beam`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LiteralCoefficient {
-    /// Its name: that of the number, `#`, and its place in the expression from 1, as in `P21.y#1`.
+    /// Its name: that of the number, `#`, and its index in the expression from 1, as in `P21.y#1`.
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// The derivative of the expression by it.
+    /// Derivative of the expression with respect to it.
     pub slope: f64,
-    /// Its place in the text.
+    /// Its position in the text.
     pub span: Span,
 }
 
-/// Second differences below this share of the values are rounding.
+/// Second differences, relative to the values, that are rounding.
 const STRAIGHT: f64 = 1e-12;
 
 /// `P21.y#1` is the first number in the expression of `P21.y`.
@@ -380,7 +382,7 @@ pub(crate) struct LiteralEdit {
     pub within: bool,
 }
 
-/// Where a number stands.
+/// Position of a number.
 pub(crate) enum LiteralPlace {
     Program((usize, moldloft_syntax::sdl::LiteralId)),
     ModelFile(moldloft_lang::model_file::ModelNumber),

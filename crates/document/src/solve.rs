@@ -1,18 +1,16 @@
-//! Solve sets: parameters that are found so that conditions hold.
+//! Solve sets: parameters determined by conditions.
 //!
 //! `param float x = 2 in [0, 5]; ... SolveSet s({x}, {hull.volume - 100});`
-//!
-//! The unknowns are parameters, so whatever is built on them is built on their solution, and no
-//! cycle can arise: a condition is any number of the program that comes out of them. The document
-//! runs the program with the unknowns at their written values, reads the conditions, and takes
-//! damped Newton steps with the Jacobian of a run with dual numbers until they vanish. A run with
-//! derivatives seeds the unknowns with dx/dp = -(G_x)^-1 G_p (implicit function theorem), so that
-//! everything downstream differentiates exactly.
-//!
-//! The answer depends on the text and the parameters' given values only: each run starts from
-//! these. There are as many conditions as unknowns: a least-squares answer would have no exact
-//! derivatives from first ones. Several sets are solved one after the other; a condition may depend
-//! on the unknowns of its own set and of those before.
+//! The unknowns are parameters, and a condition is any number of the program that depends on them;
+//! all dependents use the solution, so there is no cycle. The document runs the program with the
+//! unknowns at their written values, evaluates the conditions, and takes damped Newton steps with
+//! the Jacobian of a run with dual numbers until the conditions vanish. A run with derivatives
+//! seeds the unknowns with dx/dp = -(G_x)^-1 G_p (implicit function theorem), so that everything
+//! downstream differentiates exactly.
+//! The solution depends only on the text and the given values of parameters: each run starts from
+//! these. There are as many conditions as unknowns: derivatives of a least-squares solution would
+//! need second derivatives. Several sets are solved in order; a condition may depend on the
+//! unknowns of its own set and of earlier ones.
 
 use crate::document::Document;
 use indexmap::IndexMap;
@@ -28,30 +26,29 @@ pub struct SolveReport {
     pub name: String,
     /// The unknowns.
     pub unknowns: Vec<String>,
-    /// Where the search began.
+    /// Initial values.
     pub starts: Vec<f64>,
-    /// Where it ended.
+    /// Final values.
     pub values: Vec<f64>,
-    /// The conditions there.
+    /// The conditions at the final values.
     pub residuals: Vec<f64>,
-    /// How many steps were taken.
+    /// Number of Newton steps.
     pub iterations: usize,
-    /// How it ended.
+    /// Status of the solution.
     pub status: SolveStatus,
-    /// The derivatives of the conditions by the unknowns there, by rows.
+    /// Jacobian of the conditions at the final values, by rows.
     pub(crate) jacobian: Vec<Vec<f64>>,
     /// The declaration.
     span: Span,
 }
 
-/// A step smaller than this share of the unknowns' sizes ends the search: the error of the next is
-/// its square.
+/// Step, relative to the unknowns, that ends the iteration: the error after it is its square.
 const SMALL_STEP: f64 = 1e-10;
 
-/// Where rounding hides any progress, a step smaller than this will do.
+/// Sufficient step where rounding prevents further progress.
 const ROUNDED_STEP: f64 = 1e-7;
 
-/// A step is halved at most that many times.
+/// Maximum number of halvings of a step.
 const HALVINGS: usize = 24;
 
 impl Document {
@@ -60,7 +57,7 @@ impl Document {
         &self.solved
     }
 
-    /// Solves all sets of the run that was made, and runs the model with the solution.
+    /// Solves all sets of the last run, and runs the model with the solution.
     pub(crate) fn solve(&mut self) {
         let count = self.plain.env.solves.len();
         let unknowns = self.plain.env.solves.iter().flat_map(|s| &s.unknowns);
@@ -68,7 +65,7 @@ impl Document {
         let mut values: IndexMap<String, f64> = IndexMap::new();
         let mut reports: Vec<SolveReport> = Vec::new();
         for at in 0..count {
-            // What failed before leaves its unknowns where they were.
+            // A failed set leaves its unknowns unchanged.
             let report = self.solve_one(at, &mut values);
             reports.push(report);
         }
@@ -96,14 +93,14 @@ impl Document {
         self.plain = evaluation;
     }
 
-    /// The conditions of set `at` of the last run; `None` when it came to none.
+    /// The conditions of set `at` in the last run; `None` if the run did not evaluate them.
     fn conditions(&self, at: usize, unknowns: usize) -> Option<Vec<f64>> {
         let solve = self.plain.env.solves.get(at)?;
         let finite = solve.conditions.iter().all(|c| c.is_finite());
         (finite && solve.conditions.len() == unknowns).then(|| solve.conditions.clone())
     }
 
-    /// The derivatives of the conditions of set `at` by parameters, as rows.
+    /// The derivatives of the conditions of set `at` with respect to parameters, by rows.
     fn conditions_by(
         &mut self,
         at: usize,
@@ -191,7 +188,7 @@ impl Document {
                 .iter()
                 .map(|row| row.iter().enumerate().map(|(j, d)| d * size(&x, j)).collect())
                 .collect();
-            // Conditions may have different units: each counts by what the unknowns do to it.
+            // Conditions may have different units: each is scaled by the effect of the unknowns.
             let weights = weights.get_or_insert_with(|| {
                 let largest = |row: &Vec<f64>| row.iter().fold(0.0f64, |m, d| m.max(d.abs()));
                 scaled.iter().map(|row| 1.0 / largest(row).max(f64::MIN_POSITIVE.sqrt())).collect()
@@ -284,8 +281,8 @@ impl Document {
         found
     }
 
-    /// The derivatives of all unknowns in the directions of `seed`, which gives parameters and
-    /// literals theirs.
+    /// The derivatives of all unknowns in the directions that `seed` gives for parameters and
+    /// literals.
     pub(crate) fn seeded_unknowns(
         &mut self,
         evaluation: &mut moldloft_lang::source::env::Evaluation<Dual4>,
@@ -369,7 +366,7 @@ impl SolveReport {
         )
     }
 
-    /// An unknown that changes no condition.
+    /// An unknown without effect on any condition.
     fn without_effect(&self) -> Option<&str> {
         let still = |j: &usize| self.jacobian.iter().all(|row| row[*j] == 0.0);
         (0..self.unknowns.len()).find(still).map(|j| self.unknowns[j].as_str())

@@ -1,20 +1,20 @@
-//! Numbers of the model that are given: chosen parameters follow by exact derivatives.
+//! Target values for numbers of the model: chosen parameters are adjusted with exact derivatives.
 //!
-//! `hydrostatics.volume = 130 and hydrostatics.lcb = 5.9 by beam, depth and draft`: of all values within the ranges
-//! that give these numbers, those of the least weighted change ([`follow`]). A number that they do not reach is an error
-//! that states how far it goes.
+//! `hydrostatics.volume = 130 and hydrostatics.lcb = 5.9 by beam, depth and draft`: of all values
+//! within the ranges that give these numbers, those of the least weighted change ([`follow`]). An
+//! unreachable target is an error that states the reachable range.
 
 use crate::document::Document;
 use crate::follow::{Conditions, FollowSearch, Followed, FollowingNumber, follow};
 use moldloft_diag::Diagnostic;
 use moldloft_registry::Value;
 
-/// A number of the model, and what it is to be.
+/// A number of the model and its target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedNumber {
     /// The number as an expression.
     pub expression: String,
-    /// Its value.
+    /// The target value.
     pub value: f64,
 }
 
@@ -23,13 +23,13 @@ pub struct WantedNumber {
 pub struct Adjustable {
     /// Its name.
     pub name: String,
-    /// How much its change over its range counts beside the others'.
+    /// Weight of its change over its range.
     pub weight: f64,
-    /// The value from which its change is counted; the present one without it.
+    /// The value from which its change is measured; by default the current one.
     pub home: Option<f64>,
 }
 
-/// A number that has followed.
+/// An adjusted number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adjustment {
     /// Its name.
@@ -38,37 +38,37 @@ pub struct Adjustment {
     pub before: f64,
     /// Its value now.
     pub after: f64,
-    /// Its part of the weighted change, 0 to 1.
+    /// Its fraction of the weighted change, 0 to 1.
     pub share: f64,
 }
 
-/// What came of it.
+/// Result of an adjustment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolvedNumbers {
-    /// The numbers that have followed.
+    /// The adjusted numbers.
     pub adjustments: Vec<Adjustment>,
     /// The values of the targets' expressions.
     pub reached: Vec<f64>,
-    /// How many steps were taken.
+    /// Number of steps.
     pub steps: usize,
 }
 
-/// A target is met when it is off by less than this share of its value, or of what the numbers do to it.
+/// Tolerance of a target, relative to its value or to the effect of the numbers on it.
 const ACCURACY: f64 = 1e-8;
 
-/// Steps of one search.
+/// Maximum number of steps of one search.
 const MOST_STEPS: usize = 40;
 
-/// The numbers found have digits for this share of their ranges.
+/// Rounding of the adjusted numbers, relative to their ranges.
 const DIGITS: f64 = 1e-11;
 
-/// How far beyond what the numbers do by their derivatives the ends of a reachable range are looked for.
+/// Extent of the search for the ends of a reachable range, in multiples of the linear prediction.
 const BEYOND: f64 = 3.0;
 
-/// The importance of the target whose range is looked for beside those that are held.
+/// Weight of the target whose range is searched for, relative to the other targets, which are held.
 const GIVES_WAY: f64 = 1e-3;
 
-/// Those count as held within this share of their values.
+/// Relative tolerance within which the other targets are held.
 const HELD: f64 = 1e-4;
 
 struct Wish<'a> {
@@ -97,12 +97,12 @@ impl Conditions for Wish<'_> {
 }
 
 impl Document {
-    /// Gives numbers of the model the values of `targets` by the least weighted change of the numbers `by`, within
-    /// their ranges. The model has these values then, as after [`Document::set`].
+    /// Brings numbers of the model to `targets` by the least weighted change of the numbers `by`
+    /// within their ranges, and sets these as [`Document::set`] does.
     ///
     /// # Errors
-    /// `out-of-reach` with the range that was found when the targets are not met, besides all that is wrong with names and
-    /// expressions; the model is as before then.
+    /// `out-of-reach` with the reachable range if the targets cannot be met, and errors in names
+    /// and expressions; the model is then unchanged.
     pub fn solve_for(
         &mut self,
         targets: &[WantedNumber],
@@ -157,7 +157,7 @@ impl Document {
         }
     }
 
-    /// The values of expressions, which are numbers.
+    /// The values of numeric expressions.
     fn numbers(&mut self, expressions: &[String]) -> Result<Vec<f64>, Vec<Diagnostic>> {
         let mut numbers = Vec::with_capacity(expressions.len());
         for text in expressions {
@@ -237,7 +237,7 @@ fn width(f: &FollowingNumber) -> f64 {
     }
 }
 
-/// From the present values, and when these lead nowhere from the middle of the ranges.
+/// Searches from the current values, and if that fails from the middle of the ranges.
 fn search(
     wish: &mut Wish<'_>,
     followers: &[FollowingNumber],
@@ -271,19 +271,19 @@ fn search(
     }
 }
 
-/// The target that is missed most, if one is.
+/// The target with the largest miss, if any is missed.
 fn missed(targets: &[WantedNumber], found: &Followed) -> Option<usize> {
     let off = |k: usize| {
         let scale = targets[k].value.abs().max(found.reach.get(k).copied().unwrap_or(0.0));
         if found.left[k] == 0.0 { 0.0 } else { (found.left[k] / scale).abs() }
     };
     let worst = (0..targets.len()).max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
-    // Written so that what is not a number is missed.
+    // NaN compares as missed.
     if off(worst) <= ACCURACY { None } else { Some(worst) }
 }
 
 impl Wish<'_> {
-    /// Numbers with no more digits than matter.
+    /// Rounds the numbers to the digits that matter.
     fn round(&mut self, followers: &[FollowingNumber], found: &mut Followed) {
         let rounded: Vec<f64> = followers
             .iter()
@@ -304,7 +304,7 @@ impl Wish<'_> {
         }
     }
 
-    /// Why the targets are not met: how far the one that is missed most goes with the others held.
+    /// The error for missed targets: the reachable range of the worst one with the others held.
     fn refusal(
         &mut self,
         targets: &[WantedNumber],
@@ -352,7 +352,7 @@ impl Wish<'_> {
         }
     }
 
-    /// The least and the largest value of a target that were found, the others held.
+    /// Minimum and maximum found for a target, with the others held.
     fn ends(
         &mut self,
         at: usize,
@@ -370,7 +370,7 @@ impl Wish<'_> {
             let step = BEYOND * reach[at].max(wished[at].abs());
             self.values[at] = wished[at] + sign * step;
             let mut x = begin.to_vec();
-            // The second search begins where the first one ends.
+            // The second search starts from the result of the first.
             for _ in 0..2 {
                 let Ok(found) = follow(self, followers, &x, how) else { break };
                 x = found.x;
@@ -396,7 +396,7 @@ fn short(x: f64) -> String {
     round_to(x, 1e-6 * x.abs()).to_string()
 }
 
-/// A number near `x` with as few digits as `worth` allows: a multiple of a power of ten.
+/// `x` rounded to a multiple of a power of ten not larger than `worth`.
 pub fn round_to(x: f64, worth: f64) -> f64 {
     if !(worth > 0.0 && worth.is_finite() && x.is_finite()) {
         return x;
@@ -405,7 +405,7 @@ pub fn round_to(x: f64, worth: f64) -> f64 {
     let spelled = format!("{worth:e}");
     let power = spelled.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
     let Some(decimals) = power.map(|p| -p).filter(|d| (-15..=15).contains(d)) else { return x };
-    // Through its decimal spelling, so that the nearest number to it comes out.
+    // By way of decimal text, so that the result is the nearest float to the decimal number.
     if decimals >= 0 {
         return format!("{x:.*}", decimals as usize).parse().map_or(x, |y: f64| y + 0.0);
     }

@@ -1,15 +1,16 @@
-//! New statements, where they belong in the text.
+//! Insertion of new statements into the text.
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, FileId};
 use moldloft_syntax::sdl::{self, StmtId, StmtKind};
 
 impl Document {
-    /// Writes a statement into the text: behind the last statement of its kind and those that it reads, or at the end.
+    /// Inserts a statement after the last statement of its kind and after those that it depends on,
+    /// or at the end.
     ///
     /// # Errors
-    /// When it is no statement of the language, makes an object that fails or has a name that is taken; the model is as
-    /// before then.
+    /// If it is not a statement, its object fails, or its name is taken; the model is then
+    /// unchanged.
     pub fn add(&mut self, statement: &str) -> Result<(), Diagnostic> {
         let statement = statement.trim();
         let (parsed, faults) = sdl::parse(statement.to_string(), FileId(0));
@@ -61,10 +62,10 @@ impl Document {
         Ok(())
     }
 
-    /// Writes a statement like that of an object, under a new name, behind it; the new name.
+    /// Copies the statement of an object, after it and under a new name; returns the name.
     ///
     /// # Errors
-    /// When its statement makes others too, or stands elsewhere.
+    /// If the statement declares other objects as well, or is in another file.
     pub fn duplicate(&mut self, name: &str) -> Result<String, Diagnostic> {
         let (stmt, _) = self.sole_statement(name)?;
         if self.modules.get(0).program.is_edited() {
@@ -95,7 +96,7 @@ impl Document {
             || program.symbol(name).is_some()
     }
 
-    /// The text with a statement where it belongs.
+    /// The text with the statement inserted.
     fn with(&self, statement: &str, kind: Option<&str>, name: &str) -> String {
         let program = &self.modules.get(0).program;
         let mut text = program.text().to_string();
@@ -110,7 +111,7 @@ impl Document {
             StmtKind::Param { name, .. } => {
                 kind.is_none() || words.contains(&program.name(name.symbol))
             }
-            // The header comes first.
+            // The header stays first.
             _ => {
                 let inside = program[**id].span.range();
                 text[inside].split(|c| !word(c)).any(|w| words.contains(&w))
@@ -118,7 +119,7 @@ impl Document {
         });
         match behind {
             Some(id) => insert_behind(&mut text, program[*id].span.end as usize, statement),
-            // Parameters come before what reads them.
+            // Parameters come before their uses.
             None if kind.is_none() => {
                 let first = program[program.body()].iter().find(|id| {
                     !matches!(program[**id].kind, StmtKind::Object { kind, .. } if program.name(kind.symbol) == "Model")
@@ -138,7 +139,7 @@ impl Document {
     }
 }
 
-/// On a line of its own where nothing else follows on that of the statement before.
+/// Inserts the statement on a line of its own if the previous statement ends its line.
 fn insert_behind(text: &mut String, at: usize, statement: &str) {
     let line = text[at..].find('\n').map_or(text.len(), |k| at + k);
     let rest = text[at..line].trim_start();

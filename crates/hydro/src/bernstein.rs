@@ -1,11 +1,12 @@
-//! Polynomials of one variable on [0, 1] in Bernstein form: values, slopes, halves, roots.
+//! Polynomials in one variable on [0, 1] in Bernstein form: values, derivatives, subdivision,
+//! roots.
 
 use moldloft_num::{Real, Vec3};
 
-/// The highest degree.
+/// Maximum degree.
 pub(crate) const MOST_DEGREE: usize = 10;
 
-/// A row of coefficients without allocation.
+/// A row of coefficients on the stack.
 pub(crate) type Row<T> = [T; MOST_DEGREE + 1];
 
 /// The Bernstein polynomials of a degree at `t`, and their derivatives.
@@ -36,7 +37,7 @@ pub(crate) fn basis<T: Real>(degree: usize, t: T) -> (Row<T>, Row<T>) {
     (b, slope)
 }
 
-/// The value and the slope of a polynomial at `t`.
+/// The value and the derivative of a polynomial at `t`.
 #[inline]
 pub(crate) fn value_and_slope<T: Real>(row: &[T], t: T) -> (T, T) {
     let (b, slope) = basis(row.len() - 1, t);
@@ -48,7 +49,7 @@ pub(crate) fn value_and_slope<T: Real>(row: &[T], t: T) -> (T, T) {
     sums
 }
 
-/// The place and the tangent of a Bezier curve at `t`.
+/// The point and the tangent of a Bézier curve at `t`.
 #[inline]
 pub(crate) fn place_and_tangent<T: Real>(row: &[Vec3<T>], t: T) -> (Vec3<T>, Vec3<T>) {
     let (b, slope) = basis(row.len() - 1, t);
@@ -60,9 +61,9 @@ pub(crate) fn place_and_tangent<T: Real>(row: &[Vec3<T>], t: T) -> (Vec3<T>, Vec
     sums
 }
 
-/// A number or a point: what coefficients may be.
+/// A coefficient: a number or a point.
 pub(crate) trait Coefficient: Copy {
-    /// Half-way to another.
+    /// Midpoint to another coefficient.
     fn half_way(self, other: Self) -> Self;
 }
 
@@ -94,11 +95,12 @@ pub(crate) fn halves<C: Coefficient>(row: &[C]) -> [Vec<C>; 2] {
     [low, high]
 }
 
-/// Intervals are halved this often at most; a root of higher order is the middle of the last.
+/// Maximum depth of bisection; a multiple root is the middle of the last interval.
 const DEEPEST: u32 = 44;
 
-/// The roots in (0, 1) at which the polynomial may change its sign, ascending: every one is in it, as the number
-/// of sign changes of the coefficients bounds their number. Coefficients within `epsilon` count as zero.
+/// The roots in (0, 1) at which the polynomial may change sign, ascending. None is missed, since
+/// the sign changes of the coefficients bound their number. Coefficients within `epsilon` count as
+/// zero.
 pub(crate) fn sign_changes(row: &[f64], epsilon: f64) -> Vec<f64> {
     let mut found = Vec::new();
     let mut stack = vec![(row.to_vec(), 0.0, 1.0, 0u32)];
@@ -131,7 +133,8 @@ pub(crate) fn sign_changes(row: &[f64], epsilon: f64) -> Vec<f64> {
     found
 }
 
-/// The one root of a polynomial of different signs at the ends: Newton steps within a bracket.
+/// The root of a polynomial with a single sign change and opposite signs at the ends, by bracketed
+/// Newton steps.
 pub(crate) fn bracketed(row: &[f64]) -> f64 {
     let rising = row[row.len() - 1] > 0.0;
     let (mut low, mut high) = (0.0, 1.0);

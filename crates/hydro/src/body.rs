@@ -1,4 +1,5 @@
-//! A body: the cells of its skin, its open rims, and what is known of their distance to the surfaces.
+//! A body: the cells of its skin, its open rims, and bounds on the distance between cells and
+//! surfaces.
 
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
@@ -7,17 +8,18 @@ use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
 use std::sync::Arc;
 
-/// The accuracy, relative, to which figures are computed unless another is asked for.
+/// Default relative accuracy of figures.
 pub const USUAL_ACCURACY: f64 = 1e-6;
 
-/// Quadrature and interpolation are asked for this share of the accuracy, so that figures made of several
-/// integrals, and equations between them, keep it.
+/// Accuracy of quadrature and interpolation, relative to that of figures, which combine several
+/// integrals.
 const SHARE: f64 = 1e-2;
 
-/// Below this relative error rounding hides what finer rules gain.
+/// Relative error at which rounding exceeds the gain of finer rules.
 const FINEST: f64 = 1e-11;
 
-/// Within this share of its size rims lie in a plane: far above rounding, far below any panel.
+/// Tolerance of rims in a plane, relative to the size of the body: far above rounding, far below a
+/// panel.
 const SAME_PLACE: f64 = 1e-9;
 
 /// A surface that bounds a body.
@@ -25,9 +27,9 @@ const SAME_PLACE: f64 = 1e-9;
 pub struct HullSide<'a, T: Real> {
     /// The surface.
     pub surface: &'a dyn Surface<T>,
-    /// True when its outward normal is against S_u x S_v.
+    /// True when its outward normal is -S_u x S_v.
     pub reversed: bool,
-    /// The edges v = 0, u = 1, v = 1, u = 0 that nothing joins.
+    /// True for each of the edges v = 0, u = 1, v = 1, u = 0 that is not joined.
     pub open_edges: [bool; 4],
 }
 
@@ -35,7 +37,7 @@ pub struct HullSide<'a, T: Real> {
 #[derive(Clone, Debug)]
 pub struct Body<T> {
     cells: Vec<Arc<PolynomialCell<T>>>,
-    /// Control points of curves along which the skin is open.
+    /// Control points of the open edges of the skin.
     rims: Vec<Vec<Vec3<T>>>,
     size: f64,
     accuracy: f64,
@@ -48,7 +50,7 @@ pub struct BodyMeasures<T> {
     pub area: T,
     /// Centre of the skin's area.
     pub area_centre: Vec3<T>,
-    /// Volume inside, meaningful when the skin is closed.
+    /// Enclosed volume; meaningful for a closed skin.
     pub volume: T,
     /// Centre of the volume.
     pub centroid: Vec3<T>,
@@ -58,7 +60,7 @@ pub struct BodyMeasures<T> {
     pub open: f64,
 }
 
-/// Area, volume and centres of one surface; `None` when it has a place that is not finite.
+/// Area, volume and centres of one surface; `None` if a point is not finite.
 pub fn surface_measures<T: Real>(
     surface: &dyn Surface<T>,
     accuracy: f64,
@@ -75,8 +77,8 @@ pub fn surface_measures<T: Real>(
 }
 
 impl<T: Real> Body<T> {
-    /// The body that the sides, and panels of other skins, bound. `size` is about its diagonal. `None` when a
-    /// surface has a place that is not finite.
+    /// The body bounded by surfaces and by panels of other skins. `size` is approximately its
+    /// diagonal. `None` if a point of a surface is not finite.
     pub fn new(
         sides: &[HullSide<'_, T>],
         panels: impl IntoIterator<Item = [Vec3<T>; 4]>,
@@ -101,7 +103,7 @@ impl<T: Real> Body<T> {
         Some(body)
     }
 
-    /// The body that the panels of a mesh bound, exactly; its open edges are its rims.
+    /// The body bounded by the panels of a mesh, exactly; the open edges of the mesh are its rims.
     pub fn of_mesh(mesh: &Mesh<T>, accuracy: f64) -> Self {
         let size = mesh.bounds().diagonal();
         let at = |v: u32| mesh.positions()[v as usize];
@@ -112,17 +114,17 @@ impl<T: Real> Body<T> {
         Self { cells, ..no_surface }
     }
 
-    /// True when there is nothing.
+    /// True for a body without cells.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
-    /// About the diagonal.
+    /// Approximate diagonal.
     pub fn size(&self) -> f64 {
         self.size
     }
 
-    /// The relative accuracy that figures are computed to.
+    /// Relative accuracy of the figures.
     pub fn accuracy(&self) -> f64 {
         self.accuracy
     }
@@ -136,12 +138,12 @@ impl<T: Real> Body<T> {
         &self.cells
     }
 
-    /// The box around the control points, which contains the skin.
+    /// Bounding box of the control points, which contains the skin.
     pub fn bounds(&self) -> Box3 {
         Box3::around(self.cells.iter().flat_map(|c| c.net().iter().map(|p| p.re())))
     }
 
-    /// The body moved point by point by an affine map; `turned` when the map is a reflection.
+    /// The body under an affine map; `turned` is true for a reflection.
     pub fn mapped(&self, map: impl Fn(Vec3<T>) -> Vec3<T>, turned: bool) -> Self {
         Self {
             cells: self.cells.iter().map(|c| Arc::new(c.mapped(&map, turned))).collect(),
@@ -165,7 +167,7 @@ impl<T: Real> Body<T> {
         both
     }
 
-    /// The body of real parts.
+    /// The body without derivatives.
     pub fn re(&self) -> Body<f64> {
         Body {
             cells: self.cells.iter().map(|c| Arc::new(c.re())).collect(),
@@ -191,7 +193,7 @@ impl<T: Real> Body<T> {
                 open: 0.0,
             };
         }
-        // All of it is under water, and moments are about its middle.
+        // All of it is submerged, and moments are about its middle.
         let moved = self.mapped(|p| p - Vec3::lifted(centre), false);
         let above = T::from(2.0 * self.size + bounds.diagonal());
         let all = moved.wanted_integrals(above, [T::zero(); 2], Wanted::Skin);
@@ -225,14 +227,14 @@ impl<T: Real> Body<T> {
         self.wanted_integrals(level, origin, Wanted::All)
     }
 
-    /// The same, but only what is wanted to the accuracy.
+    /// As [`Self::integrals`], with only the `wanted` ones to the accuracy.
     pub(crate) fn wanted_integrals(&self, level: T, origin: [T; 2], wanted: Wanted) -> Immersed<T> {
         let accuracy = (SHARE * self.accuracy).max(FINEST);
         immersed(&self.cells, level, origin, self.size, accuracy, wanted)
     }
 
-    /// What the distance between cells and surfaces can add to the errors of volume, its first moments, area, and
-    /// of the water plane's area, first and second moments.
+    /// Errors due to the distance between cells and surfaces: of volume, its first moments, area,
+    /// and of the waterplane's area, first and second moments.
     pub(crate) fn fit_errors(&self, bounds: &Box3) -> [f64; 6] {
         let reach = bounds.diagonal();
         let mut errors = [0.0; 6];
@@ -242,7 +244,7 @@ impl<T: Real> Body<T> {
                 continue;
             }
             let [u, v] = cell.lengths();
-            // The slopes of what is left, of degree 10, over the lengths across.
+            // Derivatives of the remainder, of degree 10, over the lengths across.
             let strip = fit_u * v.max(fit_u) + fit_v * u.max(fit_v);
             let volume = (fit_u + fit_v) * u * v;
             let parts = [volume, volume * reach, 4.0 * strip, 4.0 * strip];
@@ -255,8 +257,8 @@ impl<T: Real> Body<T> {
         errors
     }
 
-    /// The least value of `p . direction` over the skin: exact but for rounding, with the derivatives of the place
-    /// at which it is reached.
+    /// The minimum of `p . direction` over the skin: exact to rounding, with the derivatives of the
+    /// point where it is attained.
     pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
         let along = |p: Vec3<T>| p.x * direction.x + p.y * direction.y + p.z * direction.z;
         let least = |c: &PolynomialCell<T>| {
@@ -295,7 +297,8 @@ impl<T: Real> Body<T> {
         best
     }
 
-    /// The number of rims that reach below the level; of a body that shows one side, those in the plane y = 0 are closed.
+    /// The number of rims that reach below the level, without those in the plane y = 0 for a half
+    /// body.
     pub fn open_below(&self, level: f64, half: bool) -> usize {
         let near = SAME_PLACE * self.size;
         let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - near);

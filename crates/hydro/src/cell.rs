@@ -1,7 +1,7 @@
-//! A piece of a skin: a tensor polynomial in Bernstein form over the unit square.
-//!
-//! A surface becomes cells by interpolation at Chebyshev points between its joints; a cell whose last Chebyshev
-//! coefficients are not negligible is halved. What is left of them bounds the distance to the surface.
+//! A piece of a skin: a tensor-product polynomial in Bernstein form over the unit square.
+//! Surfaces are interpolated by cells at Chebyshev points between their joints; a cell whose last
+//! Chebyshev coefficients are not negligible is halved. The remaining ones bound the distance to
+//! the surface.
 
 use crate::bernstein::{MOST_DEGREE, basis, halves};
 use crate::chart::{Chart, charts};
@@ -9,52 +9,54 @@ use moldloft_num::period::crease_rate;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use std::sync::OnceLock;
 
-/// A polynomial patch, of which `reversed` has its normal against S_u x S_v.
+/// A polynomial patch; its outward normal is -S_u x S_v if `reversed`.
 #[derive(Clone, Debug)]
 pub struct PolynomialCell<T> {
     degree: [usize; 2],
     /// Control points, (i, j) at `[i * (degree[1] + 1) + j]`.
     net: Vec<Vec3<T>>,
     pub(crate) reversed: bool,
-    /// Whether it reaches the surface's edge v = 0, u = 1, v = 1, u = 0.
+    /// True for each of the edges v = 0, u = 1, v = 1, u = 0 of the surface that it reaches.
     border: [bool; 4],
-    /// How far the surface may be from it along u and along v, as the last coefficients say.
+    /// Estimated distance to the surface from the last coefficients along u and along v.
     pub(crate) fit: [f64; 2],
 }
 
-/// What a fit may miss.
+/// Tolerances of a fit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FitLimits {
-    /// A distance that is negligible.
+    /// Negligible distance.
     pub distance: f64,
-    /// A distance times the length across that is negligible: the area that a strip gains.
+    /// Negligible area: distance times the length across.
     pub area: f64,
-    /// A share of a derivative that is negligible.
+    /// Negligible relative error of a derivative.
     pub relative: f64,
 }
 
 impl FitLimits {
-    /// For surfaces that take too many cells.
+    /// Tolerances for surfaces that need too many cells.
     fn coarser(self) -> Self {
         let Self { distance, area, relative } = self;
         Self { distance: 30.0 * distance, area: 30.0 * area, relative: 30.0 * relative }
     }
 }
 
-/// The most cells of a surface.
+/// Maximum number of cells of a surface.
 const MOST_CELLS: usize = 6000;
 
-/// The same while derivatives decide, too: each of their cells costs several times as much.
+/// The same limit while derivatives are fitted as well: such a cell costs several times as much.
 const MOST_CELLS_FOR_SLOPES: usize = 1500;
 
-/// A cell is halved this often at most in one direction.
+/// Maximum number of halvings of a cell in one direction.
 const DEEPEST: u32 = 40;
 
-/// The same where only its derivatives by parameters of the model are not yet known well enough: rounding may hide them.
+/// The same limit where only derivatives with respect to model parameters miss their tolerance,
+/// which rounding may prevent.
 const DEEPEST_FOR_SLOPES: u32 = 8;
 
 impl<T: Real> PolynomialCell<T> {
-    /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats its last.
+    /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats
+    /// its last corner.
     pub fn of_panel([a, b, c, d]: [Vec3<T>; 4]) -> Self {
         Self {
             degree: [1, 1],
@@ -73,7 +75,7 @@ impl<T: Real> PolynomialCell<T> {
         &self.net
     }
 
-    /// The cell moved point by point by a linear or affine map; `turned` when that turns its normal round.
+    /// The cell under an affine map; `turned` is true if the map reverses the normal.
     pub fn mapped(&self, map: impl Fn(Vec3<T>) -> Vec3<T>, turned: bool) -> Self {
         Self {
             net: self.net.iter().map(|&p| map(p)).collect(),
@@ -84,7 +86,7 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
-    /// The cell of real parts.
+    /// The cell without derivatives.
     pub fn re(&self) -> PolynomialCell<f64> {
         PolynomialCell {
             degree: self.degree,
@@ -95,7 +97,7 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
-    /// The cell with numbers without derivatives.
+    /// A cell with zero derivatives.
     pub fn lifted(cell: &PolynomialCell<f64>) -> Self {
         Self {
             degree: cell.degree,
@@ -106,7 +108,7 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
-    /// Whether it reaches that edge of the surface.
+    /// True when it reaches edge `k` of the surface.
     pub(crate) fn on_edge(&self, k: usize) -> bool {
         self.border[k]
     }
@@ -123,8 +125,8 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
-    /// The control points of the line on which the parameter other than `inner` is `w`, and their derivatives by
-    /// `w`.
+    /// The control points of the line along `inner` at `w` of the other parameter, and their
+    /// derivatives with respect to `w`.
     pub(crate) fn line(&self, inner: usize, w: T, at: &mut Vec<Vec3<T>>, by: &mut Vec<Vec3<T>>) {
         let [du, dv] = self.degree;
         at.clear();
@@ -168,7 +170,7 @@ impl<T: Real> PolynomialCell<T> {
         parts
     }
 
-    /// Its greatest lengths along u and along v, of the control polygons.
+    /// Maximum lengths of its control polygons along u and along v.
     pub(crate) fn lengths(&self) -> [f64; 2] {
         let [du, dv] = self.degree;
         let at = |i: usize, j: usize| self.net[i * (dv + 1) + j].re();
@@ -178,9 +180,9 @@ impl<T: Real> PolynomialCell<T> {
     }
 }
 
-/// The cells of a surface, or `None` where it is not finite. `reversed` when its outward normal is against S_u x S_v.
-///
-/// A part of another surface is cut along the lines of that one, too.
+/// The cells of a surface, or `None` if it is not finite. `reversed` is true for an outward normal
+/// of -S_u x S_v.
+/// A part of another surface is also cut along the break lines of that surface.
 pub(crate) fn cells_of<T: Real>(
     surface: &dyn Surface<T>,
     reversed: bool,
@@ -213,12 +215,13 @@ pub(crate) fn cells_of<T: Real>(
             }
         }
     }
-    // Where that takes too many cells, all of the surface is known less well.
+    // If there are too many cells, the whole surface is fitted with larger tolerances.
     let mut limits = limits;
     loop {
         match fitted_cells(surface, &frames, reversed, limits) {
             CellFits::Cells(cells) => return Some(cells),
-            // Slopes that rounding hides never come within their limit: the values alone decide then.
+            // Derivatives dominated by rounding never meet their tolerance: then only values
+            // decide.
             CellFits::TooMany if T::PARTS > 1 && limits.relative.is_finite() => {
                 limits.relative = f64::INFINITY;
             }
@@ -228,19 +231,19 @@ pub(crate) fn cells_of<T: Real>(
     }
 }
 
-/// What fitting a surface by cells comes to.
+/// Result of fitting a surface by cells.
 enum CellFits<T> {
     Cells(Vec<PolynomialCell<T>>),
     TooMany,
-    /// It has a place that is not finite.
+    /// A point is not finite.
     NotFinite,
 }
 
-/// A rectangle of parameters: of a chart, or of the surface.
+/// A rectangle in the parameters of a chart or of the surface.
 #[derive(Clone, Copy)]
 struct CellFrame<'a, T> {
     chart: Option<&'a Chart<T>>,
-    /// From and to in u, from and to in v.
+    /// Minimum and maximum of u, minimum and maximum of v.
     ends: [T; 4],
 }
 
@@ -255,7 +258,7 @@ impl<T: Real> CellFrame<'_, T> {
         halves.map(|ends| CellFrame { chart: self.chart, ends })
     }
 
-    /// Whether it reaches the edge v = 0, u = 1, v = 1, u = 0 of the surface.
+    /// True for each of the edges v = 0, u = 1, v = 1, u = 0 of the surface that it reaches.
     fn border(&self) -> [bool; 4] {
         let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
         let ends = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
@@ -265,7 +268,7 @@ impl<T: Real> CellFrame<'_, T> {
         }
     }
 
-    /// The places of the surface on a grid of shares of the frame.
+    /// Points of the surface on a grid of relative positions in the frame.
     fn places(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec3<T>> {
         let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
         let within = |a: f64, b: f64, s: f64| match s {
@@ -298,7 +301,7 @@ impl<T: Real> CellFrame<'_, T> {
         }
     }
 
-    /// Whether a parameter of the model moves it.
+    /// True when it depends on a parameter of the model.
     fn moves(&self) -> bool {
         self.chart.is_some_and(Chart::moves) || !self.ends.iter().all(|t| t.is_constant())
     }
@@ -322,7 +325,7 @@ fn fitted_cells<T: Real>(
             return CellFits::NotFinite;
         };
         let [length_u, length_v] = fitted.lengths();
-        // Rounding of the places cannot be had smaller.
+        // Points are not more accurate than their rounding.
         let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
         let distance = limits.distance.max(4e-14 * size);
         let negligible = |k: usize, across: f64| {
@@ -351,11 +354,11 @@ fn fitted_cells<T: Real>(
     CellFits::Cells(cells)
 }
 
-/// How far beside a break a side of it is looked at, in shares of the cell.
+/// Distance from a break at which one side of it is evaluated, relative to the cell.
 const BESIDE: f64 = 1e-9;
 
-/// The ends of the cells along u (0) or v (1), each with the derivatives of its place: without them a derivative would
-/// miss the strip that passes from one side of a corner to the other.
+/// The cell boundaries along u (0) or v (1), with the derivatives of their parameters: without
+/// these a derivative would miss the strip swept by a moving break.
 fn moving<T: Real>(surface: &dyn Surface<T>, along: usize, ends: &[f64]) -> Vec<T> {
     let last = ends.len() - 1;
     let end = |(k, &t): (usize, &f64)| {
@@ -370,8 +373,8 @@ fn moving<T: Real>(surface: &dyn Surface<T>, along: usize, ends: &[f64]) -> Vec<
     ends.iter().enumerate().map(end).collect()
 }
 
-/// Positions of a surface on a grid of parameters of which the first and the last may be moving breaks: there the side
-/// that the grid is on counts.
+/// Positions of a surface on a grid of parameters. The first and last may be moving breaks, where
+/// the side inside the grid is evaluated.
 fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec3<T>> {
     let inside = |ts: &[T], k: usize| {
         let step = BESIDE * (ts[ts.len() - 1].re() - ts[0].re());
@@ -386,7 +389,7 @@ fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec
         let du = inside(us, i);
         for (j, &v) in vs.iter().enumerate() {
             let dv = inside(vs, j);
-            // The derivatives beside the corner; the place itself.
+            // The derivatives beside the break; the point on it.
             let jet = surface.jet(T::from(u.re() + du), T::from(v.re() + dv), Order::First);
             let beside = jet.p - jet.u * T::from(du) - jet.v * T::from(dv)
                 + jet.u * (u - u.re())
@@ -398,8 +401,8 @@ fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec
     points
 }
 
-/// The places of a part whose boundaries may move, on a grid of its chart: beside them the side that the chart is on
-/// counts.
+/// Points of a part on a grid of its chart. Boundaries may move; there the side inside the chart is
+/// evaluated.
 fn moving_chart<T: Real>(
     surface: &dyn Surface<T>,
     chart: &Chart<T>,
@@ -414,7 +417,7 @@ fn moving_chart<T: Real>(
             let place = [u, v];
             let at = chart.at(place);
             let [x, y] = chart.real(place.map(|t| inside(t.re())));
-            // The derivatives beside the boundary; the place itself.
+            // The derivatives beside the boundary; the point on it.
             let jet = surface.jet(T::from(x), T::from(y), Order::First);
             points.push(jet.p + jet.u * (at[0] - x) + jet.v * (at[1] - y));
             exact.push(chart.real(place.map(|t| t.re())));
@@ -428,11 +431,11 @@ fn moving_chart<T: Real>(
     points
 }
 
-/// Places off the Chebyshev points at which an interpolation is compared.
+/// Parameters between the Chebyshev points at which an interpolation is checked.
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
-/// The interpolation of a surface on a frame at Chebyshev points, of the lowest degree that keeps it, and what it leaves
-/// of derivatives along u and v, as a share of the greatest.
+/// The interpolation of a surface on a frame at Chebyshev points, reduced to the lowest sufficient
+/// degree, and the relative errors of its derivatives along u and v.
 fn fit<T: Real>(
     surface: &dyn Surface<T>,
     frame: &CellFrame<'_, T>,
@@ -449,7 +452,7 @@ fn fit<T: Real>(
         return None;
     }
     let coefficients = transformed(&points, [N, N], [&tables.analysis, &tables.analysis]);
-    // The size of the coefficients from (i, j) on, by rows and by columns.
+    // Sums of the coefficient norms by rows and by columns.
     let row = |i: usize| (0..N).map(|j| coefficients[i * N + j].re().norm()).sum::<f64>();
     let column = |j: usize| (0..N).map(|i| coefficients[i * N + j].re().norm()).sum::<f64>();
     let size = coefficients.iter().fold(0.0f64, |m, c| m.max(c.re().norm()));
@@ -467,7 +470,7 @@ fn fit<T: Real>(
             })
         })
     };
-    // Derivatives may be of a higher degree than the places.
+    // Derivatives may need a higher degree than the points.
     let highest =
         |from: usize, along: usize| (from + 1..N).rev().find(|&k| !still(k, along)).unwrap_or(from);
     let (du, dv) = (highest(degree(&row), 0), highest(degree(&column), 1));
@@ -484,7 +487,7 @@ fn fit<T: Real>(
     let net = transformed(&kept, [du + 1, dv + 1], to_bernstein);
     let border = frame.border();
     let cell = PolynomialCell { degree: [du, dv], net, reversed, border, fit };
-    // Between the points, where a kink that no joint declares would show.
+    // Check between the interpolation points, where an undeclared kink shows.
     let mut off: f64 = 0.0;
     let (mut at, mut by) = (Vec::new(), Vec::new());
     let probes = frame.places(surface, &PROBES);
@@ -508,7 +511,8 @@ fn fit<T: Real>(
     Some((PolynomialCell { fit, ..cell }, derivative_tails(&coefficients)))
 }
 
-/// The last coefficients of the derivatives along u and v, as shares of the greatest coefficient of their direction.
+/// The last coefficients of the derivatives along u and v, relative to the largest coefficient in
+/// this direction.
 fn derivative_tails<T: Real>(coefficients: &[Vec3<T>]) -> [f64; 2] {
     const N: usize = MOST_DEGREE + 1;
     let mut tails = [0.0f64; 2];
@@ -531,11 +535,12 @@ fn derivative_tails<T: Real>(coefficients: &[Vec3<T>]) -> [f64; 2] {
     tails
 }
 
-/// The Chebyshev points, and the matrices from values there to Chebyshev and on to Bernstein coefficients.
+/// The Chebyshev points, and the matrices from values at these to Chebyshev coefficients and from
+/// those to Bernstein coefficients.
 struct Tables {
     nodes: Vec<f64>,
     analysis: Vec<Vec<f64>>,
-    /// Of each degree.
+    /// For each degree.
     synthesis: Vec<Vec<Vec<f64>>>,
 }
 

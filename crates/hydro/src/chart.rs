@@ -1,37 +1,38 @@
-//! Charts: the pieces of a part of a surface between the lines at which the formula of the whole changes.
-//!
-//! A part shows the parameter plane of its surface through a map of its own, so these lines run at any angle to its
-//! parameters. A square of parameters is cut along one line after another. Where a line is a graph over one parameter,
-//! its place is a polynomial of the other, and the pieces on both sides are unit squares again, of which one side may
-//! have no length. Where it is no graph, as about a turning point, the square is quartered.
+//! Charts: pieces of a subsurface between the lines at which the parent surface is not smooth.
+//! A subsurface maps its parameters to those of its parent, so these lines cross its parameter
+//! square at any angle. The square is cut along one line after another. Where a line is a graph
+//! over one parameter, it is approximated by a polynomial in that parameter, and the pieces on both
+//! sides are mapped to unit squares, one side of which may have zero length. Where it is not a
+//! graph, as near a turning point, the square is quartered.
 
 use moldloft_num::period::breaks_between;
 use moldloft_num::{Bi1, InnerPlane, Jet, Order, Real, Surface, find_root};
 
-/// A map from the unit square to a piece of a surface's parameter square that no inner line crosses.
+/// A map from the unit square to a piece of the parameter square of a surface that no inner line
+/// crosses.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart<T> {
     cuts: Vec<ChartCut<T>>,
-    /// Whether it reaches the surface's edge v = 0, u = 1, v = 1, u = 0.
+    /// True for each of the edges v = 0, u = 1, v = 1, u = 0 of the surface that it reaches.
     pub border: [bool; 4],
 }
 
-/// A step from the unit square into another one.
+/// A map from the unit square into another one.
 #[derive(Clone, Debug)]
 struct ChartCut<T> {
-    /// The parameter, 0 or 1, that runs from one boundary to the other.
+    /// The parameter, 0 or 1, from one boundary to the other.
     along: usize,
     /// The range of the other parameter.
     range: [f64; 2],
-    /// Both boundaries, of the other parameter's share of its range.
+    /// Both boundaries, as functions of the relative position of the other parameter in its range.
     sides: [ChartBoundary<T>; 2],
 }
 
-/// A polynomial on [0, 1], by its Chebyshev coefficients.
+/// A polynomial on [0, 1] in Chebyshev form.
 #[derive(Clone, Debug)]
 struct ChartBoundary<T>(Vec<T>);
 
-/// A line of the plane `plane` at which its parameter `axis` is `at`.
+/// A line of constant parameter: coordinate `axis` of parameter plane `plane` is `at`.
 #[derive(Clone, Copy, Debug)]
 struct InnerLine {
     plane: usize,
@@ -39,28 +40,28 @@ struct InnerLine {
     at: f64,
 }
 
-/// The coefficients of a boundary.
+/// Number of coefficients of a boundary.
 const NODES: usize = 16;
 
-/// A square is looked at on so many steps in each direction.
+/// Number of sampling intervals of a square in each direction.
 const STEPS: usize = 16;
 
-/// Places nearer to a line than this, in parameters, are on it.
+/// Distance, in parameters, within which a point is on a line.
 const ON_LINE: f64 = 1e-11;
 
-/// A line is a graph where it goes this many steps aside, at most, while it goes one along.
+/// Maximum slope of a line that is treated as a graph, in steps across per step along.
 const STEEPEST: f64 = 3.0;
 
-/// How far a boundary may be from its line, in shares of the square.
+/// Tolerance of a boundary, relative to the square.
 const BOUNDARY_FIT: f64 = 1e-11;
 
-/// A square is quartered, and a boundary halved, this often at most.
+/// Maximum number of quarterings of a square and of halvings of a boundary.
 const DEEPEST: u32 = 14;
 
-/// How far beside a line a side of it is looked at, in shares of the square.
+/// Distance from a line at which one side of it is evaluated, relative to the square.
 const BESIDE: f64 = 1e-9;
 
-/// Where a boundary is compared with its line.
+/// Parameters at which a boundary is compared with its line.
 const PROBES: [f64; 4] = [0.003, 0.31, 0.77, 0.997];
 
 impl<T: Real> ChartBoundary<T> {
@@ -91,11 +92,11 @@ impl<T: Real> ChartBoundary<T> {
     }
 }
 
-/// Those roots on [0, 1].
+/// The roots of that polynomial on [0, 1].
 fn nodes() -> [f64; NODES] {
     std::array::from_fn(|j| {
         let half = std::f64::consts::FRAC_PI_2 * (j as f64 + 0.5) / NODES as f64;
-        // From 1 down to 0, as the cosines of the coefficients want.
+        // From 1 down to 0, in the order of the cosines of the coefficients.
         libm::pow(libm::cos(half), 2.0)
     })
 }
@@ -112,7 +113,7 @@ impl<T: Real> Chart<T> {
         Self { cuts: vec![cut(0, u0, u1), cut(1, v0, v1)], border }
     }
 
-    /// The place in the surface's parameter square.
+    /// The point in the parameter square of the surface.
     pub fn at<J: Jet<T>>(&self, place: [J; 2]) -> [J; 2] {
         self.cuts.iter().rev().fold(place, |p, cut| {
             let share = p[1 - cut.along];
@@ -126,12 +127,12 @@ impl<T: Real> Chart<T> {
         })
     }
 
-    /// The same, of real parts.
+    /// The same point without derivatives.
     pub fn real(&self, place: [f64; 2]) -> [f64; 2] {
         self.at(place.map(T::from)).map(|w| w.re().clamp(0.0, 1.0))
     }
 
-    /// Whether a parameter of the model moves it.
+    /// True when it depends on a parameter of the model.
     pub fn moves(&self) -> bool {
         T::PARTS > 1 && !self.cuts.iter().flat_map(|cut| &cut.sides).all(ChartBoundary::is_constant)
     }
@@ -139,7 +140,7 @@ impl<T: Real> Chart<T> {
     /// The part between two boundaries along a parameter, over a range of the other.
     fn part(&self, along: usize, range: [f64; 2], sides: [Option<ChartBoundary<T>>; 2]) -> Self {
         let reaches = [sides[0].is_none(), sides[1].is_none()];
-        // The borders in the order of the sides 0 and 1 of each parameter.
+        // Indices in `border` of the sides 0 and 1 of each parameter.
         let of_sides = [[3, 1], [0, 2]];
         let mut border = self.border;
         for end in 0..2 {
@@ -156,8 +157,8 @@ impl<T: Real> Chart<T> {
     }
 }
 
-/// The charts of a part, or `None` of a surface that has no inner lines. `us` and `vs` are the ends of the cells
-/// between its own joints.
+/// The charts of a subsurface, or `None` for a surface without inner lines. `us` and `vs` are the
+/// cell boundaries at its own joints.
 pub(crate) fn charts<T: Real>(
     surface: &dyn Surface<T>,
     us: &[T],
@@ -187,18 +188,18 @@ struct Cutter<'a, T: Real> {
     charts: Vec<Chart<T>>,
 }
 
-/// How far the places of a square are beyond a line, on a grid of it.
+/// Signed distances from a line on a grid of a square.
 struct LineSamples(Vec<f64>);
 
-/// A line that is a graph: its parameter is a function of the other one.
+/// A line that is a graph of one parameter over the other.
 struct LineGraph {
     along: usize,
-    /// The greatest step aside, in steps along.
+    /// Maximum slope, in steps across per step along.
     steepest: f64,
 }
 
 impl LineSamples {
-    /// At step `i` along a parameter and `j` along the other one.
+    /// The distance at step `i` of one parameter and step `j` of the other.
     fn at(&self, along: usize, i: usize, j: usize) -> f64 {
         let (i, j) = if along == 0 { (i, j) } else { (j, i) };
         let x = self.0[i * (STEPS + 1) + j];
@@ -209,8 +210,8 @@ impl LineSamples {
         self.0.iter().any(|x| *x > ON_LINE) && self.0.iter().any(|x| *x < -ON_LINE)
     }
 
-    /// The step along a parameter at which the line is met on row `j`, and whether it is met upwards: `Some(None)` when it
-    /// is not, `None` when it is met more than once.
+    /// The step at which row `j` crosses the line, and true if the distance increases there;
+    /// `Some(None)` without a crossing, `None` for several.
     fn crossing(&self, along: usize, j: usize) -> Option<Option<(f64, bool)>> {
         let mut found = None;
         let mut last: Option<(usize, f64)> = None;
@@ -232,7 +233,8 @@ impl LineSamples {
         Some(found)
     }
 
-    /// Whether the line is met once at most along each row, and where it goes steadily from row to row.
+    /// The line as a graph, if each row crosses it at most once and its position changes steadily
+    /// from row to row.
     fn graph(&self, along: usize) -> Option<LineGraph> {
         let (mut steepest, mut upwards) = (0.0f64, None);
         let mut before: Option<Option<f64>> = None;
@@ -262,7 +264,7 @@ impl LineSamples {
 }
 
 impl<T: Real> Cutter<'_, T> {
-    /// The place of a chart's place in a plane.
+    /// The point of a chart, in the coordinates of a parameter plane.
     fn inside(&self, plane: usize, chart: &Chart<T>, place: [f64; 2]) -> [f64; 2] {
         (self.planes[plane].place)(chart.real(place))
     }
@@ -293,7 +295,7 @@ impl<T: Real> Cutter<'_, T> {
         LineSamples(places[line.plane].iter().map(|w| w[line.axis] - line.at).collect())
     }
 
-    /// Cuts a chart along lines and keeps the pieces.
+    /// Cuts a chart along lines and stores the pieces.
     fn cut(&mut self, chart: Chart<T>, lines: Vec<InnerLine>, depth: u32) {
         let used = |k: usize| lines.iter().any(|line| line.plane == k);
         let places: Vec<_> = (0..self.planes.len())
@@ -330,12 +332,12 @@ impl<T: Real> Cutter<'_, T> {
                     }
                 }
             }
-            // Less than a cell: the fit finds what is left.
+            // Less than a cell: the fit handles the rest.
             None => self.charts.push(chart),
         }
     }
 
-    /// Cuts a chart along a line that is a graph of the parameter `along`.
+    /// Cuts a chart along a line that is a graph with values in the parameter `along`.
     fn cut_along(
         &mut self,
         chart: &Chart<T>,
@@ -349,7 +351,7 @@ impl<T: Real> Cutter<'_, T> {
             let place = if along == 0 { [s, t] } else { [t, s] };
             cutter.inside(line.plane, chart, place)[line.axis] - line.at
         };
-        // Where it comes in over a side or goes out.
+        // Where the line enters or leaves across a side.
         for side in [0.0, 1.0] {
             let step = |k: usize| k as f64 / STEPS as f64;
             for k in 0..STEPS {
@@ -380,7 +382,7 @@ impl<T: Real> Cutter<'_, T> {
             let found = nodes().map(root);
             let plain = ChartBoundary::<f64>::through(&found);
             let off = PROBES.iter().map(|&t| (plain.at(t) - root(t)).abs()).fold(0.0, f64::max);
-            // At the ends of the range the line may end at once.
+            // The line may end abruptly at the ends of the range.
             if off > BOUNDARY_FIT && halvings < DEEPEST {
                 ranges.push(([middle, range[1]], halvings + 1));
                 ranges.push(([range[0], middle], halvings + 1));
@@ -397,9 +399,9 @@ impl<T: Real> Cutter<'_, T> {
         }
     }
 
-    /// The derivatives of the place `s` along a parameter at which a chart is creased, as a number whose real part is
-    /// 0. Both sides of a crease meet there whatever becomes of it: with S- and S+ the sides,
-    /// ds = (dS+ - dS-) . n / n . n with n = S-' - S+'. Zero where the tangent does not turn.
+    /// The derivatives of the parameter `s` of a crease in a chart, as a number with real part 0.
+    /// Both sides S- and S+ stay joined as the crease moves, so ds = (dS+ - dS-) . n / n . n with n
+    /// = S-' - S+'. Zero if the tangents agree.
     fn rate(&self, chart: &Chart<T>, along: usize, s: f64, t: f64) -> T {
         if T::PARTS == 1 {
             return T::zero();

@@ -1,7 +1,8 @@
-//! Rest by descent of the energy: from anywhere a closed body of given mass comes to rest somewhere.
-//!
-//! With the level solved for the mass at each trim and heel, the energy over the weight is the height of gravity above
-//! buoyancy. It is continuous with its slopes, which are the arms, so that descent ends at rest; its second derivatives
+//! Equilibrium by descent of the energy, which converges for a closed body of given mass from any
+//! attitude.
+//! With the level solved for the mass at each trim and heel, the energy over the weight is the
+//! height of the centre of gravity above the centre of buoyancy. Its first derivatives are the
+//! righting arms and are continuous, so the descent ends in an equilibrium. Its second derivatives
 //! are those of the arms with the level eliminated, and jump where an edge meets the water.
 
 use crate::Attitude;
@@ -10,35 +11,35 @@ use crate::figures::displaced;
 use moldloft_num::find_root;
 use std::cell::Cell;
 
-/// The most steps of a descent.
+/// Maximum number of steps of a descent.
 const MOST_STEPS: usize = 200;
 
-/// The largest turn of a step, in radians.
+/// Maximum rotation of a step, in radians.
 const LARGEST_TURN: f64 = 0.2;
 
-/// The first step along the trim, in radians.
+/// First step in trim, in radians.
 const FIRST_TURN: f64 = 0.02;
 
-/// Halvings of a step until it must descend.
+/// Maximum number of halvings of a step that does not descend.
 const MOST_HALVED: usize = 40;
 
-/// Energies over the weight are known within this share of the diagonal.
+/// Rounding error of the energy over the weight, relative to the diagonal.
 const ROUNDING: f64 = 1e-15;
 
-/// Arms within this share of the diagonal are left to Newton's method.
+/// Arm, relative to the diagonal, below which Newton's method takes over.
 const NEARLY_AT_REST: f64 = 1e-10;
 
-/// A body at a trim and a heel, its level that of its mass.
+/// A body at a trim and a heel, at the level at which it displaces its mass.
 struct EnergyState {
     at: [f64; 3],
-    /// The height of gravity above buoyancy.
+    /// Height of the centre of gravity above the centre of buoyancy.
     energy: f64,
-    /// Its derivatives by trim and heel; zero for what is held.
+    /// Its derivatives with respect to trim and heel; zero for a fixed angle.
     slopes: [f64; 2],
 }
 
 impl EquilibriumProblem<'_, f64> {
-    /// `None` where the mass has no level: the water comes over an open rim.
+    /// `None` if no level displaces the mass because an open rim is immersed first.
     fn energy_state(&self, trim: f64, heel: f64) -> Option<EnergyState> {
         let level = self.level(trim, heel).ok()?;
         let at = [level, trim, heel];
@@ -52,15 +53,15 @@ impl EquilibriumProblem<'_, f64> {
         Some(EnergyState { at, energy: g.z - sums.moment.z / volume - level, slopes })
     }
 
-    /// By how much a turn about the level axes exceeds one of trim and of heel, zero for what is held: the body heels
-    /// about its own axis, which the trim tilts.
+    /// Ratios of a rotation about the level axes to one of trim and of heel, zero for a fixed
+    /// angle: the body heels about its own axis, which trim inclines.
     fn tilts(&self, trim: f64) -> [f64; 2] {
         let tilts = [1.0, libm::cos(trim)];
         [1, 2].map(|k| if self.free.contains(&k) { tilts[k - 1] } else { 0.0 })
     }
 
-    /// The second derivatives of the energy where the body displaces its mass, the level following: by trim, by both,
-    /// by heel.
+    /// The second derivatives of the energy, with the level that displaces the mass: trim-trim,
+    /// trim-heel, heel-heel.
     fn stiffness(&self, at: [f64; 3]) -> [f64; 3] {
         let rows = self.slopes(at);
         let tilts = self.tilts(at[1]);
@@ -68,7 +69,7 @@ impl EquilibriumProblem<'_, f64> {
             if tilts[k - 1] == 0.0 {
                 return 0.0;
             }
-            // Without a waterplane no level keeps the volume.
+            // Without a waterplane the level has no effect on the volume.
             let followed =
                 if rows[0][0] > 0.0 { rows[r][0] * rows[0][k] / rows[0][0] } else { 0.0 };
             tilts[r - 1] * (rows[r][k] - followed) * self.size
@@ -76,7 +77,8 @@ impl EquilibriumProblem<'_, f64> {
         [of(1, 1), 0.5 * (of(1, 2) + of(2, 1)), of(2, 2)]
     }
 
-    /// An attitude nearly at rest down the slope of the energy from a trim and a heel, and the steps that led there.
+    /// An attitude near equilibrium, by descent of the energy from a trim and a heel, and the
+    /// number of steps.
     pub(crate) fn descended(&self, from: [f64; 3]) -> Option<([f64; 3], usize)> {
         let [_, trim, heel] = from;
         match self.free[..] {
@@ -85,7 +87,7 @@ impl EquilibriumProblem<'_, f64> {
         }
     }
 
-    /// At a heel that is held: the nearest trim downhill where the slope changes its sign.
+    /// At fixed heel: the nearest trim downhill where the derivative changes sign.
     fn trimmed(&self, trim: f64, heel: f64) -> Option<([f64; 3], usize)> {
         let steps = Cell::new(0);
         let slope = |trim: f64| {
@@ -101,7 +103,7 @@ impl EquilibriumProblem<'_, f64> {
             if found * way >= 0.0 {
                 break next;
             }
-            // A whole turn without an end: what it weighs has no slope.
+            // No sign change within a full rotation: the energy is constant.
             if found.is_nan() || steps.get() > MOST_STEPS {
                 return None;
             }
@@ -135,7 +137,7 @@ impl EquilibriumProblem<'_, f64> {
                     break;
                 }
             }
-            // Where rounding hides the descent, Newton's method is at home.
+            // Rounding hides any further descent: leave the rest to Newton's method.
             let Some(next) = next else { return Some((state.at, steps)) };
             state = next;
         }
@@ -143,10 +145,11 @@ impl EquilibriumProblem<'_, f64> {
     }
 }
 
-/// The Newton step with the sizes of the principal stiffnesses, so that it leads downhill everywhere.
+/// The Newton step with the absolute values of the principal stiffnesses, which is always a descent
+/// direction.
 fn turn(slopes: [f64; 2], [a, b, c]: [f64; 3], size: f64) -> [f64; 2] {
     let (middle, half) = (0.5 * (a + c), libm::hypot(0.5 * (a - c), b));
-    // The direction of the greater principal stiffness.
+    // Direction of the larger principal stiffness.
     let angle = 0.5 * libm::atan2(2.0 * b, a - c);
     let axis = [libm::cos(angle), libm::sin(angle)];
     let mut turn = [0.0; 2];

@@ -1,4 +1,4 @@
-//! The attitude in which a body of given mass floats at rest.
+//! Equilibrium attitude of a floating body of given mass.
 
 use crate::body::Body;
 use crate::figures::{Displaced, displaced};
@@ -7,23 +7,23 @@ use crate::{Attitude, Flotation, Water, flotation};
 use moldloft_num::{Real, Vec3, solve_dense};
 use std::fmt;
 
-/// What floats.
+/// Loading condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loading<T> {
     /// Mass.
     pub mass: T,
-    /// Centre of gravity in the body's axes; needed where trim or heel are free.
+    /// Centre of gravity in body axes; required if trim or heel is free.
     pub centre: Option<Vec3<T>>,
-    /// The trim is sought too, not kept.
+    /// True to solve for the trim.
     pub free_trim: bool,
-    /// The heel is sought too, not kept.
+    /// True to solve for the heel.
     pub free_heel: bool,
 }
 
-/// How a solution ended.
+/// Status of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// The residual is rounding.
+    /// The residual is at rounding level.
     Converged,
     /// The best attitude found is not an equilibrium.
     NotConverged,
@@ -32,21 +32,23 @@ pub enum Status {
 /// An equilibrium, or the best attempt at one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium<T> {
-    /// The figures there.
+    /// Figures at this attitude.
     pub flotation: Flotation<T>,
-    /// Whether it is one.
+    /// Converged or not.
     pub status: Status,
-    /// Newton steps.
+    /// Number of Newton steps.
     pub iterations: usize,
-    /// Largest of: the error of the volume over the volume, those of the arms over the diagonal.
+    /// Maximum of the relative error of the volume and the arms over the diagonal.
     pub residual: f64,
-    /// True when all small turns are righted, be they free or not, and without a centre of gravity.
+    /// True for positive stiffness in heel and trim, free or fixed; also true without a centre of
+    /// gravity.
     pub stable: bool,
-    /// True when the attitude sought from was at rest but unstable, and this one was found beyond it.
+    /// True for an angle of loll: the search reached an unstable equilibrium first, and this is the
+    /// stable one beside it.
     pub lolls: bool,
 }
 
-/// Why a body cannot float so.
+/// Reason why there is no equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FloatError {
     /// The mass is not a positive number.
@@ -54,19 +56,19 @@ pub enum FloatError {
         /// The mass.
         mass: f64,
     },
-    /// Trim or heel are free but no centre of gravity is given.
+    /// Trim or heel is free, but there is no centre of gravity.
     NoCentre,
     /// A mesh of one side cannot heel.
     HalfHeels,
-    /// There is no skin, or it encloses nothing.
+    /// There is no skin, or it encloses no volume.
     NoBody,
-    /// The mass is more than the body displaces when it is all under water.
+    /// The mass exceeds the displacement of the submerged body.
     Sinks {
         /// The mass.
         mass: f64,
-        /// The most it displaces.
+        /// Maximum displacement.
         most: f64,
-        /// Where an open rim reaches the water first: trim and heel in radians.
+        /// Trim and heel, in radians, at which an open rim limits the displacement.
         rim: Option<[f64; 2]>,
     },
 }
@@ -97,26 +99,26 @@ impl fmt::Display for FloatError {
 
 impl std::error::Error for FloatError {}
 
-/// The most Newton steps; a ship takes about five.
+/// Maximum number of Newton steps; a ship needs about five.
 const MOST_STEPS: usize = 60;
 
-/// Residual that counts as rounding, and the one that does where steps no longer improve it.
+/// Residual at rounding level, and residual accepted once steps no longer reduce it.
 const TIGHT: f64 = 1e-13;
 const LOOSE: f64 = 1e-9;
 
-/// Residual from which a Newton step leads to rounding.
+/// Residual from which one Newton step reaches rounding level.
 const POLISHED: f64 = 1e-10;
 
-/// The largest turn of a step, in radians.
+/// Maximum rotation of a step, in radians.
 const LARGEST_TURN: f64 = 0.2;
 
-/// The attitude at rest, from `start` (its level is not used): level, and trim and heel where these
-/// are free.
-///
-/// The level is first found at the given trim and heel, by Newton steps within a bracket; then all
-/// unknowns together by Newton's method with exact derivatives and shortened steps, on the real
-/// parts; where that does not come to rest, by descent of the energy. From an unstable state at rest the search goes on, heeling to both sides, to the nearest stable one, if
-/// there is one. One more step in `T` gives the derivatives of the solution (implicit function theorem).
+/// The equilibrium attitude, from `start` (whose level is not used): level, and trim and heel if
+/// free.
+/// First the level is solved for at the given trim and heel by bracketed Newton steps, then all
+/// unknowns together by damped Newton steps with exact derivatives, without derivatives in `T`; if
+/// these do not converge, by descent of the energy. From an unstable equilibrium the search
+/// continues, heeling to both sides, to the nearest stable one, if any. A last step in `T` gives
+/// the derivatives of the solution (implicit function theorem).
 ///
 /// # Errors
 /// [`FloatError`].
@@ -153,8 +155,8 @@ pub fn equilibrium<T: Real>(
     }
     let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 
-    // One Newton step in T: the unknowns move so that the residual's derivative vanishes. Its real part removes rounding;
-    // where more is left, the body is about to turn over its ends, and the step could lead anywhere.
+    // One Newton step in T makes the derivative of the residual vanish, and its real part removes
+    // rounding. With a larger residual the body is near pitchpoling, and the step is not reliable.
     let tight = residual <= POLISHED;
     let constant = at.map(T::from);
     let seeded = [constant[0], start.trim, start.heel];
@@ -174,20 +176,20 @@ pub fn equilibrium<T: Real>(
     Ok(Equilibrium { flotation, status, iterations, residual, stable, lolls })
 }
 
-/// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
+/// The dimensionless equations of equilibrium: volume, trimming arm, heeling arm.
 pub(crate) struct EquilibriumProblem<'m, T: Real> {
     pub(crate) body: &'m Body<T>,
     water: Water,
     pub(crate) loading: Loading<T>,
-    /// Which of level, trim and heel are sought: equation k for unknown k.
+    /// Free unknowns: 0 level, 1 trim, 2 heel; equation k belongs to unknown k.
     pub(crate) free: Vec<usize>,
-    /// 1, or -1 where the normals point inward; times 2 for one of two sides.
+    /// 1, or -1 for normals that point inward; times 2 for a half body that counts as whole.
     pub(crate) count: f64,
-    /// The body's diagonal.
+    /// Diagonal of the body.
     pub(crate) size: f64,
 }
 
-/// Steps of heel in the search beyond an unstable attitude.
+/// Step of heel, in radians, in the search beyond an unstable attitude.
 const HEEL_STEP: f64 = 0.0349;
 
 impl<'m> EquilibriumProblem<'m, f64> {
@@ -210,7 +212,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
             free_trim: loading.free_trim,
             free_heel: loading.free_heel,
         };
-        // Half under water the sign of the volume tells which way the normals point.
+        // The sign of the volume of the half-submerged body gives the orientation of the normals.
         let middle = bounds.centre();
         let volume = displaced(body, middle.z, [middle.x, middle.y], 1.0).forms[2];
         if volume == 0.0 {
@@ -220,7 +222,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         Ok(Self { body, water, loading, free, count: sides * volume.signum(), size })
     }
 
-    /// The residual up to which an attitude is at rest.
+    /// Maximum residual of an equilibrium.
     fn loose(&self) -> f64 {
         LOOSE.max(0.1 * self.body.accuracy())
     }
@@ -238,9 +240,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
         };
         let lowest = turned.lowest(Vec3::of(0.0, 0.0, 1.0)).unwrap_or(bounds.low.z);
         let highest = -turned.lowest(Vec3::of(0.0, 0.0, -1.0)).unwrap_or(-bounds.high.z);
-        // A hair above the top, so that panels in the top are under water too.
+        // Slightly above the top, so that panels in the top are submerged.
         let (mut low, mut high) = (lowest, highest + 1e-9 * self.size);
-        // Beyond its rim an open body gains nothing: it is full there.
+        // An open body displaces no more once its rim is immersed.
         let full = turned.lowest_rim().map_or(high, |z| z.min(high));
         let when_full = volume(full).0;
         let most = if full < high { when_full.max(volume(high).0) } else { when_full } + wanted;
@@ -252,7 +254,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
             high = full;
         }
         let mut z = 0.5 * (low + high);
-        // Between the hulls of a catamaran the volume hardly grows with the level: there Newton's steps creep.
+        // Between hulls and deck of a catamaran the volume grows slowly with the level, which slows
+        // down Newton's method.
         let mut before = f64::INFINITY;
         for _ in 0..200 {
             let (off, slope) = volume(z);
@@ -277,7 +280,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
         Ok(z)
     }
 
-    /// The derivatives of the residuals by level, trim and heel: `[residual][unknown]`.
+    /// The derivatives of the residuals with respect to level, trim and heel:
+    /// `[residual][unknown]`.
     ///
     /// With the level axes ex, ey, n and moments about the origin: d/dlevel of V, P, Q are A, A xf, A yf; d/dtrim are
     /// A xf, Ipp + V n.B, Ipq; d/dheel are c A yf, c Ipq - s V ey.B, c Iqq + V (s ex.B + c n.B), with c and s of the
@@ -299,7 +303,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let dv = [a, px, c * qy];
         let dp = [px, ipp + vb.z, c * ipq - s * vb.y];
         let dq = [qy, ipq, c * iqq + s * vb.x + c * vb.z];
-        // The centre of gravity moves in the level axes as well.
+        // The centre of gravity moves relative to the level axes as well.
         let dpg = [0.0, g.z, -s * g.y];
         let dqg = [0.0, 0.0, s * g.x + c * g.z];
         let wanted = self.loading.mass / self.water.density;
@@ -326,7 +330,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         self.free.iter().map(|&k| residual[k].abs()).fold(0.0, f64::max)
     }
 
-    /// The attitude at rest from `from`, with the number of steps and what is left.
+    /// The equilibrium reached from `from`, with the number of steps and the residual.
     fn rest(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
         let mut best = self.newton(from);
         let improved = |best: &mut ([f64; 3], usize, f64), from: [f64; 3]| {
@@ -350,7 +354,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
     fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
         let height = self.size;
         let mut at = from;
-        // Residual and slopes come from the same integrals, which are all that takes time.
+        // Residual and derivatives use the same integrals, which take nearly all of the time.
         let mut here = self.displacement(at);
         let mut residual = self.residual_of(&here);
         let mut worst = self.worst(residual);
@@ -391,9 +395,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
         found.stable.unwrap_or(true)
     }
 
-    /// From an unstable attitude at rest: the nearest stable one, heeling to either side, with the number of steps
-    /// and what is left. The arm is followed at fixed heel; where it changes from overturning to righting, all
-    /// unknowns are solved together.
+    /// From an unstable equilibrium: the nearest stable one on either side in heel, with the number
+    /// of steps and the residual. The arm is evaluated at fixed heel; where it changes from
+    /// overturning to righting, all unknowns are solved for together.
     fn beyond(&self, at: [f64; 3]) -> Option<([f64; 3], usize, f64)> {
         let held = EquilibriumProblem {
             body: self.body,
@@ -417,7 +421,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 }
                 let arm = self.residual(next)[2] * sign;
                 if before < 0.0 && arm >= 0.0 {
-                    // Between two heels the arm is all but straight.
+                    // Between two heels the arm is nearly linear.
                     let (found, steps, left) = self.newton(next);
                     let near = (found[2] - next[2]).abs() <= 3.0 * HEEL_STEP;
                     return (left <= self.loose() && near && self.stable(found)).then_some((
@@ -439,11 +443,12 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 }
 
-/// What the body displaces at an attitude.
+/// Displacement of the body at an attitude.
 struct Displacement<T> {
     /// The centre of gravity in the level axes.
     centre: Vec3<T>,
-    /// The integrals, about the vertical through it, so that a far origin costs no digits.
+    /// The integrals, about the vertical through the centre of gravity: a distant origin would cost
+    /// digits.
     sums: Displaced<T>,
 }
 
@@ -460,8 +465,8 @@ impl<T: Real> EquilibriumProblem<'_, T> {
         self.residual_of(&self.displacement(unknowns))
     }
 
-    /// What is missing to rest: (V - V0) / V0, and the moments of volume about the centre of gravity
-    /// over V0 and the diagonal.
+    /// Residual of the equilibrium: (V - V0) / V0, and the moments of volume about the centre of
+    /// gravity over V0 and the diagonal.
     fn residual_of(&self, Displacement { sums, .. }: &Displacement<T>) -> [T; 3] {
         let wanted = self.loading.mass / self.water.density;
         let arm = wanted * self.size;

@@ -7,7 +7,7 @@ use crate::section::{section_area, waterline_extent};
 use crate::strip::CoordinatePlane;
 use moldloft_num::{Real, Vec3};
 
-/// Figures with what stability needs besides.
+/// Figures with additional quantities for stability.
 pub(crate) struct Floating<T> {
     pub figures: Hydrostatics<T>,
     /// The integral of x y over the waterplane about its centre.
@@ -16,15 +16,15 @@ pub(crate) struct Floating<T> {
     pub errors: [f64; 6],
 }
 
-/// The sums below a level, of the number of sides meant, about (x0, y0, level).
+/// The integrals below a level about (x0, y0, level), of one or both sides.
 pub(crate) struct Displaced<T> {
     pub forms: [T; 3],
     pub moment: Vec3<T>,
     pub plane: [T; 6],
 }
 
-/// Volume, moments and water plane below `level` about (x0, y0); `count` is 1, 2 for both sides of a half, negative
-/// where normals point inward.
+/// Volume, moments and waterplane below `level` about (x0, y0); `count` is 1, or 2 for both sides
+/// of a half body, and negative for normals that point inward.
 pub(crate) fn displaced<T: Real>(
     body: &Body<T>,
     level: T,
@@ -50,8 +50,9 @@ pub fn hydrostatics<T: Real>(
     floating(body, level, symmetry, density).figures
 }
 
-/// Figures of the part of the body below z = `level`: the skin may be open at the level or above it and, when it
-/// shows one side, in the plane y = 0. Skins whose normals all point inward give the same figures, reported as such.
+/// Figures of the body below z = `level`. The skin may be open at the level, above it and, for a
+/// half body, in the plane y = 0. Normals that all point inward give the same figures and are
+/// reported.
 pub(crate) fn floating<T: Real>(
     body: &Body<T>,
     level: T,
@@ -117,7 +118,7 @@ pub(crate) fn floating<T: Real>(
     Floating { figures, product_moment, errors }
 }
 
-/// The waterplane from its integrals about the origin, and the product moment about its centre.
+/// The waterplane from integrals about the origin, and the product moment about its centre.
 fn waterplane<T: Real>(
     [area, mx, my, mxx, mxy, myy]: [T; 6],
     [x_low, x_high, y_low, y_high]: [T; 4],
@@ -134,7 +135,8 @@ fn waterplane<T: Real>(
         Symmetry::MirroredTwice => y_high.abs().max(y_low.abs()) * 2.0,
         Symmetry::MirroredOnce => y_high.abs().max(y_low.abs()),
     };
-    // Steiner: the moment about the centre is that about the origin less area times arms.
+    // Parallel axis theorem: the moment about the centre is that about the origin minus area times
+    // distances.
     let plane = Waterplane {
         area,
         centre: origin + Vec3::new(dx, dy, T::zero()),

@@ -5,26 +5,27 @@ use crate::figures::{Floating, floating};
 use crate::hydrostatics::{Hydrostatics, Symmetry, Waterplane};
 use moldloft_num::{Real, Vec3};
 
-/// Within this heel, in radians, a body is upright: rounding leaves less, and no table shows it.
+/// Maximum heel of an upright body, in radians: above rounding, below the resolution of tables.
 const UPRIGHT: f64 = 1e-6;
 
-/// A body whose vertical has a smaller share, its cosine, of that of the water lies on its side.
+/// Cosine of the angle between the vertical of the body and that of the water below which the body
+/// is on its side.
 const ON_ITS_SIDE: f64 = 1e-6;
 
-/// How a body lies in the water: first heeled about its own x axis, then trimmed about the level
-/// axis across it, both through its origin; then the water stands at `level` above the origin.
+/// Attitude of a body in the water: heel about its own x axis, then trim about the horizontal axis
+/// across it, both through its origin; then the water level, relative to the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attitude<T> {
-    /// Height of the water over the body's origin.
+    /// Height of the water above the origin of the body.
     pub level: T,
-    /// Radians; positive sinks what has large x.
+    /// Radians; positive immerses the end with large x.
     pub trim: T,
-    /// Radians; positive sinks what has large y.
+    /// Radians; positive immerses the side with large y.
     pub heel: T,
 }
 
 impl<T: Real> Attitude<T> {
-    /// Upright, the water at `level`.
+    /// The upright attitude with the water at `level`.
     pub fn upright(level: T) -> Self {
         Self { level, trim: T::zero(), heel: T::zero() }
     }
@@ -39,7 +40,7 @@ impl<T: Real> Attitude<T> {
         Self { level, trim, heel }
     }
 
-    /// A point of the body seen from the water: x level along the body, z up.
+    /// A point of the body in earth axes: x horizontal along the body, z up.
     pub fn earth_from(&self, p: Vec3<T>) -> Vec3<T> {
         let (st, ct, sh, ch) = self.turns();
         let (y, z) = (p.y * ch + p.z * sh, p.z * ch - p.y * sh);
@@ -53,19 +54,19 @@ impl<T: Real> Attitude<T> {
         Vec3::new(x, p.y * ch - z * sh, z * ch + p.y * sh)
     }
 
-    /// The height z of the water in the body's axes, over (x, y) = (`x`, 0).
+    /// The height z of the water in body axes at (x, y) = (`x`, 0).
     pub fn water_over(&self, x: T) -> T {
         let (st, ct, _, ch) = self.turns();
         (self.level + x * st) / (ct * ch)
     }
 
-    /// The level at which the water stands at height `z` of the body over (`x`, 0).
+    /// The level at which the water is at height `z` in body axes at (`x`, 0).
     pub fn level_at(trim: T, heel: T, x: T, z: T) -> T {
         let (st, ct, _, ch) = Self { level: T::zero(), trim, heel }.turns();
         z * ct * ch - x * st
     }
 
-    /// The body as the water sees it.
+    /// The body in earth axes.
     pub fn turned(&self, body: &Body<T>) -> Body<T> {
         let still = |a: T| a.re() == 0.0 && a.is_constant();
         if still(self.trim) && still(self.heel) {
@@ -84,16 +85,16 @@ impl<T: Real> Attitude<T> {
     }
 }
 
-/// The water, and what the skin shows of the body.
+/// Properties of the water, and symmetry of the skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Water {
     /// Mass per volume.
     pub density: f64,
     /// Acceleration of gravity.
     pub gravity: f64,
-    /// What the skin shows; a heeled body must be shown whole.
+    /// Symmetry of the skin; a heeled body needs a whole skin.
     pub symmetry: Symmetry,
-    /// A centimetre in the model's unit of length: 0.01 for metres.
+    /// One centimetre in the unit of length of the model: 0.01 for metres.
     pub centimetre: f64,
 }
 
@@ -107,53 +108,54 @@ impl Default for Water {
 /// The figures of a body at an attitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flotation<T> {
-    /// How it lies.
+    /// The attitude.
     pub attitude: Attitude<T>,
-    /// The figures of the turned body, in axes that are level; x is level along the body, y across.
+    /// Figures in earth axes: x horizontal along the body, y across, z up.
     pub earth: Hydrostatics<T>,
-    /// Centre of buoyancy in the body's axes.
+    /// Centre of buoyancy in body axes.
     pub buoyancy_centre: Option<Vec3<T>>,
-    /// Centre of the waterplane in the body's axes.
+    /// Centre of flotation in body axes.
     pub flotation_centre: Option<Vec3<T>>,
-    /// Depth of the lowest point of the upright body below the water, on the centre line at the
-    /// lowest x, in the middle, at the highest x.
+    /// Drafts to the lowest point of the upright body, on the centre line at the lowest x, in the
+    /// middle, and at the highest x.
     pub drafts: [T; 3],
-    /// Height of the lowest open edge (the sheer of a hull without deck) over the water; negative
-    /// where it is under: then the figures are those of a body that no longer holds water. `None`
-    /// without open edges.
+    /// Height of the lowest open edge (the sheer of a hull without deck) above the water. Negative
+    /// for an immersed edge: the figures are then those of a flooding body. `None` without open
+    /// edges.
     pub freeboard: Option<T>,
     /// Displaced mass times gravity.
     pub weight: T,
-    /// Mass that sinks the body by a centimetre.
+    /// Mass that immerses the body by one centimetre.
     pub tpc: Option<T>,
-    /// Moment (mass times length) that trims the body by a centimetre between the ends of the
-    /// waterline; from GM where a centre of gravity is given, else from BM.
+    /// Moment (mass times length) that changes the trim by one centimetre over the length of the
+    /// waterline; from GM with a centre of gravity, otherwise from BM.
     pub mtc: Option<T>,
-    /// Transverse and longitudinal metacentric height at this attitude, when a centre of gravity is
-    /// given: the slope of the righting arm for small turns of the floating body.
+    /// Transverse and longitudinal metacentric height at this attitude, the derivatives of the
+    /// righting arms of the floating body; `None` without a centre of gravity.
     pub gm: Option<[T; 2]>,
-    /// Righting arm: how far buoyancy acts to the sunken side of gravity, level across the body.
+    /// Righting arm: horizontal distance across the body from the line of gravity to that of
+    /// buoyancy, positive to the immersed side.
     pub gz: Option<T>,
-    /// The same along the body: zero in trim.
+    /// The same along the body: zero in longitudinal equilibrium.
     pub trim_arm: Option<T>,
-    /// Area moment of the waterplane about level axes through its centre, the integral of x y.
+    /// Product moment of the waterplane about horizontal axes through its centre: the integral of x
+    /// y.
     pub product_moment: T,
     /// Estimates of the errors of volume, its first moments, wetted area, and of the waterplane's area, first and
     /// second moments.
     pub errors: [f64; 6],
-    /// True when all small turns are righted; `None` without a centre of gravity.
+    /// True for positive stiffness in heel and trim; `None` without a centre of gravity.
     pub stable: Option<bool>,
 }
 
 impl<T: Real> Flotation<T> {
-    /// Every figure by the name that tables, JSON and derivatives use, in a fixed order; those
-    /// without meaning are left out. Centres are in the body's axes, extents of the waterplane in
-    /// level ones.
+    /// Every figure by its name in tables, JSON and derivatives, in a fixed order; undefined ones
+    /// are omitted. Centres are in body axes, extents of the waterplane in earth axes.
     pub fn figures(&self) -> Vec<(&'static str, T)> {
         let Attitude { level, trim, heel } = self.attitude;
         let mut rows = vec![("level", level), ("trim", trim), ("heel", heel)];
         let names = ["draft_low_x", "draft_mid", "draft_high_x"];
-        // Draughts are measured along the body's own vertical: on its side it has none.
+        // Drafts are measured along the vertical of the body; on its side it has none.
         if (heel.cos() * trim.cos()).re().abs() > ON_ITS_SIDE {
             rows.extend(names.into_iter().zip(self.drafts));
         }
@@ -187,8 +189,8 @@ impl<T: Real> Flotation<T> {
     }
 }
 
-/// The bounds of the main figures by name: estimates of the errors of quadrature and interpolation, carried to the
-/// figures at first order.
+/// Error bounds of the main figures by name: estimates for quadrature and interpolation, propagated
+/// to first order.
 pub fn bounds<T: Real>(flotation: &Flotation<T>) -> Vec<(&'static str, f64)> {
     let [volume, moment, wetted, area, first, second] = flotation.errors;
     let h = &flotation.earth;
@@ -224,9 +226,8 @@ pub fn bounds<T: Real>(flotation: &Flotation<T>) -> Vec<(&'static str, f64)> {
     rows
 }
 
-/// The figures of the body at an attitude; `gravity_centre` is in the body's axes.
-///
-/// With a skin of one side ([`Symmetry`]) the heel must be zero.
+/// The figures of the body at an attitude; `gravity_centre` is in body axes.
+/// For a half body ([`Symmetry`]) the heel must be zero.
 pub fn flotation<T: Real>(
     body: &Body<T>,
     water: Water,
@@ -238,7 +239,8 @@ pub fn flotation<T: Real>(
     let Floating { figures: mut earth, product_moment, errors } =
         floating(&turned, attitude.level, symmetry, density);
     if attitude.heel.re().abs() > UPRIGHT {
-        // The box of a heeled waterline says nothing of the form: where a corner of the deck dips in, it is a sliver.
+        // Form coefficients relative to the box of a heeled waterline are meaningless: an immersed
+        // deck corner is a sliver.
         earth.coefficients = None;
     }
     let around = extents(body);
@@ -249,7 +251,7 @@ pub fn flotation<T: Real>(
         let (b, g) = (earth.buoyancy_centre?, gravity_earth?);
         let height = b.z - g.z;
         if earth.waterplane.is_none() {
-            // Wholly under water the metacentres are the centre of buoyancy.
+            // Of a submerged body the metacentres are the centre of buoyancy.
             return Some([height; 2]);
         }
         Some([earth.bm_transverse()? + height, earth.bm_longitudinal()? + height])
@@ -287,13 +289,13 @@ pub fn flotation<T: Real>(
     }
 }
 
-/// The middle of the skin's length and its lowest z: where drafts are measured.
+/// Middle of the length of the skin, and its lowest z: the reference point of drafts.
 pub fn bottom<T: Real>(body: &Body<T>) -> [T; 2] {
     let Extents { low_x, high_x, low_z } = extents(body);
     [(low_x + high_x) * 0.5, low_z]
 }
 
-/// Extents of the skin, with the derivatives of the places they are reached at.
+/// Extents of the skin, with the derivatives of the extreme points.
 struct Extents<T> {
     low_x: T,
     high_x: T,

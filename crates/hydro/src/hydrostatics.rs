@@ -1,11 +1,11 @@
-//! What a body displaces and how stiffly it floats: the figures, by name.
+//! Hydrostatic figures by name: displacement, waterplane, form coefficients, metacentres.
 
 use moldloft_num::{Real, Vec3};
 
-/// How much of a body its skin shows.
+/// Symmetry of a skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Symmetry {
-    /// All of it.
+    /// The whole body.
     #[default]
     None,
     /// One side of the plane y = 0; the figures are those of both sides.
@@ -14,19 +14,19 @@ pub enum Symmetry {
     MirroredOnce,
 }
 
-/// The displaced volume by the divergence theorem with three fields. They agree for a surface that
-/// is closed but for its top in the water plane and its side in the symmetry plane.
+/// The displaced volume by the divergence theorem with three fields, which agree for a surface that
+/// is open at most in the waterplane and in the symmetry plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeForms<T> {
     /// Integral of (x - x0) n_x, x0 in the middle of the body.
     pub x: T,
-    /// Integral of (y - y0) n_y, y0 = 0 for a mirrored body, else in its middle.
+    /// Integral of (y - y0) n_y, with y0 = 0 for a mirrored body, otherwise in its middle.
     pub y: T,
-    /// Integral of (z - level) n_z: the one used, blind to the open top and side.
+    /// Integral of (z - level) n_z: the value used, independent of the open top and side.
     pub z: T,
 }
 
-/// Where the water cuts the body.
+/// The waterplane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waterplane<T> {
     /// Area.
@@ -47,8 +47,8 @@ pub struct Waterplane<T> {
     pub midship_area: T,
 }
 
-/// Ratios of the immersed body to its bounding shapes (Lewis 1988, Principles of Naval
-/// Architecture I, 2.3); the length and beam are those of the waterline.
+/// Form coefficients, ratios of the immersed body to bounding shapes (Lewis 1988, Principles of
+/// Naval Architecture I, 2.3); the length and beam are those of the waterline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FormCoefficients<T> {
     /// Volume / (length beam draft).
@@ -61,7 +61,7 @@ pub struct FormCoefficients<T> {
     pub waterplane: T,
 }
 
-/// What a body displaces and how stiffly it floats.
+/// Hydrostatic figures of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hydrostatics<T> {
     /// Height z of the water.
@@ -70,26 +70,27 @@ pub struct Hydrostatics<T> {
     pub volume: T,
     /// Density times volume.
     pub displacement: T,
-    /// Centre of buoyancy; `None` when nothing is displaced.
+    /// Centre of buoyancy; `None` for a body above the water.
     pub buoyancy_centre: Option<Vec3<T>>,
     /// Area of the skin below the water.
     pub wetted_area: T,
-    /// Depth of the lowest point below the water; zero when all is above.
+    /// Depth of the lowest point below the water; zero for a body above the water.
     pub draft: T,
-    /// The cut with the water; `None` when the water does not cut the body.
+    /// The waterplane; `None` for a body above or below the water.
     pub waterplane: Option<Waterplane<T>>,
     /// Form coefficients; `None` without waterplane.
     pub coefficients: Option<FormCoefficients<T>>,
-    /// The volume by three fields, for the asked number of sides.
+    /// The volume by three fields, for one or both sides as requested.
     pub forms: VolumeForms<T>,
-    /// Largest difference between the forms over the volume. Rounding when closed.
+    /// Maximum difference between the forms over the volume; at rounding level for a closed skin.
     pub closure_error: f64,
     /// Difference between the waterplane area from the skin and from the waterline, over the area.
     pub waterplane_error: f64,
-    /// Open edges below the water, not in the symmetry plane: 0 when the skin holds water.
+    /// Number of open edges below the water, without those in the symmetry plane: 0 for a
+    /// watertight skin.
     pub open_edges: usize,
-    /// True when the normals of the skin point out of the body. When false all figures are those of
-    /// the turned skin.
+    /// True when the normals of the skin point outward; otherwise the figures are those of the
+    /// reversed skin.
     pub outward: bool,
 }
 
@@ -119,8 +120,8 @@ impl<T: Real> Hydrostatics<T> {
         Some(self.kb()? + self.bm_longitudinal()?)
     }
 
-    /// Every figure under the name that tables, JSON and derivatives use, in a fixed order; figures
-    /// without meaning (no waterplane) are left out.
+    /// Every figure by its name in tables, JSON and derivatives, in a fixed order; undefined ones
+    /// (no waterplane) are omitted.
     pub fn figures(&self) -> Vec<(&'static str, T)> {
         let mut rows = vec![
             ("volume", self.volume),

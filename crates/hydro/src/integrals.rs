@@ -1,10 +1,10 @@
-//! Integrals over the part of a skin below z = level, and over the water plane, each with an estimate of its error.
-//!
-//! With the field (0, 0, z - level) the water plane adds nothing to the volume, so no lid is needed. Whole cells
-//! have a rule that is exact for their polynomials where degrees are low; on strips that the water cuts the outer
-//! parameter is w = a + (b - a) sin^2(pi s / 2), which takes the square roots at both ends out of the integrand.
-//! Every integral is computed by two rules; the finer is used, and the difference, which is about the error of the
-//! coarser, is its estimate. Cells are halved, the worst first, until the sum of the estimates is small.
+//! Integrals over the skin below z = level and over the waterplane, each with an error estimate.
+//! The flux of the field (0, 0, z - level) through the waterplane is zero, so the volume needs no
+//! lid. Whole cells of low degree use a rule that is exact for their polynomials. On strips cut by
+//! the water the outer parameter is w = a + (b - a) sin^2(pi s / 2), which removes the square roots
+//! at both ends from the integrand. Every integral is computed by two rules; the finer one is the
+//! result, and the difference, approximately the error of the coarser one, its error estimate.
+//! Cells are halved, the worst first, until the sum of the estimates is small.
 
 use crate::cell::PolynomialCell;
 use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// What is integrated, about (x0, y0, level).
+/// Integrals, about (x0, y0, level).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HydrostaticIntegrals<T> {
     /// Of x n_x, y n_y, z n_z.
@@ -24,15 +24,16 @@ pub(crate) struct HydrostaticIntegrals<T> {
     /// Area of the skin, and its first moments.
     pub wetted: T,
     pub area_moment: Vec3<T>,
-    /// Of 1, x, y, xx, xy, yy over the water plane.
+    /// Of 1, x, y, xx, xy, yy over the waterplane.
     pub plane: [T; 6],
-    /// The area of the water plane from the waterline (Green).
+    /// Area of the waterplane from the waterline (Green's theorem).
     pub green: T,
-    /// Integrals of n_x and n_y: what is open under water.
+    /// Integrals of n_x and n_y: zero without openings below the water.
     pub open: [T; 2],
 }
 
-/// Errors of volume, first moments of it, area, and of the water plane's area, first and second moments.
+/// Errors of volume, its first moments, area, and of the waterplane's area, first and second
+/// moments.
 pub(crate) type Errors = [f64; 6];
 
 impl<T: Real> HydrostaticIntegrals<T> {
@@ -89,7 +90,7 @@ impl<T: Real> HydrostaticIntegrals<T> {
         self.open[1] += n.y;
     }
 
-    /// How far two results of the same integrals are apart.
+    /// Differences between two results for the same integrals.
     fn differences(&self, o: &Self) -> Errors {
         let off = |a: T, b: T| (a.re() - b.re()).abs();
         let vector = |a: Vec3<T>, b: Vec3<T>| off(a.x, b.x).max(off(a.y, b.y)).max(off(a.z, b.z));
@@ -105,12 +106,12 @@ impl<T: Real> HydrostaticIntegrals<T> {
     }
 }
 
-/// The integrals over all cells, and what the figures of the waterline need.
+/// The integrals over all cells, and the strips at the waterline.
 pub(crate) struct Immersed<T> {
     pub sums: HydrostaticIntegrals<T>,
-    /// The estimates of the quadrature's errors.
+    /// Error estimates of the quadrature.
     pub errors: Errors,
-    /// The strips that the water cuts.
+    /// The strips cut by the water.
     pub waterline: Vec<Strip<T>>,
 }
 
@@ -119,7 +120,7 @@ thread_local! {
     static HALVED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// What `work` returns, and how many cells it halves.
+/// The result of `work`, and the number of cells it halves.
 #[cfg(test)]
 pub(crate) fn counted<R>(work: impl FnOnce() -> R) -> (R, usize) {
     let before = HALVED.with(std::cell::Cell::get);
@@ -127,13 +128,13 @@ pub(crate) fn counted<R>(work: impl FnOnce() -> R) -> (R, usize) {
     (made, HALVED.with(std::cell::Cell::get) - before)
 }
 
-/// The most cells that are halved.
+/// Maximum number of halvings.
 const MOST_HALVED: usize = 20_000;
 
-/// From this many cells on they are shared among threads.
+/// Minimum number of cells for parallel work.
 const WORTH_A_THREAD: usize = 2048;
 
-/// A cell's share of the integrals.
+/// Contribution of a cell to the integrals.
 struct CellIntegrals<T> {
     cell: Arc<PolynomialCell<T>>,
     sums: HydrostaticIntegrals<T>,
@@ -141,7 +142,7 @@ struct CellIntegrals<T> {
     waterline: Vec<Strip<T>>,
 }
 
-/// A part that may be halved: the worst first, the earlier of two alike.
+/// A part that may be halved, ordered by error and then by index.
 struct RefinementCandidate(f64, usize);
 
 impl PartialEq for RefinementCandidate {
@@ -161,18 +162,19 @@ impl Ord for RefinementCandidate {
     }
 }
 
-/// Which integrals must reach the accuracy.
+/// The integrals that must reach the accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     All,
-    /// Volume and its first moments: what an equilibrium needs.
+    /// Volume and its first moments, for an equilibrium.
     Displacement,
-    /// All of a skin that may be open: its openings count for the accuracy of the volume, which may vanish for a flat
-    /// skin or an upright wall.
+    /// All integrals of a skin that may be open: openings affect the accuracy of the volume, which
+    /// may be zero for a flat skin or a vertical wall.
     Skin,
 }
 
-/// The integrals below `level`, each to about `accuracy` of its size; `origin` is (x0, y0), `size` that of the body.
+/// The integrals below `level`, each to about the relative `accuracy`; `origin` is (x0, y0), `size`
+/// the size of the body.
 pub(crate) fn immersed<T: Real>(
     cells: &[Arc<PolynomialCell<T>>],
     level: T,
@@ -251,7 +253,7 @@ pub(crate) fn immersed<T: Real>(
     }
     #[cfg(test)]
     HALVED.with(|count| count.set(count.get() + halved));
-    // Summed anew: subtraction leaves rounding.
+    // Sum again: repeated subtraction accumulates rounding.
     let mut all =
         Immersed { sums: HydrostaticIntegrals::zero(), errors: [0.0; 6], waterline: Vec::new() };
     for part in parts.into_iter().flatten() {
@@ -264,7 +266,7 @@ pub(crate) fn immersed<T: Real>(
     all
 }
 
-/// Points of the rules on strips that are cut: along w, and across.
+/// Quadrature points on cut strips: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
 fn part<T: Real>(
@@ -291,7 +293,7 @@ fn part<T: Real>(
         sums.add(&fine);
         let mut off = fine.differences(&coarse);
         if strip.wet == Wet::All && is_exact(strip) {
-            // Only the area is not a polynomial.
+            // Only the integrand of the area is not a polynomial.
             off = [0.0, 0.0, off[2], 0.0, 0.0, 0.0];
         }
         for k in 0..6 {
@@ -302,10 +304,10 @@ fn part<T: Real>(
     CellIntegrals { cell: cell.clone(), sums, errors, waterline: found }
 }
 
-/// The most points of a rule on whole lines.
+/// Maximum number of quadrature points on whole lines.
 const MOST: usize = 12;
 
-/// Points on a whole line along a parameter: exact for second moments up to degree 6.
+/// Quadrature points on a whole line along a parameter: exact for second moments up to degree 6.
 fn points(degree: usize) -> usize {
     match degree {
         0 | 1 => 3,
@@ -313,7 +315,8 @@ fn points(degree: usize) -> usize {
     }
 }
 
-/// Whether [`points`] along a parameter are exact for second moments, so that only areas have an error along it.
+/// True when [`points`] along a parameter are exact for second moments; then only areas have an
+/// error in this direction.
 fn exact_along(degree: usize) -> bool {
     2 * degree <= MOST
 }
@@ -322,8 +325,9 @@ fn is_exact<T: Real>(strip: &Strip<T>) -> bool {
     strip.cell.degree().into_iter().all(exact_along)
 }
 
-/// Points of the finer (0) or the coarser (1) rule. Beside a parameter along which rules are not exact, both are so
-/// along one of low degree: what they differ by is the error of the other.
+/// Quadrature points of the finer (0) or the coarser (1) rule. If the rules along the other
+/// parameter are not exact, both are exact along one of low degree, so that the difference is the
+/// error of the other parameter.
 fn points_beside(degree: usize, coarser: usize, other_exact: bool) -> usize {
     match (exact_along(degree), other_exact) {
         (true, false) => (2 * degree.max(1) + 1) - coarser,
@@ -364,7 +368,8 @@ fn integrated<T: Real>(
         let (low, high) = if strip.is_cut() {
             let at = strip.cut_on(&line, cut);
             let (p, along) = (at.p - origin, at.along);
-            // The waterline runs along the skin's edge, clockwise about the water plane seen from above.
+            // The waterline follows the edge of the skin, clockwise about the waterplane seen from
+            // above.
             let turn = if strip.wet == Wet::Before { -sign } else { sign };
             sums.green += (p.x * along.y - p.y * along.x) * dw * (0.5 * turn);
             if strip.wet == Wet::Before { (T::zero(), at.t) } else { (at.t, T::one()) }

@@ -1,12 +1,12 @@
-//! Measures, hydrostatics and stability of bodies bounded by surfaces.
+//! Areas, volumes, hydrostatics and stability of bodies bounded by surfaces.
 //!
 //! `surfaces -> polynomial cells = Body -> integrals below a water plane -> figures, equilibrium, stability`
-//!
-//! Figures are integrals over the surfaces, with the waterline solved on them; each main figure has a bound: the sum
-//! of the estimates of its quadrature and of what the interpolation of the surfaces leaves. Everything is generic
-//! over [`moldloft_num::Real`]: decisions look at real parts, so derivatives come from the same code.
-//!
-//! Invariant: this crate knows surfaces and panels only, no names, no files; no result depends on threads.
+//! Figures are integrals over the surfaces up to the exact waterline. Each main figure has an error
+//! bound: the sum of the estimates for quadrature and for the interpolation of the surfaces.
+//! Everything is generic over [`moldloft_num::Real`]; decisions use real parts, so the same code
+//! gives derivatives.
+//! Invariant: this crate uses surfaces and panels only, no names and no files; no result depends on
+//! the number of threads.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

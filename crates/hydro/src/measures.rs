@@ -1,15 +1,15 @@
-//! Lengths and volumes with their centres, by quadrature on the shapes themselves.
+//! Lengths and volumes with their centres, by quadrature on the exact shapes.
 
 use moldloft_num::{Curve, Order, Real, Solid, Vec3, gauss_legendre, gauss_rule};
 use moldloft_spline::curve_integral;
 
-/// Relative differences below this count as none.
+/// Negligible relative difference.
 const ACCURACY: f64 = 1e-11;
 
-/// The volume of a solid has settled when halves of its parts change no more than this share of it.
+/// Relative change of the volume of a solid by halving of its parts at which it is converged.
 const SETTLED: f64 = 1e-11;
 
-/// The length of a curve and the centre of its length.
+/// The length of a curve and its centroid.
 pub fn curve_measures<T: Real>(curve: &dyn Curve<T>) -> (T, Vec3<T>) {
     let speed = |t: T| {
         let square = curve.jet(t, Order::First)[1].norm_sq();
@@ -23,7 +23,7 @@ pub fn curve_measures<T: Real>(curve: &dyn Curve<T>) -> (T, Vec3<T>) {
     if length.re() <= 0.0 {
         return (length, curve.jet(T::zero(), Order::Zero)[0]);
     }
-    // About a place of the curve, so that one far away loses no digits.
+    // About a point of the curve, so that a distant origin costs no digits.
     let moment = |axis: usize| {
         let arm = |t: T| speed(t) * (curve.jet(t, Order::Zero)[0][axis] - middle[axis]);
         whole(ACCURACY * rough * rough, &arm)
@@ -32,12 +32,13 @@ pub fn curve_measures<T: Real>(curve: &dyn Curve<T>) -> (T, Vec3<T>) {
     (length, middle + moment / length)
 }
 
-/// A part of a solid that may be halved: the worst first, the earlier of two alike.
+/// A part of a solid that may be halved, ordered by error and then by index.
 struct AdaptiveBox<T> {
     low: [f64; 3],
     high: [f64; 3],
     sums: VolumeMoments<T>,
-    /// How far the sums of its halves are from its own, and the parameter along which they are farthest.
+    /// Maximum difference between its integral and the sum of its halves, and the parameter of this
+    /// difference.
     error: f64,
     along: usize,
     halves: [VolumeMoments<T>; 2],
@@ -51,18 +52,19 @@ struct VolumeMoments<T> {
     moment: Vec3<T>,
 }
 
-/// The most parts of a solid, and how often one is halved.
+/// Maximum number of parts of a solid, and maximum depth of halving.
 const MOST_PARTS: usize = 1000;
 const DEEPEST: u32 = 48;
 
-/// Derivatives of a shape are differences of its places, each known to so many roundings of how far away it is.
+/// Rounding error of a point, in units of the rounding of its coordinates; derivatives are
+/// differences of points.
 const ROUNDINGS: f64 = 4.0;
 
-/// A part that was halved more often has a kink inside.
+/// Depth of halving beyond which a part contains a kink.
 const KINKED: u32 = 20;
 
-/// What the rounding of places makes of the volume of a solid: a sum over Gauss points of how far these are known
-/// times the sides of the parts about them.
+/// Error of the volume of a solid due to rounding of its points: sum over Gauss points of the
+/// rounding error times the face areas of the part.
 fn rounding<T: Real>(solid: &dyn Solid<T>) -> f64 {
     let mut sum = 0.0;
     for (u, a) in gauss_rule(8) {
@@ -77,12 +79,11 @@ fn rounding<T: Real>(solid: &dyn Solid<T>) -> f64 {
     ROUNDINGS * f64::EPSILON * sum
 }
 
-/// The volume of a solid, negative when it is left-handed, its centre, and an estimate of the error of the volume. `None`
-/// when a place is not finite.
-///
-/// By Gauss points, eight along each parameter of a part; the part whose halves differ most from it is halved along
-/// the parameter of that difference, so that a kink inside is closed in upon. Where there is one, derivatives have
-/// no bound: the error is infinite then.
+/// The volume of a solid, negative if it is left-handed, its centre, and an estimate of the error
+/// of the volume. `None` if a point is not finite.
+/// Quadrature with eight Gauss points along each parameter of a part. The part that differs most
+/// from the sum of its halves is halved along the parameter of that difference, which isolates a
+/// kink. With a kink derivatives have no bound, and the error is infinite.
 pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)> {
     let sums = |low: [f64; 3], high: [f64; 3]| -> VolumeMoments<T> {
         let (mut volume, mut moment) = (T::zero(), Vec3::zero());
@@ -152,7 +153,7 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
         }
         error += part.error;
     }
-    // A kink that was closed in upon may move when a parameter does, and what passes over it is in no part.
+    // An isolated kink may move with a parameter, and the volume it sweeps is in no part.
     let kinked = open.iter().chain(&settled).any(|part| part.depth > KINKED);
     if T::PARTS > 1
         && kinked
@@ -160,7 +161,7 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
     {
         error = f64::INFINITY;
     }
-    // Parts may agree by chance better than their places are known.
+    // Parts may agree by chance to less than their rounding.
     if rounding > SETTLED * size {
         error = error.max(rounding);
     }

@@ -4,14 +4,15 @@ use crate::body::Body;
 use crate::strip::{CoordinatePlane, Strip, StripLine, strips};
 use moldloft_num::{Real, Vec3, gauss_rule};
 
-/// Points at which a function along a cut is looked at before its extreme or root is sought.
+/// Samples of a function along a cut from which a root or extremum is searched for.
 const LOOKS: usize = 16;
 
-/// Points of the rule along a piece of a section.
+/// Quadrature points along a piece of a section.
 const POINTS: usize = 16;
 
-/// The immersed area of the section at x = `station`, of the modelled part, with its first moment of height about
-/// the water: the integrals of (z - level) dy and of (z - level)^2 / 2 dy along the cut of the skin.
+/// The immersed area of the modelled half or whole at x = `station`, and its first moment about the
+/// water: the integrals of (z - level) dy and of (z - level)^2 / 2 dy along the section of the
+/// skin.
 pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
     let cut = CoordinatePlane { axis: 0, level: station, epsilon: 1e-13 * body.size() };
     let (mut area, mut moment) = (T::zero(), T::zero());
@@ -46,7 +47,7 @@ pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
     [area, moment]
 }
 
-/// The stretches of the outer parameter on which the cut runs below the level.
+/// The intervals of the outer parameter on which the cut is below the level.
 fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> Vec<[T; 2]> {
     let mut line = StripLine::default();
     let mut height = |w: T| strip.cut_at(w, cut, &mut line).p.z - level;
@@ -65,7 +66,8 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> 
         let w = place(k);
         let z = height(w);
         if (z.re() < 0.0) != (last.1.re() < 0.0) {
-            // The root, by Illinois steps on real parts, then one secant step for the derivatives.
+            // The root by the Illinois method on real parts, then one secant step for the
+            // derivatives.
             let (mut a, mut fa, mut b, mut fb) = (last.0.re(), last.1.re(), w.re(), z.re());
             let mut root = 0.5 * (a + b);
             for _ in 0..60 {
@@ -110,7 +112,7 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> 
     out
 }
 
-/// The lowest and the highest x, then y, of the waterline.
+/// Minimum and maximum x, then y, of the waterline.
 pub(crate) fn waterline_extent<T: Real>(
     strips: &[Strip<T>],
     cut: CoordinatePlane<T>,
@@ -135,7 +137,7 @@ pub(crate) fn waterline_extent<T: Real>(
             let (axis, sign) = (m / 2, if m % 2 == 0 { 1.0 } else { -1.0 });
             let at = |k: usize| sign * points[k][axis].re();
             let k = (0..=LOOKS).fold(0, |n, k| if at(k) < at(n) { k } else { n });
-            // Nothing between the looks goes beyond by more than their own steps.
+            // Between the samples the extremum exceeds them by at most the steps between them.
             let step = [k.saturating_sub(1), (k + 1).min(LOOKS)]
                 .iter()
                 .fold(0.0f64, |s, &n| s.max((at(n) - at(k)).abs()));
@@ -161,8 +163,8 @@ pub(crate) fn waterline_extent<T: Real>(
     Some([a?.1, b?.1, c?.1, d?.1])
 }
 
-/// The place of the least value of `f` between `low` and `high`, by golden sections: its value is flat there, so the
-/// place to half the digits is enough.
+/// The position of the minimum of `f` between `low` and `high`, by golden section search. The value
+/// is flat there, so half of the digits of the position suffice.
 pub(crate) fn least(f: &mut dyn FnMut(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));

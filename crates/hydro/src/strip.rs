@@ -1,15 +1,15 @@
-//! Cells cut by a plane z = level: strips on which the cut is one value of the inner parameter.
-//!
-//! On a strip the outer parameter w runs from `from` to `to`, and the wet part of the line w is all of it, or the
-//! part before or after the one root of z - level. Bernstein coefficients decide: what is called wet or dry is so,
-//! and a root is the only one, for the cell's polynomial.
+//! Cells cut by a plane z = level: strips on which the cut is a function of the outer parameter.
+//! On a strip the outer parameter w is between `from` and `to`, and the wet part of each line of
+//! constant w is the whole line, or the part before or after the single root of z - level.
+//! Bernstein coefficients prove wet, dry and the uniqueness of the root for the polynomial of the
+//! cell.
 
 use crate::bernstein::{bracketed, place_and_tangent, sign_changes, value_and_slope};
 use crate::cell::PolynomialCell;
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
-/// Which part of a strip's lines is under water.
+/// The immersed part of the lines of a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wet {
     All,
@@ -23,9 +23,9 @@ pub(crate) enum Wet {
 #[derive(Clone, Debug)]
 pub(crate) struct Strip<T> {
     pub cell: Arc<PolynomialCell<T>>,
-    /// The parameter along its lines: 0 for u, 1 for v.
+    /// The parameter along its lines: 0 = u, 1 = v.
     pub inner: usize,
-    /// The ends of the other parameter.
+    /// Range of the other parameter.
     pub from: T,
     pub to: T,
     pub wet: Wet,
@@ -36,18 +36,18 @@ pub(crate) struct Strip<T> {
 pub(crate) struct CoordinatePlane<T> {
     pub axis: usize,
     pub level: T,
-    /// A distance that counts as none.
+    /// Negligible distance.
     pub epsilon: f64,
 }
 
-/// Cells that no parameter orders are halved this often.
+/// Maximum depth of halving for cells whose height is monotonic in neither parameter.
 const DEEPEST: u32 = 11;
 
-/// Below this depth the slope along the inner parameter keeps this share of its largest value.
+/// Minimum slope along the inner parameter, relative to its maximum, in cells halved less often.
 const STEEP: f64 = 1e-2;
 const STEEP_TO: u32 = 6;
 
-/// The strips of the part of a cell below the plane, and the area of what could not be decided.
+/// The strips of a cell below the plane, and the area of undecided pieces.
 pub(crate) fn strips<T: Real>(
     cell: &Arc<PolynomialCell<T>>,
     cut: CoordinatePlane<T>,
@@ -66,7 +66,7 @@ pub(crate) fn strips<T: Real>(
             if let [(first, _), (second, _), ..] = edges[..]
                 && depth < DEEPEST
             {
-                // Each half has one of two opposite edges.
+                // Each half has one of the two opposite edges.
                 let along = if first == second { first } else { (depth % 2) as usize };
                 let halves = cell.split(along).map(|half| (Arc::new(half), depth + 1));
                 stack.extend(halves);
@@ -99,8 +99,8 @@ pub(crate) fn strips<T: Real>(
     undecided
 }
 
-/// The edges of a wet cell that lie in the plane, along which the waterline runs: the parameter across, and which part
-/// of its lines is wet then. Edges that are points do not count.
+/// The edges of a wet cell in the plane, which are part of the waterline: the parameter across, and
+/// the wet part of its lines. Degenerate edges do not count.
 fn edges_in_plane<T: Real>(
     cell: &PolynomialCell<T>,
     heights: &[f64],
@@ -135,7 +135,7 @@ fn heights<T: Real>(cell: &PolynomialCell<T>, cut: CoordinatePlane<T>) -> Vec<f6
     cell.net().iter().map(|p| p[cut.axis].re() - cut.level.re()).collect()
 }
 
-/// The parameter along which the height only rises or only falls, the steeper of two.
+/// The parameter in which the height is monotonic; the steeper one if there are two.
 fn ordered(heights: &[f64], [du, dv]: [usize; 2], least: f64) -> Option<usize> {
     let steps = |along: usize| {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -150,7 +150,7 @@ fn ordered(heights: &[f64], [du, dv]: [usize; 2], least: f64) -> Option<usize> {
                 }
             }
         }
-        // The least slope over the greatest; negative where it changes its sign.
+        // Minimum over maximum slope; negative if the sign changes.
         let largest = low.abs().max(high.abs());
         if largest == 0.0 {
             return -1.0;
@@ -162,7 +162,8 @@ fn ordered(heights: &[f64], [du, dv]: [usize; 2], least: f64) -> Option<usize> {
     (shares[best] >= least).then_some(best)
 }
 
-/// The strips of a cell whose height is ordered along `inner`: between the roots on its two outer edges.
+/// The strips of a cell with monotonic height along `inner`, between the roots on its two outer
+/// edges.
 fn cut_cell<T: Real>(
     cell: &Arc<PolynomialCell<T>>,
     inner: usize,
@@ -219,7 +220,8 @@ fn cut_cell<T: Real>(
     }
 }
 
-/// A line of a strip: its control points, their derivatives by the outer parameter.
+/// A line of a strip: its control points, and their derivatives with respect to the outer
+/// parameter.
 #[derive(Debug, Default)]
 pub(crate) struct StripLine<T> {
     pub at: Vec<Vec3<T>>,
@@ -232,7 +234,7 @@ pub(crate) struct CutPoint<T> {
     /// The inner parameter.
     pub t: T,
     pub p: Vec3<T>,
-    /// The derivative of the point by the outer parameter.
+    /// Derivative of the point with respect to the outer parameter.
     pub along: Vec3<T>,
 }
 
@@ -242,12 +244,13 @@ impl<T: Real> Strip<T> {
         self.wet != Wet::All
     }
 
-    /// Which way S_u x S_v of inner and outer parameter points, against the outward normal.
+    /// 1 if the cross product of the inner and the outer derivative points outward, otherwise -1.
     pub fn sign(&self) -> f64 {
         if self.cell.reversed == (self.inner == 0) { -1.0 } else { 1.0 }
     }
 
-    /// The line at `w`, and the inner parameter of the cut on it, 0 or 1 where rounding hides it.
+    /// The line at `w`, and the inner parameter of the cut on it; 0 or 1 if the cut is beyond an
+    /// end by rounding.
     pub fn line(&self, w: T, line: &mut StripLine<T>) {
         self.cell.line(self.inner, w, &mut line.at, &mut line.by);
     }

@@ -1,31 +1,32 @@
-//! Dragging: the numbers that bring a place of the model to where the hand is.
-//!
-//! The place is an expression of the model; its derivatives by numbers of the text are exact. The numbers follow by the
-//! least change ([`moldloft_document::follow`]), from what they were when the drag began.
+//! Dragging: adjusts numbers of the text so that a point of the model follows the pointer.
+//! The point is an expression of the model; its derivatives with respect to numbers of the text are
+//! exact. The numbers follow by the least change ([`moldloft_document::follow`]) from their values
+//! at the start of the drag.
 
 use moldloft_document::follow::{Conditions, FollowSearch, FollowingNumber, follow};
 use moldloft_document::{Document, round_to};
 use moldloft_num::Vec3;
 use moldloft_registry::{Class, Value};
 
-/// A drag under way.
+/// A drag in progress.
 #[derive(Clone, Debug)]
 pub struct Drag {
     /// The object.
     pub object: String,
-    /// The place as an expression.
+    /// The point as an expression.
     pub expression: String,
-    /// What moves it.
+    /// The numbers that move it.
     pub handles: Vec<Handle>,
-    /// True for what is on a curve or surface by its own numbers: only a choice takes that along.
+    /// True for a point on a curve or surface by its own parameters: the curve or surface moves
+    /// only if the user chooses so.
     carried: bool,
-    /// Where it was.
+    /// Its initial position.
     start: Vec3,
-    /// Every number that was moved, and its value before.
+    /// Every number changed so far, with its value before the drag.
     moved: Vec<(String, f64)>,
 }
 
-/// What a number is to the object that is dragged.
+/// Relation of a number to the dragged object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandleKind {
     /// A number of the object itself.
@@ -34,18 +35,18 @@ pub enum HandleKind {
     Coefficient,
     /// A parameter.
     Parameter,
-    /// A whole number in such an expression: mostly part of a rule, as in `beam / 2`.
+    /// An integer in such an expression: usually part of a rule, as in `beam / 2`.
     WholeCoefficient,
 }
 
-/// A number that moves the place.
+/// A number that moves the point.
 #[derive(Clone, Debug)]
 pub struct Handle {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: HandleKind,
-    /// The derivative of the place by it.
+    /// Derivative of the point with respect to it.
     pub direction: Vec3,
     /// Its value.
     pub value: f64,
@@ -53,29 +54,29 @@ pub struct Handle {
     pub range: Option<(f64, f64)>,
 }
 
-/// What came of a step.
+/// Result of a step.
 #[derive(Clone, Debug)]
 pub struct Reached {
-    /// Where the place is.
+    /// Position of the point.
     pub place: Vec3,
-    /// What is left of the way, along the directions that count.
+    /// Remaining distance to the target, along the directions of the view.
     pub left: f64,
-    /// The numbers that follow.
+    /// The adjusted numbers.
     pub values: Vec<(String, f64)>,
-    /// Those of them that are at an end of their range.
+    /// The adjusted numbers at a bound of their range.
     pub ended: Vec<String>,
 }
 
-/// Steps for one place of the hand.
+/// Maximum number of steps per position of the pointer.
 const MOST_STEPS: usize = 12;
 
-/// A number moves the place in the picture when at least this share of its motion is seen there.
+/// Minimum visible fraction of the motion due to a number, in the plane of the view.
 const SEEN: f64 = 0.05;
 
-/// A part of the motion that is smaller than this share needs no further number.
+/// Fraction of the motion below which no further number is added.
 const FOLLOWED: f64 = 1e-3;
 
-/// The dragged place, as conditions on the numbers.
+/// The dragged point as conditions on the numbers.
 struct Aim<'a> {
     document: &'a mut Document,
     expression: &'a str,
@@ -102,10 +103,10 @@ impl Conditions for Aim<'_> {
 }
 
 impl Drag {
-    /// What is to be dragged, and what moves it.
+    /// Starts the drag of a point of an object and finds the numbers that move it.
     ///
     /// # Errors
-    /// Why it cannot be dragged.
+    /// The reason why it cannot be dragged.
     pub fn begin(document: &mut Document, object: &str, at: &[f64]) -> Result<Self, String> {
         let expression = match at {
             [] => object.to_string(),
@@ -160,9 +161,10 @@ impl Drag {
         Ok(Self { object: object.into(), expression, handles, carried, start, moved: Vec::new() })
     }
 
-    /// The numbers that follow a motion: those of the object itself, as far as the view shows what they do, and the
-    /// chosen ones. Where none are chosen, for what is left of the motion the coefficients in its expressions, then the
-    /// parameters that take most of it within their ranges, then whole coefficients.
+    /// The numbers to adjust for a motion: those of the object itself whose effect is visible, and
+    /// the chosen ones. Without chosen ones the rest of the motion is followed by coefficients in
+    /// expressions of the object, then by the parameters that cover most of it within their ranges,
+    /// then by integer coefficients.
     pub fn followers(&self, target: Vec3, basis: &[Vec3], chosen: &[String]) -> Vec<String> {
         let seen = |h: &Handle| -> Vec<f64> { basis.iter().map(|b| b.dot(h.direction)).collect() };
         let motion: Vec<f64> = basis.iter().map(|b| b.dot(target - self.start)).collect();
@@ -201,10 +203,10 @@ impl Drag {
         names
     }
 
-    /// Moves the place as near to `target` as [`Drag::followers`] take it.
+    /// Moves the point as near to `target` as the numbers of [`Drag::followers`] permit.
     ///
     /// # Errors
-    /// Why nothing moves.
+    /// The reason why nothing moves.
     pub fn to(
         &mut self,
         document: &mut Document,
@@ -217,7 +219,7 @@ impl Drag {
         for name in &names {
             self.keep(document, name)?;
         }
-        // What followed another motion goes back.
+        // Numbers adjusted for an earlier motion are reset.
         let back: Vec<(String, f64)> =
             self.moved.iter().filter(|(n, _)| !names.contains(n)).cloned().collect();
         let value = |document: &Document, name: &str| document.number_state(name).map(|(x, _)| x);
@@ -271,7 +273,7 @@ impl Drag {
         Ok(Reached { place, left, values, ended })
     }
 
-    /// Rounds the numbers to what a picture point is worth; one that has hardly moved stays as it was.
+    /// Rounds the numbers to one screen pixel; a number that changed by less keeps its value.
     fn rounded(&self, document: &mut Document, names: &[String], grain: f64) -> Option<Vec3> {
         if grain.is_nan() || grain <= 0.0 {
             return None;
@@ -291,10 +293,10 @@ impl Drag {
         place(document, &self.expression).ok()
     }
 
-    /// Remembers what a number was before the drag, so that its end finds what has changed.
+    /// Stores the value of a number before the drag, so that [`Drag::changed`] can compare.
     ///
     /// # Errors
-    /// That there is no such number.
+    /// If there is no such number.
     pub fn keep(&mut self, document: &Document, name: &str) -> Result<(), String> {
         if !self.moved.iter().any(|(n, _)| n == name) {
             let (value, _) = document.number_state(name).ok_or(format!("no number `{name}`"))?;
@@ -303,7 +305,7 @@ impl Drag {
         Ok(())
     }
 
-    /// The numbers that are not what they were before the drag, and their values.
+    /// The numbers that differ from their values before the drag, with their current values.
     pub fn changed(&self, document: &Document) -> Vec<(String, f64)> {
         let now = |name: &str| document.number_state(name).map(|(x, _)| x);
         let changed = self.moved.iter().filter_map(|(name, before)| {
@@ -314,7 +316,8 @@ impl Drag {
     }
 }
 
-/// What is left of a motion in the picture, and the directions that are followed, at right angles to each other.
+/// Remaining motion in the plane of the view, and an orthonormal basis of the directions followed
+/// so far.
 struct Left {
     whole: f64,
     motion: Vec<f64>,
@@ -326,13 +329,13 @@ impl Left {
         norm(&self.motion) <= FOLLOWED * self.whole
     }
 
-    /// How far a number that moves the place by `seen` follows what is left.
+    /// Part of the remaining motion that a number with the visible effect `seen` can follow.
     fn pull(&self, seen: &[f64]) -> f64 {
         let along: f64 = seen.iter().zip(&self.motion).map(|(a, b)| a * b).sum::<f64>().abs();
         if along > SEEN * norm(seen) * norm(&self.motion) { along } else { 0.0 }
     }
 
-    /// Follows a direction of that length in space, if the picture shows it and it is a new one.
+    /// Adds a direction, `length` long in space, if it is visible and linearly independent.
     fn take(&mut self, seen: &[f64], length: f64) -> bool {
         let new = self.without(seen);
         if norm(seen) < SEEN * length || norm(&new) < SEEN * norm(seen) {
@@ -385,7 +388,7 @@ fn position(value: Value<f64>) -> Option<Vec3> {
     .filter(|p| p.is_finite())
 }
 
-/// The numbers of an object by their names, and whether the text states them as numbers.
+/// The numbers of an object by name; true for those that the text states as literals.
 fn numbers_of(document: &Document, object: &str) -> Vec<(String, bool)> {
     let graph = document.graph();
     let Some(found) = graph.find(object).and_then(|key| graph.get(key)) else { return Vec::new() };
@@ -405,7 +408,7 @@ fn numbers_of(document: &Document, object: &str) -> Vec<(String, bool)> {
         .collect()
 }
 
-/// The numbers of an object that a hand may change, by their names.
+/// Names of the numbers of an object that a drag may change.
 pub fn own_numbers(document: &Document, object: &str) -> Vec<String> {
     numbers_of(document, object)
         .into_iter()

@@ -1,4 +1,4 @@
-//! Facts of a document as data: parameters, objects, diagnostics, all about one object.
+//! Data of a document as JSON: parameters, objects, diagnostics, details of one object.
 
 use crate::drag::own_numbers;
 use crate::text::unit;
@@ -11,10 +11,10 @@ use rustc_hash::FxHasher;
 use serde_json::{Value, json};
 use std::hash::{Hash, Hasher};
 
-/// The most items of a list that are spelled out.
+/// Maximum number of list items shown.
 const MOST_SHOWN: usize = 8;
 
-/// A place of the main text in UTF-16 units; nothing for other texts.
+/// A span of the main text in UTF-16 units; null for other texts.
 pub fn place(document: &Document, text: &str, span: Span) -> Value {
     if !span.is_known() || document.sources().ids().next() != Some(span.file) {
         return Value::Null;
@@ -38,7 +38,7 @@ pub fn params(document: &Document, text: &str) -> Value {
     document.params().iter().map(one).collect()
 }
 
-/// A word that changes when [`objects`] does, found without spelling them out.
+/// A hash that changes with [`objects`], without the cost of building it.
 pub fn objects_stamp(document: &Document) -> u64 {
     let graph = document.graph();
     let mut hasher = FxHasher::default();
@@ -77,7 +77,7 @@ pub fn objects(document: &Document) -> Value {
     graph.objects().map(one).collect()
 }
 
-/// Diagnostics with their places in the main text.
+/// Diagnostics with their positions in the main text.
 pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value {
     let sources = document.sources();
     let one = |d: &Diagnostic| {
@@ -107,7 +107,7 @@ pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value
     all.iter().map(one).collect()
 }
 
-/// A number as JSON: text where JSON has no such number.
+/// A number as JSON; a string for values such as infinity.
 pub fn number(x: f64) -> Value {
     if x.is_finite() { json!(x) } else { json!(x.to_string()) }
 }
@@ -116,7 +116,7 @@ fn vector(v: Vec3) -> Value {
     v.to_array().map(number).to_vec().into()
 }
 
-/// A value in a few numbers.
+/// A value, abbreviated to a few numbers.
 pub fn quantity(value: &Quantity<f64>) -> Value {
     match value {
         Quantity::Number(x) => number(*x),
@@ -136,7 +136,7 @@ pub fn quantity(value: &Quantity<f64>) -> Value {
     }
 }
 
-/// Values of expressions, and derivatives by a parameter.
+/// Values of expressions, with derivatives with respect to a parameter.
 pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>) -> Value {
     let said = |d: &[Diagnostic]| d.first().map_or("no value".to_string(), |d| d.message.clone());
     let mut one = |text: &String| {
@@ -156,7 +156,7 @@ pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>)
     expressions.iter().map(&mut one).collect()
 }
 
-/// The kinds of objects as rows of a form: what each argument may be.
+/// The kinds of objects for a form: name, type and permitted values of each argument.
 pub fn kinds(registry: &Registry) -> Value {
     let field = |f: &FieldSpec| {
         let accepts = Class::ALL.iter().filter(|c| **c != Class::Any && f.class.accepts(**c));
@@ -188,13 +188,13 @@ pub fn kinds(registry: &Registry) -> Value {
     registry.rows().filter(|r| r.kind).map(|r| row(r)).collect()
 }
 
-/// The words in double quotes of a line of help: what a text may be.
+/// The words in double quotes in a help text: the permitted values of a text argument.
 fn quoted(help: &str) -> Vec<&str> {
     help.split('"').skip(1).step_by(2).collect()
 }
 
-/// How the text gives an argument: its place and spelling, or the place where it can be given. Nothing for model files and
-/// for objects that share their statement with others.
+/// An argument in the text: its position and spelling, or the position where it can be inserted.
+/// Null for model files and for objects that share their statement with others.
 fn written(document: &Document, text: &str, object: &str, field: &str) -> Value {
     match document.argument_place(object, field) {
         Some(ArgumentInText::Written(span)) => {
@@ -209,7 +209,7 @@ fn written(document: &Document, text: &str, object: &str, field: &str) -> Value 
     }
 }
 
-/// All about an object.
+/// All details of an object.
 pub fn inspected(
     document: &mut Document,
     text: &str,

@@ -1,4 +1,4 @@
-//! Numbers at the vertices of the scene's patches, for colours: curvatures, quality, derivatives.
+//! Fields at the vertices of patches, for colouring: curvature, quality, derivatives.
 
 use crate::scene::{SceneItem, SceneItemKind};
 use moldloft_diag::Diagnostic;
@@ -8,7 +8,7 @@ use moldloft_mesh::{
 };
 use std::collections::HashMap;
 
-/// The fields that need no parameter; `derivative` is by one.
+/// The fields without a parameter; `derivative` takes one.
 pub const FIELDS: [&str; 10] = [
     "gaussian_curvature",
     "mean_curvature",
@@ -22,13 +22,13 @@ pub const FIELDS: [&str; 10] = [
     "derivative",
 ];
 
-/// Numbers of one patch: how many for each vertex, and all of them.
+/// Field of one patch.
 pub struct PatchNumbers<'s> {
     /// The patch.
     pub item: &'s SceneItem,
-    /// Numbers a vertex.
+    /// Numbers per vertex.
     pub components: usize,
-    /// In the order of the vertices.
+    /// Values, in the order of the vertices.
     pub values: Vec<f32>,
 }
 
@@ -70,7 +70,7 @@ pub fn field<'s>(
         let panels = panel_qualities(mesh);
         let panels =
             panels.map_err(|e| vec![Diagnostic::error("too-many-panels", e.to_string())])?;
-        // The worst of the panels at each vertex.
+        // The worst value of the panels at each vertex.
         let of_patch = |(item, patch): (&'s SceneItem, &moldloft_mesh::Patch)| {
             let mut worst: HashMap<u32, f64> = HashMap::new();
             for index in patch.faces.clone() {
@@ -118,7 +118,7 @@ pub fn field<'s>(
     Ok(drawn.filter_map(of_patch).collect())
 }
 
-/// A measure of the quality of panels by its name.
+/// A panel quality measure by name.
 fn measure(name: &str) -> Option<fn(&PatchQuality) -> f64> {
     Some(match name {
         "aspect" => |q| q.aspect.max,
@@ -129,7 +129,7 @@ fn measure(name: &str) -> Option<fn(&PatchQuality) -> f64> {
     })
 }
 
-/// The quality of each panel: that of a mesh in which it is a patch of its own.
+/// The quality of each panel, computed as that of a one-panel patch.
 fn panel_qualities(mesh: &Mesh) -> Result<Vec<Option<PatchQuality>>, MeshError> {
     let mut builder = TopologyBuilder::new();
     builder.add_vertices(mesh.positions().len())?;

@@ -1,7 +1,7 @@
-//! A reply as one binary message: a head in JSON, and arrays of numbers behind it.
-//!
-//! `u32 magic, u32 version, u32 bytes of the head, u32 zero, head, zeros to a multiple of 8, arrays`,
-//! little endian. The head names each array by type, first byte (after the padding) and count.
+//! A reply as one binary message: a JSON header followed by arrays of numbers.
+//! `u32 magic, u32 version, u32 length of the header, u32 zero, header, zeros to a multiple of 8,
+//! arrays`, little endian. The header describes each array by type, byte offset (after the padding)
+//! and count.
 
 use crate::scene::SceneItem;
 use rustc_hash::FxHashMap;
@@ -10,23 +10,24 @@ use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The first four bytes, "MLFT".
+/// Magic number: the first four bytes are "MLFT".
 pub const MAGIC: u32 = u32::from_le_bytes(*b"MLFT");
 
-/// The form of frames.
+/// Version of the frame format.
 pub const VERSION: u32 = 1;
 
-/// A reply that is being made.
+/// A reply under construction.
 #[derive(Default)]
 pub struct ReplyFrame {
-    /// The facts.
+    /// The header.
     pub head: Map<String, Value>,
-    /// Items of the scene, as text: they are many, and differ with each move of a slider.
+    /// Items of the scene, serialised at once: there are many, and they change with every move of a
+    /// slider.
     items: Option<String>,
     arrays: Vec<u8>,
 }
 
-/// An array of an item, as the head names it.
+/// The header entry of an array.
 #[derive(Serialize)]
 struct ArrayHead {
     role: &'static str,
@@ -36,7 +37,7 @@ struct ArrayHead {
     count: usize,
 }
 
-/// An item of the scene, as the head names it.
+/// The header entry of an item of the scene.
 #[derive(Serialize)]
 struct ItemHead<'a> {
     key: (u8, &'a str),
@@ -51,24 +52,24 @@ struct ItemHead<'a> {
 }
 
 impl ReplyFrame {
-    /// Adds a fact.
+    /// Adds a header entry.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         self.head.insert(key.into(), value.into());
     }
 
-    /// Adds an array of 32-bit floats; what names it.
+    /// Adds an array of 32-bit floats and returns its header entry.
     pub fn floats(&mut self, role: &str, values: &[f32]) -> Value {
         let offset = self.append(values, f32::to_le_bytes);
         json!({"role": role, "type": "f32", "offset": offset, "count": values.len()})
     }
 
-    /// Adds an array of whole numbers; what names it.
+    /// Adds an array of 32-bit unsigned integers and returns its header entry.
     pub fn numbers(&mut self, role: &str, values: &[u32]) -> Value {
         let offset = self.append(values, u32::to_le_bytes);
         json!({"role": role, "type": "u32", "offset": offset, "count": values.len()})
     }
 
-    /// Adds numbers of four bytes; where they begin.
+    /// Adds four-byte numbers and returns their byte offset.
     fn append<T: Copy>(&mut self, values: &[T], bytes: impl Fn(T) -> [u8; 4]) -> usize {
         let offset = self.arrays.len();
         self.arrays.resize(offset + 4 * values.len(), 0);
@@ -79,7 +80,7 @@ impl ReplyFrame {
         offset
     }
 
-    /// Adds the bytes of a file; what names it.
+    /// Adds the bytes of a file and returns their header entry.
     pub fn bytes(&mut self, role: &str, bytes: &[u8]) -> Value {
         let offset = self.arrays.len();
         self.arrays.extend_from_slice(bytes);
@@ -87,7 +88,7 @@ impl ReplyFrame {
         json!({"role": role, "type": "u8", "offset": offset, "count": bytes.len()})
     }
 
-    /// The message.
+    /// The encoded message.
     pub fn encoded(self) -> Vec<u8> {
         let mut head = Value::Object(self.head).to_string();
         if let Some(items) = self.items {
@@ -108,21 +109,21 @@ impl ReplyFrame {
     }
 }
 
-/// The stamps of an item that a viewer has: head, positions, connections.
+/// The stamps of an item known to a viewer: header entry, positions, connectivity.
 type Stamps = [u64; 3];
 
-/// What a viewer has.
+/// State of a viewer, as sent so far.
 #[derive(Default)]
 pub struct ViewerCache {
     items: FxHashMap<(u8, Arc<str>), Stamps>,
-    /// Texts of other facts that were sent, by their names.
+    /// The other header entries sent, as text, by name.
     facts: HashMap<&'static str, String>,
-    /// Stamps of facts that are long, by their names.
+    /// Stamps of long header entries, by name.
     stamps: HashMap<&'static str, u64>,
 }
 
 impl ViewerCache {
-    /// Adds a fact unless it was sent before.
+    /// Adds a header entry that differs from the one last sent.
     pub fn fact(&mut self, frame: &mut ReplyFrame, key: &'static str, value: Value) {
         let text = value.to_string();
         if self.facts.get(key) != Some(&text) {
@@ -131,7 +132,7 @@ impl ViewerCache {
         }
     }
 
-    /// Adds a fact whose stamp is not that of what was sent before.
+    /// Adds a header entry whose stamp differs from the one last sent.
     pub fn stamped(
         &mut self,
         frame: &mut ReplyFrame,
@@ -144,7 +145,7 @@ impl ViewerCache {
         }
     }
 
-    /// Adds what differs from what the viewer has.
+    /// Adds the differences from the scene of the viewer.
     pub fn scene(&mut self, frame: &mut ReplyFrame, items: &[SceneItem]) {
         let mut now = FxHashMap::with_capacity_and_hasher(items.len(), Default::default());
         for item in items {
@@ -170,7 +171,7 @@ impl ViewerCache {
 }
 
 impl ReplyFrame {
-    /// Adds what differs of an item from that of those stamps.
+    /// Adds the parts of an item whose stamps differ from `old`.
     fn item(&mut self, item: &SceneItem, old: Option<&Stamps>) {
         let is_new = |k: usize, stamp: u64| old.is_none_or(|o| o[k] != stamp);
         let mut parts = Vec::with_capacity(5);

@@ -1,10 +1,10 @@
-//! A document under a person's hands.
+//! An interactive session with a document.
 //!
 //! `request (JSON) -> Session -> reply (one binary frame)`
-//!
-//! A [`Session`] answers a page: splice the text, set a parameter, drag a point, inspect, complete, export. After
-//! each change it sends only what the viewer has not: see [`frame`] for the form of replies and [`Ask`] for
-//! the requests. Several viewers of one model share a session.
+//! A [`Session`] answers the requests of the workbench: splice the text, set a parameter, drag a
+//! point, inspect, complete, export. Replies contain only changes since the last one to the same
+//! viewer; [`frame`] defines their format and [`Ask`] the requests. Several viewers of one model
+//! share a session.
 //!
 //! ```
 //! use moldloft_document::NoFiles;
@@ -15,11 +15,10 @@
 //! let reply = Reply::of(&session.answer(r#"{"id": 1, "kind": "open"}"#));
 //! assert_eq!(reply.head["params"][0]["value"], 2.0);
 //! let reply = Reply::of(&session.answer(r#"{"id": 2, "kind": "set", "values": {"w": 3}}"#));
-//! // A has not moved.
+//! // A is unchanged, so only B and the line are sent.
 //! assert_eq!(reply.head["items"].as_array().unwrap().len(), 2);
 //! ```
-//!
-//! Invariant: knows no transport and opens no file; the page's state is never needed to answer.
+//! Invariant: no transport, no file access, and no dependence on the state of the page.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

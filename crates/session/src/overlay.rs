@@ -1,4 +1,4 @@
-//! Foreign meshes and offsets laid over the model, and how far they are from it.
+//! Meshes and point tables laid over the model, and their distances from it.
 
 use crate::frame::ReplyFrame;
 use moldloft_budget::Budget;
@@ -9,10 +9,10 @@ use moldloft_num::{Order, Vec3};
 use moldloft_registry::Value as Quantity;
 use serde_json::{Value, json};
 
-/// The most vertices of all overlays.
+/// Maximum number of vertices of all overlays.
 const MOST_VERTICES: usize = 2_000_000;
 
-/// Something laid over the model.
+/// A mesh or point table laid over the model.
 pub struct Overlay {
     name: String,
     points: Vec<Vec3>,
@@ -20,7 +20,7 @@ pub struct Overlay {
     edges: Vec<u32>,
 }
 
-/// What is laid over the model, and the shapes prepared for its distances.
+/// The overlays, and the shapes prepared for their distances.
 #[derive(Default)]
 pub struct Overlays {
     all: Vec<Overlay>,
@@ -28,10 +28,11 @@ pub struct Overlays {
 }
 
 impl Overlays {
-    /// Takes a file: an STL, OBJ, PLY, OFF or GDF mesh, or a table of points by any other name.
+    /// Adds a file: an STL, OBJ, PLY, OFF or GDF mesh by its extension, otherwise a table of
+    /// points.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the file.
     pub fn add(&mut self, name: &str, data: &str) -> Result<(), String> {
         let bytes = from_base64(data).ok_or("the file came damaged")?;
         let said = |e: moldloft_io::ReadError| format!("{name}: {e}");
@@ -53,13 +54,14 @@ impl Overlays {
         Ok(())
     }
 
-    /// Takes one away, or all.
+    /// Removes one overlay, or all.
     pub fn remove(&mut self, name: Option<&str>) {
         self.all.retain(|o| name.is_some_and(|n| o.name != n));
     }
 
-    /// The overlays, each vertex with its distance from the nearest surface of the model: positive on the
-    /// side of the surface's normal. Where the model is mirrored the nearer of a point and its image counts.
+    /// Adds the overlays to a reply, each vertex with its signed distance from the nearest surface
+    /// of the model, positive on the side of the normal. In a mirrored model the smaller distance
+    /// of a point and its image counts.
     pub fn put(&self, document: &mut Document, frame: &mut ReplyFrame, shapes: bool) {
         let symmetry = document.symmetry();
         let mirrors: Vec<usize> =
@@ -93,7 +95,7 @@ impl Overlays {
         frame.put("overlays", parts);
     }
 
-    /// Distances of points from the shown surfaces; `None` where there are none.
+    /// Distances of points from the shown surfaces; `None` without surfaces.
     fn distances(
         &self,
         document: &mut Document,
@@ -147,7 +149,7 @@ fn of_mesh(name: &str, mesh: &Mesh) -> Overlay {
     Overlay { name: name.into(), points, triangles, edges: once(&edges) }
 }
 
-/// Each side once, however many panels have it.
+/// Edges without duplicates.
 fn once(ends: &[u32]) -> Vec<u32> {
     let mut sides: Vec<[u32; 2]> =
         ends.chunks_exact(2).map(|e| [e[0].min(e[1]), e[0].max(e[1])]).collect();
@@ -162,7 +164,7 @@ fn of_points(name: &str, table: &moldloft_io::points::PointTable) -> Overlay {
     Overlay { name: name.into(), points: table.rows.clone(), triangles: Vec::new(), edges }
 }
 
-/// Bytes of base64 with its padding.
+/// Decodes padded base64.
 fn from_base64(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut word, mut bits) = (0u32, 0);

@@ -1,7 +1,6 @@
-//! What a viewer draws of a patch of a mesh: its own vertices, normals, triangles, panel edges and rim.
-//!
-//! Vertices are those of the patch alone, so that shades and colours do not run across its rim. A vertex
-//! at a crease has a copy for each normal of the panels beside it.
+//! Render buffers of a patch: vertices, normals, triangles, panel edges and rim.
+//! Patches do not share vertices, so that shading and colours are not interpolated across a rim. A
+//! vertex at a crease has one copy per normal of the panels around it.
 
 use moldloft_mesh::{Mesh, Patch, is_triangle};
 use moldloft_num::Vec3;
@@ -11,36 +10,37 @@ use std::sync::Arc;
 /// Cosine of 40 degrees: a sharper turn between panels is a crease.
 const CREASE: f64 = 0.766;
 
-/// Cosine of 20 degrees: panels that turn no more from one normal turn no more than a crease from each other.
+/// Cosine of 20 degrees: panels within this angle of one normal are within the crease angle of each
+/// other.
 const HALF_CREASE: f64 = 0.94;
 
-/// What stays the same while a patch moves.
+/// Connectivity of a patch, unchanged while it moves.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Connections {
     /// Corners of the triangles.
     pub triangles: Vec<u32>,
-    /// Ends of the sides of panels inside the patch.
+    /// Vertex pairs of panel edges inside the patch.
     pub edges: Vec<u32>,
-    /// Ends of the sides of panels along its rim.
+    /// Vertex pairs of panel edges along its rim.
     pub rim: Vec<u32>,
-    /// For each vertex that is a copy, the one that it is a copy of: they come last.
+    /// For each copied vertex its original; copies come last.
     pub copies: Vec<u32>,
 }
 
-/// What is drawn of panels at one state.
+/// Render buffers of panels in one state.
 #[derive(Clone)]
 pub struct PatchBuffers {
     /// Positions.
     pub points: Vec<Vec3>,
     /// Unit normals, outward.
     pub normals: Vec<Vec3>,
-    /// Connectivity; the same one as long as it does not change.
+    /// Connectivity; the same allocation while it does not change.
     pub connections: Arc<Connections>,
 }
 
-/// Panels by the patch's own vertices.
+/// Panels with patch-local vertices.
 struct Local {
-    /// The mesh's number of each vertex.
+    /// Index in the mesh of each vertex.
     global: Vec<u32>,
     faces: Vec<[u32; 4]>,
 }
@@ -48,7 +48,7 @@ struct Local {
 impl Local {
     fn new(mesh: &Mesh, patch: &Patch) -> Self {
         let faces = &mesh.faces()[patch.faces.clone()];
-        // The grid of a structured patch, so that fields of its vertices fit.
+        // Grid order of a structured patch, in which fields have their values.
         if let Some(block) = &patch.block {
             let mut own = Vec::with_capacity(faces.len());
             for i in 0..block.nu.saturating_sub(1) {
@@ -88,7 +88,7 @@ impl Local {
     }
 }
 
-/// A patch of a topology, prepared once for all its positions.
+/// A patch of a topology, prepared for any positions of its vertices.
 pub struct PreparedPatch {
     global: Vec<u32>,
     panels: Prepared,
@@ -98,7 +98,7 @@ impl PreparedPatch {
     /// Prepares a patch.
     pub fn new(mesh: &Mesh, patch: &Patch) -> Self {
         let local = Local::new(mesh, patch);
-        // Vertices of one identity, numbered among those of the patch.
+        // Patch-local indices of vertex identities.
         let mut number = FxHashMap::default();
         let identity: Vec<u32> = local
             .global
@@ -116,20 +116,20 @@ impl PreparedPatch {
         self.global.iter().map(|&v| mesh.positions()[v as usize]).collect()
     }
 
-    /// What is drawn at these positions.
+    /// Render buffers for these positions.
     pub fn drawn(&mut self, points: &[Vec3]) -> PatchBuffers {
         self.panels.drawn(points.to_vec())
     }
 }
 
-/// Panels, prepared once for all positions of their vertices.
+/// Panels, prepared for any positions of their vertices.
 pub struct Prepared {
     faces: Vec<[u32; 4]>,
-    /// Vertices of one identity share their normal.
+    /// Identity of each vertex; vertices with the same identity share a normal.
     identity: Vec<u32>,
-    /// How many identities there are.
+    /// Number of identities.
     count: usize,
-    /// As they were drawn last.
+    /// Connectivity of the last buffers.
     known: Arc<Connections>,
 }
 
@@ -142,7 +142,7 @@ impl Prepared {
         Self { faces, identity, count, known: Arc::new(known) }
     }
 
-    /// What is drawn at these positions.
+    /// Render buffers for these positions.
     pub fn drawn(&mut self, mut points: Vec<Vec3>) -> PatchBuffers {
         let turned = |f: &[u32; 4]| {
             let [a, b, c, d] = f.map(|v| points[v as usize]);
@@ -161,7 +161,7 @@ impl Prepared {
             .iter()
             .map(|&v| sums[v as usize].normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0)))
             .collect();
-        // Where the panels around a vertex turn little, they share its normal.
+        // Panels around a vertex share its normal unless one turns by more than the crease angle.
         let mut creased = vec![false; self.count];
         for (face, unit) in self.faces.iter().zip(&unit) {
             for &v in corners(face) {
@@ -189,7 +189,7 @@ impl Prepared {
                 let at = *v;
                 let near = &around[self.identity[at as usize] as usize];
                 let Some(unit) = unit.filter(|_| !near.is_empty()) else { continue };
-                // Of the panels there those that turn little from this one.
+                // The panels at this vertex within the crease angle of this one.
                 let sum = near
                     .iter()
                     .filter(|&&k| unit_at(k).is_some_and(|n| n.dot(unit) >= CREASE))
@@ -221,7 +221,7 @@ fn corners(face: &[u32; 4]) -> &[u32] {
     if is_triangle(*face) { &face[..3] } else { face }
 }
 
-/// The sides of panels: those of one panel are the rim, the others inside.
+/// The panel edges: those of a single panel are the rim, the others inside.
 fn sides(faces: &[[u32; 4]], identity: &[u32], connections: &mut Connections) {
     let mut all: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(4 * faces.len());
     for face in faces {
@@ -239,8 +239,8 @@ fn sides(faces: &[[u32; 4]], identity: &[u32], connections: &mut Connections) {
     }
 }
 
-/// For each patch, a number below about six that no patch with a common side has: neighbours can be given
-/// different colours. A patch keeps its number when others come after it.
+/// A number for each patch, usually below six, that differs from those of adjacent patches, for
+/// distinct colours. It does not change when later patches are added.
 pub fn hues(mesh: &Mesh) -> Vec<u8> {
     let mut owner: FxHashMap<[u32; 2], u32> = FxHashMap::default();
     let patches = mesh.patches();

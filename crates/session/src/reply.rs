@@ -1,22 +1,22 @@
-//! Frames read back, for tests and other programs.
+//! Decoding of frames, for tests and other programs.
 
 use crate::frame::{MAGIC, VERSION};
 use serde_json::Value;
 
-/// A reply: its facts, and the bytes of its arrays.
+/// A decoded reply.
 #[derive(Clone, Debug)]
 pub struct Reply {
-    /// The facts.
+    /// The header.
     pub head: Value,
-    /// The arrays, one behind the other.
+    /// The bytes of all arrays.
     pub arrays: Vec<u8>,
 }
 
 impl Reply {
-    /// Reads a frame.
+    /// Decodes a frame.
     ///
     /// # Panics
-    /// When it is none.
+    /// If the bytes are not a frame.
     pub fn of(bytes: &[u8]) -> Self {
         let word = |k: usize| {
             let word = bytes[4 * k..4 * k + 4].try_into().expect("four bytes");
@@ -29,12 +29,12 @@ impl Reply {
         Self { head, arrays }
     }
 
-    /// The numbers of an array of 32-bit floats that the head names.
+    /// The array of 32-bit floats of a header entry.
     pub fn floats(&self, part: &Value) -> Vec<f32> {
         self.words(part).map(f32::from_le_bytes).collect()
     }
 
-    /// The numbers of an array of whole numbers that the head names.
+    /// The array of 32-bit unsigned integers of a header entry.
     pub fn numbers(&self, part: &Value) -> Vec<u32> {
         self.words(part).map(u32::from_le_bytes).collect()
     }

@@ -1,33 +1,33 @@
-//! What a page may ask.
+//! The requests of the workbench.
 
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A request: who asks, and what.
+/// A request with its sender.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Request {
-    /// Comes back with the reply.
+    /// Id, repeated in the reply.
     #[serde(default)]
     pub id: u64,
-    /// The viewer that asks: each is sent what it has not.
+    /// The viewer that sends it; replies contain only changes since the last one to this viewer.
     #[serde(default)]
     pub tab: u64,
-    /// The version of the text that the viewer's words refer to; comes back with replies.
+    /// The version of the text that offsets refer to; repeated in the reply.
     #[serde(default)]
     pub version: Option<u64>,
-    /// What is asked.
+    /// The request.
     #[serde(flatten)]
     pub ask: Ask,
 }
 
-/// How a number may change.
+/// Options of a number that may change.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Adjusted {
-    /// How much a change of it counts beside the others'.
+    /// Weight of its change.
     #[serde(default = "one")]
     pub weight: f64,
-    /// The value from which changes are counted.
+    /// The value from which changes are measured.
     #[serde(default)]
     pub home: Option<f64>,
 }
@@ -36,78 +36,80 @@ fn one() -> f64 {
     1.0
 }
 
-/// The requests. Places in the text count UTF-16 units.
+/// The requests. Offsets in the text are UTF-16 units.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Ask {
-    /// All that there is, as to a viewer that has nothing.
+    /// The complete state, for a new viewer.
     Open,
-    /// What is new since the last reply to this viewer.
+    /// Changes since the last reply to this viewer.
     Sync,
-    /// The viewer has gone.
+    /// Ends the viewer.
     Close,
-    /// The whole text anew.
+    /// Replaces the text.
     Text {
         /// The text.
         text: String,
     },
-    /// A change set of the text, or several.
+    /// Applies one or several change sets to the text.
     Splice {
-        /// Lengths that are kept, and `[removed, line, line ...]`; a list of such lists.
+        /// Change sets of CodeMirror: lists of retained lengths and of `[removed, line, line ...]`.
         changes: Vec<Value>,
     },
-    /// Values of parameters, and of numbers of objects, before they are written into the text.
+    /// Sets parameters and numbers of objects without writing them to the text.
     Set {
-        /// By name.
+        /// Values by name.
         values: BTreeMap<String, f64>,
     },
-    /// Gives numbers of the model values by the least change of others, before these are written into the text.
+    /// Adjusts numbers by the least change so that expressions have given values, without writing
+    /// them to the text.
     SolveFor {
-        /// Values by expression.
+        /// Target values by expression.
         targets: BTreeMap<String, f64>,
         /// The numbers that may change, by name.
         by: BTreeMap<String, Adjusted>,
     },
-    /// Writes what was set into the text; the reply has the edits.
+    /// Writes the set values to the text; the reply has the edits.
     Commit,
-    /// Takes back what was set and not written.
+    /// Reverts set values that are not written to the text.
     Reset,
-    /// Sets numbers of objects or parameters and writes them; the reply has the edits.
+    /// Sets parameters and numbers of objects and writes them to the text; the reply has the edits.
     Write {
-        /// By name.
+        /// Values by name.
         values: BTreeMap<String, f64>,
     },
-    /// What may be dragged at a place, and what moves it.
+    /// Starts a drag; the reply has the numbers that move the point.
     DragBegin {
         /// The object.
         object: String,
-        /// The parameters of the place: none of a point, t of a curve, u and v of a surface.
+        /// Parameters of the point on the object: none for a point, t for a curve, u and v for a
+        /// surface.
         #[serde(default)]
         at: Vec<f64>,
     },
-    /// Moves what is dragged as near to a place as it goes.
+    /// Moves the dragged point as near to a target as possible.
     DragTo {
-        /// The place.
+        /// The target position.
         target: [f64; 3],
-        /// Orthogonal unit vectors: only the distance along these counts.
+        /// Orthonormal vectors; only the distance along these counts.
         basis: Vec<[f64; 3]>,
-        /// Numbers that follow besides the object's own; by default what the motion needs.
+        /// Numbers to adjust besides those of the object; by default those that the motion needs.
         #[serde(default)]
         names: Vec<String>,
-        /// A length that does not matter, such as that of a picture point: numbers are rounded to it.
+        /// Length to which numbers are rounded, such as the size of a pixel.
         #[serde(default)]
         grain: f64,
     },
     /// Ends a drag; the reply has the edits.
     DragEnd {
-        /// False to take it back.
+        /// False to revert the drag.
         commit: bool,
     },
-    /// All about an object.
+    /// Details of an object.
     Inspect {
         /// Its name.
         name: String,
-        /// A parameter to differentiate its numbers by.
+        /// A parameter with respect to which its numbers are differentiated.
         #[serde(default)]
         by: Option<String>,
     },
@@ -116,75 +118,75 @@ pub enum Ask {
         /// The expressions.
         expressions: Vec<String>,
     },
-    /// The values of what is watched.
+    /// Values of the watched expressions.
     Measure,
-    /// Values of expressions, once.
+    /// Values of expressions, without watching them.
     Evaluate {
         /// The expressions.
         expressions: Vec<String>,
-        /// A parameter to differentiate by.
+        /// A parameter with respect to which they are differentiated.
         #[serde(default)]
         by: Option<String>,
     },
-    /// What else is drawn.
+    /// Selects additional items of the scene.
     Show {
-        /// Sections.
+        /// True to draw sections.
         #[serde(default)]
         contours: Option<bool>,
-        /// Objects that the model hides.
+        /// Hidden objects to draw.
         #[serde(default)]
         revealed: Option<Vec<String>>,
     },
-    /// Numbers at the vertices of all patches.
+    /// A field at the vertices of all patches.
     Field {
-        /// Which: a name of [`crate::FIELDS`], or `derivative`.
+        /// A name of [`crate::FIELDS`], or `derivative`.
         field: String,
         /// The parameter of `derivative`.
         #[serde(default)]
         by: Option<String>,
     },
-    /// Curvature along curves.
+    /// Curvature combs of curves.
     Combs {
         /// The curves.
         names: Vec<String>,
     },
-    /// Sections of all that is shown with planes of one coordinate.
+    /// Section of all shown objects by a plane of constant coordinate.
     Section {
         /// 0, 1 or 2.
         axis: usize,
         /// The coordinate.
         value: f64,
     },
-    /// Volume blocks with their quality, the cells that are folded, and a plane of one of them.
+    /// Volume blocks with their quality, folded cells, and one grid plane.
     Blocks {
-        /// The block of the plane; none without one.
+        /// The block of the grid plane, if one is requested.
         #[serde(default)]
         block: Option<String>,
-        /// The axis along which the plane has one number: 0, 1 or 2.
+        /// The axis of constant index: 0, 1 or 2.
         #[serde(default)]
         axis: usize,
-        /// That number, from 0.
+        /// The index, from 0.
         #[serde(default)]
         index: usize,
     },
-    /// Lays a foreign mesh or a table of points over the model; the reply has the overlays.
+    /// Lays a mesh or a table of points over the model; the reply has the overlays.
     Overlay {
-        /// The name of the file: its ending says what it is.
+        /// File name; its extension gives the format.
         name: String,
-        /// Its bytes in base64.
+        /// File content in base64.
         data: String,
     },
-    /// Takes an overlay away, or all; the reply has those that are left.
+    /// Removes an overlay, or all; the reply has the remaining ones.
     RemoveOverlay {
-        /// Which.
+        /// Its name; all without one.
         #[serde(default)]
         name: Option<String>,
     },
-    /// How far the overlays are from the surfaces.
+    /// Distances of the overlays from the surfaces.
     Deviation,
-    /// Immersed areas of sections across x along the model.
+    /// Curve of immersed section areas along x.
     SectionAreas {
-        /// How many sections.
+        /// Number of sections.
         count: usize,
     },
     /// The lines plan on one sheet, as SVG.
@@ -197,47 +199,47 @@ pub enum Ask {
     Mesh,
     /// The hydrostatics.
     Hydrostatics,
-    /// Files in one of the formats.
+    /// Exports the model.
     Export {
         /// Its name.
         format: String,
-        /// The name of the files without ending.
+        /// File name without extension.
         stem: String,
     },
     /// The names of the formats.
     Formats,
-    /// What may be typed at a place.
+    /// Completions at an offset.
     Complete {
-        /// The place.
+        /// The offset.
         offset: usize,
     },
-    /// What the name at a place means.
+    /// Description of the name at an offset.
     Hover {
-        /// The place.
+        /// The offset.
         offset: usize,
     },
-    /// Where the name at a place is declared.
+    /// Declaration of the name at an offset.
     Definition {
-        /// The place.
+        /// The offset.
         offset: usize,
     },
-    /// Where an object is declared.
+    /// Declaration of an object.
     Locate {
         /// Its name.
         name: String,
     },
-    /// The edits that give the name at a place another spelling everywhere.
+    /// Edits that rename all uses of the name at an offset.
     Rename {
-        /// The place.
+        /// The offset.
         offset: usize,
         /// The new name.
         new: String,
     },
     /// The kinds of objects, with their arguments.
     Kinds,
-    /// Writes a statement where it belongs; the reply has the edits.
+    /// Inserts a statement; the reply has the edits.
     Add {
-        /// A statement that makes one object or parameter.
+        /// A statement that declares one object or parameter.
         statement: String,
     },
     /// Deletes an object and its statement; the reply has the edits.
@@ -245,12 +247,12 @@ pub enum Ask {
         /// Its name.
         name: String,
     },
-    /// Writes a statement like that of an object behind it; the reply has the edits and the new name.
+    /// Copies the statement of an object; the reply has the edits and the new name.
     Duplicate {
         /// The object.
         name: String,
     },
-    /// Gives an object another name everywhere; the reply has the edits.
+    /// Renames an object and all its uses; the reply has the edits.
     RenameObject {
         /// Its name.
         name: String,
@@ -261,7 +263,7 @@ pub enum Ask {
     Format,
     /// The words of the language, for highlighting.
     Words,
-    /// Nothing.
+    /// Does nothing; the reply shows that the engine responds.
     Ping,
 }
 

@@ -1,7 +1,7 @@
-//! What there is to draw of a document: patches, curves, points, wires, contours, each under its name.
-//!
-//! A scene is made anew at each change; what comes out the same keeps its stamp, so that a viewer is sent
-//! only what it has not. What has lost its value while the model has errors stays as it was, with the reason.
+//! Scene of a document: named patches, curves, points, wires and contours.
+//! The scene is rebuilt at each change; unchanged items keep their stamps, so that viewers receive
+//! only changes. An item whose object has lost its value through an error keeps its last state and
+//! has the reason.
 
 use crate::patches::{self, Connections, Prepared, PreparedPatch};
 use moldloft_diag::Diagnostic;
@@ -14,17 +14,17 @@ use moldloft_registry::{ArrayShape, CurveRef, SolidRef, Value};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Steps along a curve at least and at most.
+/// Minimum and maximum number of steps along a curve.
 const STEPS: [usize; 2] = [32, 256];
 
 /// Panels along the edges of a solid.
 const SOLID_PANELS: usize = 8;
 
-/// A model this many times as far from the origin as it is large has its own origin: 32-bit numbers would
-/// lose it.
+/// Ratio of distance from the origin to size above which items have a local origin: 32-bit floats
+/// would lose digits.
 const FAR: f64 = 64.0;
 
-/// The kind of a thing that is drawn.
+/// Kind of an item of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneItemKind {
     /// Panels of a surface or a body.
@@ -44,7 +44,7 @@ pub enum SceneItemKind {
 }
 
 impl SceneItemKind {
-    /// The word for it.
+    /// Its name in replies.
     pub fn word(self) -> &'static str {
         match self {
             SceneItemKind::Patch => "patch",
@@ -58,38 +58,38 @@ impl SceneItemKind {
     }
 }
 
-/// A thing that is drawn.
+/// An item of the scene.
 #[derive(Clone, Debug)]
 pub struct SceneItem {
     /// Unique in the scene.
     pub name: Arc<str>,
     /// The object that it belongs to.
     pub object: Arc<str>,
-    /// What it is.
+    /// Its kind.
     pub kind: SceneItemKind,
     /// Its colour in pictures, sRGB.
     pub colour: [u8; 3],
-    /// A number that its neighbours have not.
+    /// A number that differs from that of adjacent patches.
     pub hue: u8,
-    /// Why it is not up to date; empty when it is.
+    /// Reason why it is out of date; empty if it is current.
     pub stale: Arc<str>,
-    /// What positions are relative to.
+    /// Origin of the positions.
     pub origin: [f64; 3],
     /// Positions, three numbers each.
     pub positions: Arc<Vec<f32>>,
     /// Normals of a patch.
     pub normals: Arc<Vec<f32>>,
-    /// Triangles and edges; of lines the edges only.
+    /// Triangles and edges; for lines edges only.
     pub connections: Arc<Connections>,
-    /// Grows when the looks change.
+    /// Increases when appearance changes.
     pub head_stamp: u64,
-    /// Grows when positions change.
+    /// Increases when positions change.
     pub stamp: u64,
-    /// Grows when connections change.
+    /// Increases when connectivity changes.
     pub topology_stamp: u64,
-    /// The patch of the mesh it shows.
+    /// Index of its patch in the mesh.
     pub patch: Option<usize>,
-    /// When its curve changed last.
+    /// Clock value of the last change of its curve.
     clock: u64,
 }
 
@@ -119,7 +119,7 @@ impl SceneItem {
         self
     }
 
-    /// Lines through runs of points.
+    /// Polylines through lists of points.
     fn lines(self, runs: &[Vec<Vec3>]) -> Self {
         let mut edges = Vec::new();
         let mut points = Vec::new();
@@ -133,7 +133,7 @@ impl SceneItem {
     }
 }
 
-/// Positions as 32-bit numbers relative to an origin that keeps their digits.
+/// An origin, and positions relative to it as 32-bit floats.
 fn relative(points: &[Vec3]) -> ([f64; 3], Arc<Vec<f32>>) {
     let bounds = Box3::around(points.iter().copied());
     let origin = match bounds.is_empty() {
@@ -143,7 +143,7 @@ fn relative(points: &[Vec3]) -> ([f64; 3], Arc<Vec<f32>>) {
     (origin.to_array(), Arc::new(flat(points, |p| p - origin)))
 }
 
-/// What stays while the patches of a topology move, and how each was drawn last.
+/// Prepared patches of a topology, with their last buffers.
 struct KnownPatches {
     topology: Arc<Topology>,
     hues: Vec<u8>,
@@ -190,7 +190,7 @@ impl KnownPatches {
     }
 }
 
-/// All that is drawn.
+/// The items to draw.
 #[derive(Default)]
 pub struct Scene {
     items: Vec<SceneItem>,
@@ -198,26 +198,26 @@ pub struct Scene {
     clock: u64,
     /// The patches of a topology.
     known: Option<KnownPatches>,
-    /// Why there are no panels, though surfaces are shown.
+    /// Reason why shown surfaces have no panels.
     fault: Option<Diagnostic>,
-    /// Whether sections are drawn.
+    /// True to draw sections.
     pub contours: bool,
-    /// Names of things that stay although the model hides them.
+    /// Names of hidden objects to draw.
     pub revealed: FxHashSet<String>,
 }
 
 impl Scene {
-    /// What is drawn, in the order of the model.
+    /// The items, in the order of the model.
     pub fn items(&self) -> &[SceneItem] {
         &self.items
     }
 
-    /// What is to be said beside the document's own diagnostics.
+    /// A diagnostic in addition to those of the document.
     pub fn fault(&self) -> Option<&Diagnostic> {
         self.fault.as_ref()
     }
 
-    /// Takes the state of the document.
+    /// Updates the scene to the state of the document.
     pub fn update(&mut self, document: &mut Document) {
         let before: FxHashMap<(KindKey, Arc<str>), usize> = self
             .items
@@ -270,7 +270,7 @@ impl Scene {
         let panelled = match document.panelled() {
             Ok(panelled) => panelled,
             Err(fault) => {
-                // Without a surface there is nothing to be said.
+                // Without a surface this is not an error.
                 self.fault = (fault.id != "no-mesh").then_some(fault);
                 return Vec::new();
             }
@@ -297,7 +297,7 @@ impl Scene {
             if *known_patch.owner != *owner {
                 known_patch.owner = owner.into();
             }
-            // All fields: what is made to be replaced costs as much as the rest.
+            // All fields at once: replacing default values would double the cost.
             made.push(SceneItem {
                 name: known_patch.name.clone(),
                 object: known_patch.owner.clone(),
@@ -370,7 +370,7 @@ impl Scene {
 /// [`SceneItemKind`] as a key.
 type KindKey = u8;
 
-/// Gives an item the stamps of what it was before where nothing differs.
+/// Keeps the stamps of the previous item for unchanged parts.
 fn stamp(item: &mut SceneItem, old: Option<&SceneItem>, clock: &mut u64) {
     *clock += 1;
     let now = *clock;
@@ -397,7 +397,7 @@ fn same_bits(a: &Arc<Vec<f32>>, b: &Arc<Vec<f32>>) -> bool {
         || a.len() == b.len() && a.iter().zip(b.iter()).all(|(x, y)| x.to_bits() == y.to_bits())
 }
 
-/// Three numbers for each vector. Written in place: an iterator of arrays takes twice the time.
+/// Three numbers per vector. Written in place: an iterator of arrays takes twice as long.
 fn flat(vectors: &[Vec3], of: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
     let mut all = vec![0.0; 3 * vectors.len()];
     let (places, _) = all.as_chunks_mut();
@@ -407,14 +407,14 @@ fn flat(vectors: &[Vec3], of: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
     all
 }
 
-/// The object that a patch belongs to: the one of its name, or of the part before a dot.
+/// The object that a patch belongs to: by its name, or by the part before a dot.
 fn owner<'n>(document: &Document, name: &'n str) -> &'n str {
     let graph = document.graph();
     let dots = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| &name[..k]);
     std::iter::once(name).chain(dots).find(|n| graph.find(n).is_some()).unwrap_or(name)
 }
 
-/// Why objects have no value.
+/// The reasons why objects have no value.
 fn reasons(document: &Document) -> FxHashMap<String, Arc<str>> {
     let mut found = FxHashMap::default();
     for diagnostic in document.diagnostics() {
@@ -478,7 +478,7 @@ fn contour((k, section): (usize, &ContourSection)) -> SceneItem {
         .lines(&lines.collect::<Vec<_>>())
 }
 
-/// Grids of points that a program computes.
+/// Grids of points computed by a program.
 fn grids(document: &Document) -> Vec<SceneItem> {
     let mut found = Vec::new();
     for (name, _, value) in document.variables() {

@@ -1,4 +1,4 @@
-//! The session: requests one after the other, each with its reply.
+//! The session: processes requests in order, each with a reply.
 
 use crate::drag::{Drag, HandleKind};
 use crate::facts;
@@ -22,24 +22,25 @@ use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// The most viewers; the one that was there first is forgotten.
+/// Maximum number of viewers; beyond it the oldest is dropped.
 const MOST_TABS: usize = 64;
 
-/// The most sections of a curve of areas, and its accuracy: that of the hydrostatics, whose body is at hand.
+/// Maximum number of sections of a curve of areas, and its accuracy: that of the hydrostatics,
+/// whose body is cached.
 const MOST_SECTIONS: usize = 401;
 const AREA_ACCURACY: f64 = 1e-6;
 
-/// Points of a comb.
+/// Number of points of a curvature comb.
 const COMB_POINTS: usize = 129;
 
-/// A document under a person's hands.
+/// An interactive session with a document.
 pub struct Session {
     document: Document,
-    /// The text as the page has it.
+    /// The text as in the page.
     text: String,
-    /// Which version of the text that is, as the page counts.
+    /// Version of the text, counted by the page.
     version: u64,
-    /// Grows with every change.
+    /// Increases with every change.
     rev: u64,
     /// Parameters whose values cannot be written into the text.
     kept: Vec<String>,
@@ -58,7 +59,7 @@ struct Tab {
     watched: Vec<String>,
 }
 
-/// Why there is no answer.
+/// Reason why a request is not answered.
 enum Refusal {
     Words(String),
     Diagnostics(Vec<Diagnostic>),
@@ -90,7 +91,7 @@ impl Session {
         Self::within(world, name, text, Arc::default())
     }
 
-    /// As [`Self::new`]; `budget` is what its work may use; it cancels what is under way.
+    /// As [`Self::new`], with a budget that limits and can cancel its work.
     pub fn within(world: Box<dyn World>, name: &str, text: &str, budget: Arc<Budget>) -> Self {
         let document = Document::edited(registry(), world, (name, text), budget);
         Self {
@@ -107,7 +108,7 @@ impl Session {
         }
     }
 
-    /// The text as the page has it.
+    /// The text as in the page.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -123,7 +124,7 @@ impl Session {
         let request: Request = match serde_json::from_str(request) {
             Ok(request) => request,
             Err(error) => {
-                // Who asked knows the answer by its id.
+                // The sender recognises the reply by its id.
                 let id = serde_json::from_str(request).map(|given: Value| given["id"].clone());
                 frame.put("id", id.unwrap_or_default());
                 frame.put("error", format!("not a request: {error}"));
@@ -140,7 +141,7 @@ impl Session {
             let mut frame = ReplyFrame::default();
             frame.put("error", "this request made the engine fail: please report it");
             frame.put("internal", true);
-            // What it knew of the viewers may be half done.
+            // The recorded state of viewers may be incomplete.
             self.tabs.clear();
             self.drawn = None;
             frame
@@ -179,7 +180,7 @@ impl Session {
         }
     }
 
-    /// Adds what the viewer has not.
+    /// Adds changes since the last reply to the viewer.
     fn sync(&mut self, tab: u64, frame: &mut ReplyFrame) {
         if self.drawn != Some(self.rev) {
             self.scene.update(&mut self.document);
@@ -192,7 +193,7 @@ impl Session {
             self.tabs.remove(&oldest);
         }
         if !self.tabs.contains_key(&tab) {
-            // What the viewer still has of an earlier engine is gone.
+            // The viewer discards items of an earlier engine.
             frame.put("all", true);
         }
         let document = &self.document;
@@ -202,7 +203,7 @@ impl Session {
         let stamp = facts::objects_stamp(document);
         known.stamped(frame, "objects", stamp, || facts::objects(document));
         let mut diagnostics = document.diagnostics();
-        // What the run has said already it says better.
+        // A diagnostic of the run with the same id is more precise.
         let fault = self.scene.fault().filter(|f| diagnostics.iter().all(|d| d.id != f.id));
         diagnostics.extend(fault.cloned());
         known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
@@ -252,7 +253,7 @@ impl Session {
             Ask::DragEnd { commit } => {
                 if let Some(drag) = self.drag.take() {
                     let changed = drag.changed(&self.document);
-                    // Numbers that have not changed are spelled as they were.
+                    // Unchanged numbers keep their spelling.
                     self.take_text(self.text.clone());
                     if commit && !changed.is_empty() {
                         self.set(changed.into_iter().collect())?;
@@ -387,7 +388,8 @@ impl Session {
         Ok(())
     }
 
-    /// The watched numbers. They are asked for when the scene is there: it never waits for hydrostatics.
+    /// The watched numbers. The page requests them after the scene, which never waits for
+    /// hydrostatics.
     fn measure(&mut self, tab: u64, frame: &mut ReplyFrame) {
         let expressions = self.tabs.entry(tab).or_default().watched.clone();
         frame.put("watched", facts::values(&mut self.document, &expressions, None));
@@ -403,7 +405,7 @@ impl Session {
 
     fn set(&mut self, values: BTreeMap<String, f64>) -> Answer {
         let values: Vec<(String, f64)> = values.into_iter().collect();
-        // A number that is typed during a drag is part of it.
+        // A number typed during a drag is part of the drag.
         if let Some(drag) = &mut self.drag {
             for (name, _) in &values {
                 drag.keep(&self.document, name)?;
@@ -414,7 +416,7 @@ impl Session {
         Ok(())
     }
 
-    /// What was set becomes edits of the text; the page makes them and sends the text back.
+    /// Turns set values into edits of the text, which the page applies and returns.
     fn commit(&mut self, frame: &mut ReplyFrame) {
         let (_, kept) = self.document.write_params();
         self.kept = kept;
@@ -423,7 +425,7 @@ impl Session {
         frame.put("kept", self.kept.clone());
     }
 
-    /// A change of the text by the document; the page makes its edits and sends the text back.
+    /// A change of the text by the document, whose edits the page applies and returns.
     fn rewrite<A>(
         &mut self,
         change: impl FnOnce(&mut Document) -> Result<A, Diagnostic>,
@@ -463,7 +465,7 @@ impl Session {
         Ok(())
     }
 
-    /// Gives numbers of the model the values that are wished, until they are committed or reset.
+    /// Adjusts numbers of the model to target values, until these are committed or reset.
     fn solve_for(
         &mut self,
         targets: BTreeMap<String, f64>,
@@ -477,7 +479,7 @@ impl Session {
         let by: Vec<Adjustable> = by.into_iter().map(one).collect();
         self.rev += 1;
         let found = self.document.solve_for(&targets, &by).map_err(|faults| {
-            // How far it goes is the answer that a hand wants.
+            // The reachable range is the useful answer for an interactive user.
             let one = |d: &Diagnostic| {
                 let data = d.to_data(self.document.sources());
                 let far = data.expected.map(|e| format!(": {e}")).unwrap_or_default();
@@ -508,7 +510,7 @@ impl Session {
                 let t = k as f64 / (COMB_POINTS - 1) as f64;
                 let [p, d, dd] = curve.jet(t, Order::Second);
                 let speed = d.norm();
-                // The component of x'' across the tangent, over the square of the speed.
+                // The component of x'' normal to the tangent, over the square of the speed.
                 let across = dd - d * (dd.dot(d) / (speed * speed));
                 let bend = across / (speed * speed);
                 let bend = if bend.is_finite() { bend } else { Vec3::zero() };
@@ -620,7 +622,7 @@ impl Session {
 
     fn export(&mut self, format: &str, stem: &str, frame: &mut ReplyFrame) -> Answer {
         let format = format_named(format)?;
-        // A name from a page is a name, never a path.
+        // A name from a page must not be a path.
         let letter = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
         let stem: String = stem.chars().map(letter).take(80).collect();
         let stem = if stem.is_empty() { "model".into() } else { stem };

@@ -1,8 +1,8 @@
-//! Places in a text as editors count them, in UTF-16 units, and changes of a text as they send them.
+//! Positions in UTF-16 units and change sets, as editors send them.
 
 use serde_json::Value;
 
-/// The byte of a place; past the end is the end.
+/// Byte offset of a UTF-16 offset; clamped to the end.
 pub fn byte(text: &str, unit: usize) -> usize {
     if unit >= text.len() && text.is_ascii() {
         return text.len();
@@ -17,7 +17,7 @@ pub fn byte(text: &str, unit: usize) -> usize {
     text.len()
 }
 
-/// The place of a byte.
+/// UTF-16 offset of a byte offset.
 pub fn unit(text: &str, byte: usize) -> usize {
     let mut byte = byte.min(text.len());
     while !text.is_char_boundary(byte) {
@@ -26,10 +26,10 @@ pub fn unit(text: &str, byte: usize) -> usize {
     text[..byte].chars().map(char::len_utf16).sum()
 }
 
-/// The text after a change set: a list of lengths that are kept, and of `[removed, line, line ...]`.
+/// The text after a change set: a list of retained lengths and of `[removed, line, line ...]`.
 ///
 /// # Errors
-/// A change set that is none, or of a text of another length.
+/// If the change set is malformed, or is for a text of another length.
 pub fn changed(text: &str, changes: &Value) -> Result<String, String> {
     let steps = changes.as_array().ok_or("a change set is a list")?;
     let mut made = String::with_capacity(text.len() + 64);
@@ -65,7 +65,8 @@ pub fn changed(text: &str, changes: &Value) -> Result<String, String> {
     Ok(made)
 }
 
-/// The one replacement that makes `new` of `old`: first and last place in `old`, and what comes between.
+/// The single replacement that turns `old` into `new`: start and end offset in `old`, and the
+/// inserted text.
 pub fn difference(old: &str, new: &str) -> Option<(usize, usize, String)> {
     if old == new {
         return None;

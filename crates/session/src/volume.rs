@@ -1,4 +1,4 @@
-//! Volume grids in planes: blocks of solids and blocks that a program computes, and the cells that are folded.
+//! Grid planes and folded cells of volume blocks, of solids and of programs.
 
 use crate::facts::number;
 use crate::frame::ReplyFrame;
@@ -7,7 +7,7 @@ use moldloft_mesh::{BlockFace, Blocks, HexBlock};
 use moldloft_registry::{ArrayShape, Value as Quantity};
 use serde_json::{Value, json};
 
-/// The most folded cells that are drawn; all are counted.
+/// Maximum number of folded cells drawn; all are counted.
 const MOST_FOLDED: usize = 5000;
 
 /// The edges of a cell, by its corners.
@@ -26,21 +26,21 @@ const CELL_EDGES: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
-/// A plane of a block: the vertices whose number along one of its axes is one.
+/// A grid plane of a block: the vertices with one index along one axis.
 #[derive(Clone, Debug)]
 pub struct GridPlane {
     /// The block.
     pub block: String,
     /// 0, 1 or 2.
     pub axis: usize,
-    /// The number along it, from 0.
+    /// The index along it, from 0.
     pub index: usize,
 }
 
-/// Adds all blocks with their counts and quality, the cells that are folded, and one plane.
+/// Adds all blocks with counts and quality, the folded cells, and one grid plane.
 ///
 /// # Errors
-/// A plane of a block that is not there.
+/// If the block or the index of the plane does not exist.
 pub fn put(
     document: &mut Document,
     plane: Option<&GridPlane>,
@@ -72,7 +72,7 @@ pub fn put(
             for place in block.cells() {
                 let cell = blocks.cell(k, place);
                 let (least, _) = cell.scaled_jacobian();
-                // What is no number is as bad as a folded cell, but cannot be drawn.
+                // NaN counts as a folded cell, but cannot be drawn.
                 if least > 0.0 || !cell.0.iter().all(|p| p.is_finite()) || drawn == MOST_FOLDED {
                     continue;
                 }
@@ -96,7 +96,7 @@ pub fn put(
     Ok(())
 }
 
-/// Panels of a plane, each with its own corners and the least scaled Jacobian of the cells at it.
+/// Panels of a plane, with separate corners and the minimum scaled Jacobian of the adjacent cells.
 fn plane_parts(
     blocks: &Blocks,
     which: usize,
@@ -141,7 +141,8 @@ fn plane_parts(
     }))
 }
 
-/// The blocks among the variables of a program: lists of layers, each a grid of points of one size.
+/// Blocks among the variables of a program: lists of layers, which are grids of points of equal
+/// size.
 fn computed(document: &Document) -> Vec<Blocks> {
     let mut found = Vec::new();
     for (name, _, value) in document.variables() {
@@ -171,7 +172,7 @@ fn computed(document: &Document) -> Vec<Blocks> {
             vertices: (0..(ni * nj * nk) as u32).collect(),
             faces: std::array::from_fn(|_| BlockFace::default()),
         };
-        // One with a single layer is no block.
+        // A single layer is not a block.
         found.extend(Blocks::new(positions, vec![block]).ok());
     }
     found

@@ -18,7 +18,7 @@ __all__ = ["identifier", "needed"]
 
 
 def needed(module: str, package: str, purpose: str) -> ModuleType:
-    """A module of an extra, or an error that says what to install.
+    """A module of an extra; if it is missing, an error with the command to install it.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def _clash(purpose: str, package: str) -> str:
 
 
 def identifier(label: str, taken: set[str]) -> str:
-    """A name that the language takes, used once.
+    """A unique valid name of the language.
 
     Parameters
     ----------

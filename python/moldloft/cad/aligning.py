@@ -54,7 +54,7 @@ _BEZIER = np.linalg.inv(
 
 
 def align(faces: list[ImportedFace]) -> None:
-    """Makes the two sides along each shared edge run alike, where they are the same curve.
+    """Gives the two sides along each shared edge the same parametrisation, if they are one curve.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _pair(one: tuple[ImportedFace, int, int], other: tuple[ImportedFace, int, in
 
 
 def _curve(face: ImportedFace, c: int, k: int) -> Callable[[Floats], Floats] | None:
-    """The side in space, by the parameter that the program gives it."""
+    """The side in space, with the parameter that it has in the program."""
     _, backwards, trace = face.loops[c][k]
     if face.natural:
         if not is_whole(trace):

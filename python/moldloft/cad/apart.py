@@ -51,12 +51,12 @@ def read(path: Path, metres: float) -> Imported:
     path
         The file.
     metres
-        The unit of length of what is returned.
+        Unit of length of the result, in metres.
 
     Raises
     ------
     FileError
-        When the file is not of its format, holds no shape, or OCCT ends over it.
+        If the file is not of its format, contains no shape, or crashes OCCT.
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
     if not sys.executable:
@@ -140,7 +140,7 @@ class _Spending:
 
 
 class _Worker:
-    """A process that reads files, one after the other; it ends when nobody asks for a while."""
+    """A process that reads files one after the other, and ends after some time without requests."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -182,7 +182,7 @@ _worker = _Worker()
 def _asked(
     path: Path, metres: float, numbers: list[int] | None, spending: _Spending
 ) -> Imported | str:
-    """Data read by another process, of these faces or of all, or the cause of its end."""
+    """Data of some or all faces read by another process, or the cause of its end."""
     before = _children()
     request = {
         "path": str(path.absolute()),
@@ -208,7 +208,7 @@ def _asked(
 
 
 def _children() -> float:
-    """Processor time of the processes that this one began and that have ended."""
+    """Processor time of ended child processes."""
     spent = os.times()
     return spent.children_user + spent.children_system
 
@@ -277,7 +277,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _timed(request: dict[str, Any]) -> dict[str, Any]:
-    """What is read, with the processor time that it took."""
+    """The result of reading, with its processor time."""
     began = time.process_time()
     bounded(request["memory"], request["seconds"])
     found = _answer(request)

@@ -1,4 +1,4 @@
-"""Panels of whole faces of CAD files: as many as the curvature of their surfaces asks for."""
+"""Number of panels of whole faces of CAD files, from the curvature of their surfaces."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
 
 
 def saved(document: Any) -> bytes:
-    """The bytes of a document of ezdxf, without times and random names: the same each time."""
+    """The bytes of a document of ezdxf, reproducible: without times and random names."""
     ezdxf: Any = needed("ezdxf", "ezdxf", "writing DXF")
     document.ezdxf_metadata()["CREATED_BY_EZDXF"] = "moldloft"
     out = io.StringIO()
@@ -85,7 +85,7 @@ def _layer(document: Any, name: str, colour: tuple[int, int, int] | None) -> str
 
 
 def _spline(space: Any, curve: Nurbs, layer: str) -> None:
-    """All data by hand: ezdxf's own methods for weights make uniform knots."""
+    """A spline with all data set directly: ezdxf's methods for weights make uniform knots."""
     if curve.degrees == (1,) and len(curve.points) == 2:
         space.add_line(*curve.points.tolist(), dxfattribs={"layer": layer})
         return

@@ -17,7 +17,7 @@ _NEAR = 1e-5
 
 
 def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:
-    """The names that a STEP file of ours gives the faces of Gmsh's model, by their tags.
+    """Names of the faces in a Gmsh model of our STEP file, by tag.
 
     Faces are compared by their corners, in the order of the file: a face of Gmsh that has no
     counterpart gets no name.

@@ -1,4 +1,4 @@
-"""The text of IGES files: entities that are missing, and what is left of a file cut short."""
+"""Repair of the text of IGES files: missing entities and truncated files."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class IgesText:
     remarks: list[str] = field(default_factory=list)
     """Doubtful or lost content."""
     names: dict[int, str] = field(default_factory=dict)
-    """Faces by number: none, for OCCT keeps their names itself."""
+    """Names of faces by number: empty, since OCCT provides them."""
     resolution: float = 0.0
-    """The least distance of points that the file distinguishes, in metres; 0 for none stated."""
+    """Resolution of the file in metres; 0 if it states no resolution."""
 
     @classmethod
     def of(cls, path: object, text: str) -> IgesText:
-        """The text of a file, with what is wrong in it as remarks.
+        """The text of a file, with its faults as remarks.
 
         Parameters
         ----------
@@ -37,7 +37,7 @@ class IgesText:
         Raises
         ------
         FileError
-            When the file is cut short before its entities are listed.
+            If the file is cut short before its entities are listed.
         """
         lines = text.splitlines()
         sections: dict[str, list[str]] = {letter: [] for letter in "SGDPT"}
@@ -74,9 +74,9 @@ class IgesText:
             )
             made.text = _ended(sections, listed, {n for n in listed if n in lost} | {*hurt})
         for n in hurt[:_MOST]:
-            made.remarks.append(f"face D{n} needs entities that the file does not hold")
+            made.remarks.append(f"face D{n} needs entities that are missing in the file")
         if len(hurt) > _MOST:
-            made.remarks.append(f"{len(hurt) - _MOST} more faces need what the file does not hold")
+            made.remarks.append(f"{len(hurt) - _MOST} more faces need missing entities")
         return made
 
 
@@ -133,7 +133,7 @@ def _directory(lines: list[str]) -> dict[int, tuple[int, int, int]]:
 
 
 _EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[EeDd]\+?\d{2,}")
-"""Numbers that may be too large."""
+"""Numbers that may exceed double precision."""
 _LARGEST = 1e50
 """Largest coordinate, as for models."""
 
@@ -141,7 +141,7 @@ _LARGEST = 1e50
 def _check_numbers(
     path: object, listed: dict[int, tuple[int, int, int]], fields: dict[int, list[str]]
 ) -> None:
-    """Refuses numbers beyond those of models."""
+    """Rejects numbers beyond the limits of models."""
     for number, own in fields.items():
         for word in own:
             if _EXPONENT.fullmatch(word) and abs(float(_e(word))) > _LARGEST:
@@ -188,7 +188,7 @@ def _there(
 def _ended(
     sections: dict[str, list[str]], listed: dict[int, tuple[int, int, int]], lost: set[int]
 ) -> str:
-    """The file with an end, and what is lost in it as null entities."""
+    """The file with an end section, and null entities in place of lost ones."""
     directory = list(sections["D"][: 2 * len(listed)])
     given = list(sections["P"])
     if lost:

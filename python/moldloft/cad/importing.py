@@ -1,4 +1,4 @@
-"""STEP and IGES files as programs: faces become surfaces to build upon."""
+"""STEP and IGES files as programs, with faces as surfaces that other objects can use."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ENDINGS = (".step", ".stp", ".stpz", ".iges", ".igs", ".brep", ".brp")
 
 
 def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, list[str]]:
-    """A CAD file as a program, and what is doubtful or left out.
+    """A CAD file as a program, with remarks about doubtful and omitted parts.
 
     A face on the whole of its surface becomes a ``NURBSurf``; others become a hidden ``NURBSurf``,
     snakes along their loops and a ``TrimSurf``. An edge common to faces in the file becomes a
@@ -49,7 +49,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     Raises
     ------
     FormatError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     if units not in UNITS:
         raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
@@ -69,7 +69,7 @@ _MOST_TRIES = 8
 
 
 def _loadable(found: Imported, name: str, units: str) -> str:
-    """A program that loads: statements that the language rejects are left out, with remarks."""
+    """A program that loads: statements that fail are omitted, with remarks."""
     from moldloft.loading import loads
 
     apart: set[str] = set()
@@ -103,7 +103,7 @@ def _loadable(found: Imported, name: str, units: str) -> str:
 
 
 def _blamed(fault: Any, text: str) -> set[str]:
-    """The objects that a fault may be of: those that it names, and that of its statement."""
+    """Objects that may cause a fault: those named in its message, and that of its statement."""
     words = set(re.findall(r"`(\w+)`", str(fault.message)))
     if fault.object:
         words.add(fault.object)
@@ -117,7 +117,7 @@ def _blamed(fault: Any, text: str) -> set[str]:
 
 
 def _own_names(face: ImportedFace) -> set[str]:
-    """The names of the objects that a face becomes."""
+    """Names of the objects made from a face."""
     sides = {
         f"{face.name}_s{c}_{k}" for c, cycle in enumerate(face.loops) for k in range(len(cycle))
     }
@@ -151,7 +151,7 @@ def _text(found: Imported, name: str, units: str, apart: frozenset[str]) -> str:
 
 
 def _attributes(face: ImportedFace) -> str:
-    """Attributes of a face besides its shape, as the end of its statement."""
+    """Name, colour and other attributes of a face, as the end of its statement."""
     text = ", orientation = 1" if face.reversed else ""
     if face.colour is not None:
         text += f", colour = {nearest_colour(face.colour)}"
@@ -181,11 +181,11 @@ _PALETTE = np.array(
         (222, 226, 231),
     ]
 )
-"""The sixteen colours of models as files hold them, sRGB."""
+"""The sixteen colours of model files, sRGB."""
 
 
 def nearest_colour(rgb: tuple[float, float, float]) -> int:
-    """The number of the model's colour that is nearest to one of a file.
+    """Index of the model colour nearest to a colour of a file.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ _POLE = 1e-9
 
 
 def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int]) -> list[str]:
-    """A surface; an edge that is one point has one point object, by which panels know the pole."""
+    """A surface; a degenerate edge uses a single point object, which marks the pole for panels."""
     points = face.surface.points
     near = _POLE * float(np.ptp(points.reshape(-1, 3), axis=0).max())
     numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])

@@ -42,7 +42,7 @@ class _Side:
 
 
 def joins(found: Imported, taken: set[str], left_out: frozenset[str]) -> list[str]:
-    """Statements that join the sides along each common edge; sides left open give a remark.
+    """Statements that join faces along common edges; edges left open give a remark.
 
     Parameters
     ----------
@@ -98,8 +98,7 @@ def joins(found: Imported, taken: set[str], left_out: frozenset[str]) -> list[st
         joined(first, second, _rounded_up(_ROUNDING * size))
     if alone:
         found.remarks.append(
-            f"trimmed faces that end in one point are open there by a line of no length: "
-            f"{', '.join(alone)}"
+            f"trimmed faces with a degenerate edge stay open at it: {', '.join(alone)}"
         )
     if lost:
         found.remarks.append(

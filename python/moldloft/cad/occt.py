@@ -1,4 +1,4 @@
-"""OCCT (package ``cadquery-ocp-novtk``): shapes from STEP, and what CAD files hold."""
+"""Reading of CAD files with OCCT (package ``cadquery-ocp-novtk``)."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _PLACES = 33
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """OCCT prints to the terminal itself: its first descriptor is turned to nowhere."""
+    """Silences OCCT, which prints to the terminal directly, by redirecting its standard output."""
     sys.stdout.flush()
     kept = os.dup(1)
     nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -122,11 +122,11 @@ class ImportedFace:
     natural: bool
     """True if its loops are the edges of the surface's parameters."""
     reversed: bool
-    """True if its normal is opposite to that of the surface."""
+    """True if its normal is opposite to that of its surface."""
     tags: tuple[str, ...] = ()
     """The products that it is in, from the outermost one, and its body."""
     colour: tuple[float, float, float] | None = None
-    """sRGB, 0 to 1, of the face or of what it is in."""
+    """sRGB, 0 to 1, of the face or of a shape that contains it."""
 
 
 @dataclass
@@ -154,7 +154,7 @@ def cad_bytes(path: Path) -> bytes:
     Raises
     ------
     FileError
-        When it cannot be read, or a packed file holds no STEP file or too large a one.
+        If it cannot be read, or an archive contains no STEP file or one beyond the size limit.
     """
     data = read_bytes(path)
     if data[:2] == b"PK":
@@ -176,7 +176,7 @@ def cad_bytes(path: Path) -> bytes:
 
 
 def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
-    """The faces and curves of a shape as OCCT writes it, which is taken to be in millimetres."""
+    """The faces and curves of a BREP shape, which is assumed to be in millimetres."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.BRepTools import BRepTools
@@ -197,7 +197,7 @@ def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
     found.remarks.append("a BREP file states no unit: its numbers are taken as millimetres")
     _collect(document, [Sewn(shape)], found, {})
     if not found.faces and not found.curves:
-        raise FileError(f"cannot read `{path}`: it holds no face and no curve")
+        raise FileError(f"cannot read `{path}`: it contains no face and no curve")
     return found
 
 
@@ -206,21 +206,21 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
 
     ``metres`` is the size of its unit.
 
-    The complete faces of a truncated file are read, with remarks.
+    Of a truncated file the complete faces are read, with remarks.
 
     Parameters
     ----------
     path
         The file.
     metres
-        The unit of length of what is returned.
+        Unit of length of the result, in metres.
     numbers
         The faces of a STEP file that are wanted, by the numbers of their entities; None for all.
 
     Raises
     ------
     FileError
-        When the file is not of its format, or holds no shape.
+        If the file is not of its format, or contains no shape.
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP, IGES and BREP")
     data = cad_bytes(path)
@@ -256,12 +256,12 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
             "body of its own, whose volume is added instead of taken away"
         )
     if not found.faces and not found.curves:
-        raise FileError(f"cannot read `{path}`: it holds no face and no curve")
+        raise FileError(f"cannot read `{path}`: it contains no face and no curve")
     return found
 
 
 def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
-    """Content that OCCT finds in a file's text, and True if it is readable."""
+    """The content that OCCT finds in a file, and True if it is readable."""
     found = Imported(metres=metres, remarks=list(source.remarks))
     document = _document(metres)
     iges = isinstance(source, IgesText)
@@ -310,7 +310,7 @@ def _transferred(data: bytes, iges: bool, document: Any) -> bool:
 
 
 def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[int, str]) -> None:
-    """The faces and curves of a document; faces of STEP files are called by their numbers there."""
+    """The faces and curves of a document; faces of STEP files are named by their entity numbers."""
     named = _Names(document)
     taken: set[str] = set()
     seen: set[int] = set()
@@ -366,7 +366,7 @@ class _Labels:
     count: int
 
     def of(self, face: Any) -> tuple[str, str]:
-        """A name for the program, and what remarks call the face."""
+        """Name of the face in the program, and in remarks."""
         self.count += 1
         label = self.named.of(face)
         number = int(label[1:]) if label[:1] == "#" and label[1:].isdecimal() else 0
@@ -391,7 +391,7 @@ def _solids(shape: Any) -> list[Any]:
 
 
 _UNNAMED = {"", "NONE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
-"""Names that programs give to what has none."""
+"""Default names of unnamed shapes."""
 
 
 class _Places:
@@ -429,12 +429,12 @@ class _Places:
         walk(sewn.shape, (), None, False)
 
     def of(self, face: Any) -> tuple[tuple[str, ...], tuple[float, float, float] | None]:
-        """The products and the body of a face, and its colour."""
+        """Products, body and colour of a face."""
         return self._found.get(self._faces.FindIndex(face), ((), None))
 
 
 class _Converted:
-    """A shape as NURBS: all of it, or face by face where OCCT cannot convert it in one."""
+    """A shape as NURBS: converted at once, or face by face if that fails in OCCT."""
 
     def __init__(self, shape: Any) -> None:
         from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
@@ -459,7 +459,7 @@ class _Converted:
         return True
 
     def face(self, part: Any) -> tuple[Any, Any]:
-        """A face as NURBS, and what numbers its edges."""
+        """A face as NURBS, with the numbering of its edges."""
         from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
         from OCP.TopAbs import TopAbs_EDGE
         from OCP.TopoDS import TopoDS
@@ -476,7 +476,7 @@ class _Converted:
 
 
 class _Renumbered:
-    """Edges of one face with the numbers that they have in all of the shape."""
+    """Edges of one face with their numbers in the whole shape."""
 
     def __init__(self) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
@@ -499,7 +499,7 @@ class _Renumbered:
 def _shape_faces(
     sewn: Sewn, labels: _Labels, places: _Places, divided: bool
 ) -> tuple[list[ImportedFace], int, list[str]]:
-    """The faces of a shape, how many edges they have, and remarks; closed faces may be halved."""
+    """The faces of a shape, their numbers of edges, and remarks; closed faces may be halved."""
     from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
     from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 
@@ -607,11 +607,11 @@ class _Names:
             walk(labels.Value(k))
 
     def of(self, shape: Any) -> str:
-        """The name of a shape, wherever it is; empty when it has none."""
+        """The name of a shape or of one that contains it; may be empty."""
         return self._names.get(self._shapes.FindIndex(shape.Located(self._nowhere)), "")
 
     def colour(self, shape: Any) -> tuple[float, float, float] | None:
-        """The colour of a shape, wherever it is, sRGB."""
+        """The colour of a shape or of one that contains it, sRGB."""
         return self._colours.get(self._shapes.FindIndex(shape.Located(self._nowhere)))
 
 
@@ -765,7 +765,7 @@ def _chained(sides: list[tuple[int, bool, Nurbs]]) -> list[tuple[int, bool, Nurb
 
 
 def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs | None:
-    """A side as an edge of the parameters, where that is the same edge in space, or nothing.
+    """A side as an edge of the parameter square, if it is the same curve in space, else None.
 
     Towards a pole one parameter has ever less effect, and programs write it with any error there.
     """
@@ -799,7 +799,7 @@ def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs |
 
 
 def border(trace: Nurbs) -> str:
-    """The edge of the parameters followed by a curve in them, such as ``u0``; or an empty text.
+    """The edge of the parameter square along which a curve runs, such as ``u0``; may be empty.
 
     Parameters
     ----------

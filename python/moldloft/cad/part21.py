@@ -50,7 +50,7 @@ _PREFIXES = {"$": 1.0, ".MILLI.": 1e-3, ".CENTI.": 1e-2, ".DECI.": 0.1, ".MICRO.
 _PREFIXES |= {".KILO.": 1e3, ".NANO.": 1e-9}
 
 _EXPONENT = re.compile(r"[-+]?\d+\.?\d*[Ee]\+?\d{2,}")
-"""Numbers that may be too large."""
+"""Numbers that may exceed double precision."""
 _LARGEST = 1e50
 """Largest coordinate, as for models."""
 
@@ -67,11 +67,11 @@ class StepText:
     remarks: list[str] = field(default_factory=list)
     """Doubtful or lost content."""
     names: dict[int, str] = field(default_factory=dict)
-    """The names of the faces that the file holds, by the numbers of their entities."""
+    """Names of the faces of the file, by entity number."""
 
     @classmethod
     def of(cls, path: object, text: str) -> StepText:
-        """The text of a file, with what is wrong in it as remarks.
+        """The text of a file, with its faults as remarks.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class StepText:
         Raises
         ------
         FileError
-            When it is no STEP file, or no face of it is whole.
+            If it is not a STEP file, or has no complete face.
         """
         if not text.lstrip().startswith("ISO-10303-21"):
             raise FileError(
@@ -113,7 +113,7 @@ class StepText:
         return made.only_faces()
 
     def _check_numbers(self, path: object) -> None:
-        """Refuses numbers that no double holds, and coordinates beyond those of models."""
+        """Rejects numbers beyond double precision, and coordinates beyond the limit of models."""
         for number, body in self.entities.items():
             for found in _EXPONENT.finditer(body):
                 size = abs(float(found[0]))
@@ -125,7 +125,7 @@ class StepText:
 
     @cached_property
     def entities(self) -> dict[int, str]:
-        """The entities of the text as it was, by number, without the words in their strings."""
+        """The entities of the original text by number, without the contents of their strings."""
         plain = re.sub(_STRING, "''", self.text)
         found = re.findall(r"#(\d+)\s*=\s*([^;]*);", plain)
         return {int(n): body.strip() for n, body in found}
@@ -171,7 +171,7 @@ class StepText:
                 "out or has other edges"
             )
         if len(hurt) > _MOST:
-            self.remarks.append(f"{len(hurt) - _MOST} more faces need what the file does not hold")
+            self.remarks.append(f"{len(hurt) - _MOST} more faces need missing entities")
         for face in self.faces:
             if face in hurt:
                 continue
@@ -247,7 +247,7 @@ class StepText:
         return ""
 
     def _factor(self, number: int, deep: int = 0) -> float | None:
-        """The SI units of a unit by conversion; a circular definition has none."""
+        """Factor of a conversion-based unit to SI; None for a circular definition."""
         if deep > _DEEPEST:
             return None
         for measure in self.references[number]:
@@ -272,7 +272,7 @@ class StepText:
 
     @cached_property
     def hurt(self) -> set[int]:
-        """The entities that need, themselves or through others, what the file does not hold."""
+        """Entities that depend, directly or indirectly, on missing ones."""
         users: dict[int, list[int]] = {}
         for n, needs in self.references.items():
             for m in needs:
@@ -287,7 +287,7 @@ class StepText:
         return found
 
     def sound(self) -> StepText:
-        """The file without the entities that need what it does not hold."""
+        """The file without the entities that depend on missing ones."""
         if not self.hurt:
             return self
 
@@ -298,7 +298,7 @@ class StepText:
         return StepText(re.sub(pattern, kept, self.text), list(self.remarks), dict(self.names))
 
     def only_faces(self, numbers: list[int] | None = None) -> StepText:
-        """A file of the faces that are whole, as one shell; for what holds them may be lost.
+        """A file of the complete faces as one shell, since their own shells may be lost.
 
         Parameters
         ----------
@@ -384,7 +384,7 @@ def _few(numbers: list[int]) -> str:
 
 
 def _ended(text: str) -> str:
-    """The whole statements of a file that is cut short, with an end."""
+    """The complete statements of a truncated file, with an end section."""
     last = 0
     # A string that the cut leaves open holds no end of a statement.
     for token in re.finditer(r"'(?:[^']|'')*(?:'|\Z)|;", text):
@@ -397,7 +397,7 @@ def _ended(text: str) -> str:
 
 
 def _letters(words: str) -> str:
-    """A string of Part 21 as it reads."""
+    """A decoded string of Part 21."""
 
     def wide(found: re.Match[str]) -> str:
         size = 4 if found[1] == "2" else 8

@@ -2,7 +2,8 @@
 
 Faces with all of their surface are NURBS surfaces; trimmed planes are trimmed B-reps. rhino3dm
 cannot trim other surfaces nor join faces: a trimmed surface is written whole, grouped with its
-trimming curves, and its attributes say so. Joined bodies are exchanged as STEP, which Rhino reads.
+trimming curves, and its attributes record this. Joined bodies are exchanged as STEP, which Rhino
+reads.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ def faces_of(shape: Any, kind: Any) -> list[Any]:
 
 @dataclass
 class Sewn:
-    """A shape, and what became of it when its faces were sewn."""
+    """A sewn shape with the result of sewing."""
 
     shape: Any
     """The shape as read."""
@@ -81,7 +81,7 @@ class Sewn:
 
     @property
     def whole(self) -> Any:
-        """The shape that its faces are parts of."""
+        """The shape that contains its faces."""
         return self.shape if self.body is None else self.body
 
     @cached_property
@@ -106,7 +106,7 @@ class Sewn:
         return 0 if self.body is None else _shared(self.body) - _shared(self.shape)
 
     def say(self, remarks: list[str], *, iges: bool) -> None:
-        """Says how many edges were found to be one, and of IGES how many are open.
+        """Reports the number of merged edges and, for IGES, of open ones.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Sewn:
         alone = self.passes[-1].NbFreeEdges()
         if alone:
             remarks.append(
-                f"{alone} edges are of one face alone, with no other within {self.tolerance:.2g}: "
+                f"{alone} edges belong to a single face, none other within {self.tolerance:.2g}: "
                 "what the faces bound is open there"
             )
 

@@ -163,7 +163,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _shown_streams() -> tuple[TextIO, TextIO]:
-    """Standard output and error as they are safe for the texts of others."""
+    """Standard output and error that are safe for untrusted text."""
     from moldloft.cli.shown import ShownStream
 
     return cast("TextIO", ShownStream(sys.stdout)), cast("TextIO", ShownStream(sys.stderr))
@@ -177,7 +177,7 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """A remark without a position in Python code, which is irrelevant in a command."""
+    """Shows a warning without its position in Python code, which is irrelevant in a command."""
     from moldloft.cli.colour import painted
 
     stream = file or sys.stderr
@@ -188,7 +188,7 @@ def _show_warning(
 
 
 def _unexpected(error: Exception, arguments: Sequence[str]) -> str:
-    """A fault of ours in one line, or of an argument that is not text."""
+    """One line about an internal error, or about an argument that is not valid text."""
     wrong = [word for word in arguments if not word.isascii() and _has_surrogates(word)]
     if isinstance(error, UnicodeEncodeError) and wrong:
         return f"error: the argument {wrong[0]!a} is not UTF-8 text"
@@ -234,7 +234,7 @@ _COMMON = {"--color": 1, "--limit": 1, "--traceback": 0}
 
 
 def _command_first(arguments: list[str]) -> list[str]:
-    """The words with the options of all commands behind the command.
+    """The words with common options moved behind the command.
 
     >>> _command_first(["--color", "never", "--traceback", "check", "a.sdl"])
     ['check', '--color', 'never', '--traceback', 'a.sdl']
@@ -245,7 +245,9 @@ def _command_first(arguments: list[str]) -> list[str]:
         words = 1 if "=" in rest[0] else 1 + _COMMON[name]
         moved += rest[:words]
         rest = rest[words:]
-    if not rest or rest[0].startswith("-"):
+    if not rest:
+        return []
+    if rest[0].startswith("-"):
         return arguments
     return [rest[0], *moved, *rest[1:]]
 
@@ -253,7 +255,7 @@ def _command_first(arguments: list[str]) -> list[str]:
 def _parsed(arguments: list[str]) -> Namespace:
     from moldloft.cli.parser import meant, usage_error
 
-    arguments = _command_first(arguments)
+    arguments = _command_first(arguments) or ["--help"]
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
         usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
@@ -273,7 +275,8 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
     parser = Parser(
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
-        description="Describe a shape, relate its parts, panel it, measure it.",
+        description="Describe a shape, relate its parts, panel it, measure it.\n\nTo start: "
+        "`moldloft new hull.sdl`, then `moldloft view hull.sdl`.",
         epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples. "
         "--color, --limit and --traceback may stand before it.",
     )
@@ -303,7 +306,7 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
             type=_limit,
             action="append",
             default=[],
-            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; may be repeated",
+            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; repeatable",
         )
         command.add_argument(
             "--traceback", action="store_true", help="show the traceback of an internal fault"

@@ -85,7 +85,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--sides",
         choices=["both", "one"],
         default="both",
-        help="count a mirrored model with its image (the default), or one side alone",
+        help="figures of both sides of a mirrored model (the default), or of one side",
     )
     figures.add_argument(
         "--quality", action="store_true", help="the worst panels of each patch, with their indices"
@@ -205,8 +205,9 @@ def _build(
         inexact: list[Any] = []
         folder = Path("." if options.output == "-" else options.output)
         stem = stem_of(options) if options.to else ""
-        for name in dict.fromkeys(options.to):
-            progress.stage(f"writing {name}")
+        names = list(dict.fromkeys(options.to))
+        for number, name in enumerate(names):
+            progress.stage("writing", name, number / len(names))
             path = folder / file_name(stem, name)
             row = formats()[name]
             lids = options.lids and row.lids
@@ -288,13 +289,13 @@ def _build(
 
 
 def _is_partly_made(model: Model) -> bool:
-    """True when all errors are of objects, beside which others were made."""
+    """True if all errors are of objects and other objects are valid."""
     own = all(d.object for d in model.diagnostics if d.is_error)
     return own and any(o["ok"] for o in _objects(model))
 
 
 def _missing(model: Model) -> list[str]:
-    """The objects that could not be made, those of unknown kinds too."""
+    """The failed objects, including those of unknown kinds."""
     blocked = [d.object for d in model.diagnostics if d.is_error and d.object]
     failed = [o["name"] for o in _objects(model) if not o["ok"]]
     return list(dict.fromkeys(failed + blocked))

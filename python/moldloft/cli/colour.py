@@ -1,4 +1,4 @@
-"""Colours of what is printed: on a terminal, unless ``NO_COLOR`` is set or they are refused."""
+"""Colours of printed text: on a terminal, unless ``NO_COLOR`` or an option disables them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _wanted(stream: IO[str]) -> bool:
 
 
 def painted(text: str, stream: IO[str]) -> str:
-    """A text as the stream shows it: with colours if it has them.
+    """A text for a stream: with colours if the stream has them.
 
     Diagnostics and help texts keep their words; only escapes are added.
     """

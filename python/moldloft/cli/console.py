@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import shutil
 import sys
 import threading
 import time
@@ -81,14 +82,14 @@ def add_model(
             type=assignment,
             action="append",
             default=[],
-            help="a parameter, or a literal of an object such as P21.y; may be repeated",
+            help="a parameter, or a literal of an object such as P21.y; repeatable",
         )
     parser.add_argument(
         "--library",
         metavar="DIR",
         action="append",
         default=[],
-        help="a further folder for `load`; may be repeated",
+        help="additional folder for `load`; repeatable",
     )
     if refined:
         parser.add_argument(
@@ -101,7 +102,7 @@ def add_model(
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
-    """The option that leaves messages about success out."""
+    """The option that suppresses messages about success."""
     parser.add_argument(
         "-q", "--quiet", action="store_true", help="only errors, warnings and remarks"
     )
@@ -129,7 +130,7 @@ def expanded(words: list[str]) -> list[str]:
     Raises
     ------
     Error
-        When nothing matches a pattern.
+        If nothing matches a pattern.
     """
     from glob import glob
 
@@ -187,12 +188,12 @@ def add_name(parser: argparse._ActionsContainer) -> None:
 
 
 def stem_of(options: argparse.Namespace) -> str:
-    """The name of a model's files without ending: by ``--name``, or that of its own file.
+    """File name of a model's output without extension: from ``--name``, or from its own file.
 
     Raises
     ------
     Error
-        When files of that name cannot be written on every system.
+        If the name is not valid on every system.
     """
     from moldloft.errors import Error, FileError
     from moldloft.permissions import checked_name
@@ -215,7 +216,7 @@ def stem_of(options: argparse.Namespace) -> str:
 
 
 def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | None:
-    """Writes a file whole or not at all; ``-`` is standard output, and then no path is given.
+    """Writes a file atomically; ``-`` is standard output, without a returned path.
 
     One of the sources is not overwritten.
     """
@@ -233,7 +234,7 @@ def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | N
 
 
 def put_text(text: str) -> None:
-    """Writes a text of a person's on standard output: as it is, but on a terminal shown."""
+    """Writes untrusted text to standard output: unchanged, but escaped on a terminal."""
     if sys.stdout.isatty():
         sys.stdout.write(text)
     else:
@@ -287,13 +288,13 @@ def open_model(options: argparse.Namespace) -> Model:
     written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
     if written and named not in ("sdl", "ms2"):
         raise Error(
-            f"{options.model} is not a model but what models are written to: {written[0].about};"
+            f"{options.model} is an output format, not a model ({written[0].about});"
             " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
         )
     place = Path(options.model)
     if place.suffix.lower() not in ("", ".sdl", ".ms2", ".skt") and place.is_file():
         raise Error(
-            f"{options.model} is not a model by its name: expected a program (.sdl), a model file "
+            f"{options.model} is not a model: expected a program (.sdl), a model file "
             "(.ms2) or a sketch (.skt)\nhelp: a program of another name can be given on standard "
             "input, as `-`"
         )
@@ -354,25 +355,39 @@ def _finite(data: Any) -> Any:
 
 
 class Progress:
-    """Says on standard error what is being done, once it takes more than a second.
+    """A line about the current stage of work that takes longer than a second, on terminals.
 
-    On a terminal one line is kept up to date; elsewhere each stage is said once.
+    It shows the seconds of the stage or, if the fraction done is known, percent and time left.
+    Nothing is printed into pipes and files.
     """
 
     def __init__(self) -> None:
-        self._stage = ""
-        self._said = ""
-        self._began = time.monotonic()
-        self._over = threading.Event()
         self._terminal = sys.stderr.isatty()
+        self._over = threading.Event()
+        self._shown = False
+        self._now: tuple[str, str, float | None] = ("", "", None)
+        self._began = time.monotonic()
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
-    def stage(self, words: str, detail: str = "") -> None:
-        """Present stage of the work; the detail is shown on terminals only."""
-        self._stage = f"{words}: {detail}" if detail and self._terminal else words
+    def stage(self, words: str, detail: str = "", done: float | None = None) -> None:
+        """Set the current stage.
+
+        Parameters
+        ----------
+        words
+            Name of the stage; a new name restarts its clock.
+        detail
+            Text after the name.
+        done
+            Fraction of the stage that is done, 0 to 1, if known.
+        """
+        if words != self._now[0]:
+            self._began = time.monotonic()
+        self._now = (words, detail, done)
 
     def __enter__(self) -> Progress:
-        self._thread.start()
+        if self._terminal:
+            self._thread.start()
         return self
 
     def __exit__(
@@ -382,21 +397,35 @@ class Progress:
         trace: TracebackType | None,
     ) -> None:
         self._over.set()
-        self._thread.join()
-        if self._said and self._terminal:
+        if self._terminal:
+            self._thread.join()
+        if self._shown:
             print(OwnText("\r\x1b[K"), end="", file=sys.stderr, flush=True)
 
     def _watch(self) -> None:
         wait = 1.0
         while not self._over.wait(wait):
             wait = 0.25
-            seconds = time.monotonic() - self._began
-            if self._terminal:
-                line = OwnText(f"\r\x1b[K{shown(self._stage)} … {seconds:.0f} s; Ctrl-C ends it")
-                print(line, end="", file=sys.stderr, flush=True)
-            elif self._said != self._stage:
-                print(f"{self._stage} …", file=sys.stderr, flush=True)
-            self._said = self._stage
+            line = progress_line(*self._now, time.monotonic() - self._began)
+            end = shutil.get_terminal_size().columns - 1
+            print(OwnText(f"\r\x1b[K{shown(line)[:end]}"), end="", file=sys.stderr, flush=True)
+            self._shown = True
+
+
+def progress_line(words: str, detail: str, done: float | None, seconds: float) -> str:
+    """The line of a stage after a number of seconds.
+
+    >>> progress_line("dividing", "", None, 12.3)
+    'dividing … 12 s; Ctrl-C ends it'
+    >>> progress_line("evaluating cases", "64 of 256", 0.25, 30)
+    'evaluating cases: 64 of 256, 25 %, 1:30 left; Ctrl-C ends it'
+    """
+    line = f"{words}: {detail}" if detail else words
+    if not done:
+        return f"{line} … {seconds:.0f} s; Ctrl-C ends it"
+    left = round(seconds * (1 - done) / done)
+    clock = f"{left // 60}:{left % 60:02d}" if left >= 60 else f"{left} s"
+    return f"{line}, {100 * done:.0f} %, {clock} left; Ctrl-C ends it"
 
 
 def format_argument(name: str) -> str:

@@ -59,7 +59,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Converts; content that the other form cannot represent is an error or a remark."""
+    """Converts; content that the other format cannot represent is an error or a remark."""
     from moldloft.files import commit, ending, format_named, produce
     from moldloft.formats import formats
     from moldloft.permissions import check_not_source

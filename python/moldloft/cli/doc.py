@@ -13,7 +13,7 @@ from moldloft.library import picture, pictured, routines
 from moldloft.spelling import nearest
 from moldloft.text_table import table
 
-__all__ = ["add", "run"]
+__all__ = ["add", "has_picture", "run"]
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--list", action="store_true", help="list all of them, with class and fields"
     )
     parser.add_argument("--json", action="store_true", help="the same as data")
-    parser.add_argument("--markdown", action="store_true", help="the reference page")
+    parser.add_argument("--markdown", action="store_true", help="the index of the reference")
     parser.add_argument(
         "--pictures", metavar="DIR", help="a PNG of the example of each kind, or of NAME"
     )
@@ -38,12 +38,12 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
     from moldloft.explanations import EXPLANATIONS
-    from moldloft.language import attributes, guides, reference, search, statements
+    from moldloft.language import SITE, attributes, guides, reference, search, statements
 
     rows = reference()
     libraries = routines()
     if options.markdown:
-        print(markdown(rows, _pictured, libraries), end="")
+        print(markdown(rows, libraries), end="")
         return 0
     if options.pictures and options.name is None:
         _draw([*rows, *libraries], options.pictures)
@@ -67,7 +67,8 @@ def run(options: argparse.Namespace) -> int:
         if options.json:
             print_json({"name": options.name, "diagnostic": True, "doc": text})
         else:
-            print(f"{options.name}: a diagnostic\n\n{fill(text, 96)}\n\n{_EXAMPLE} {options.name}")
+            page = f"{SITE}/diagnostics/{options.name}.html"
+            print(f"{options.name}: a diagnostic\n\n{fill(text, 96)}\n\nExample: {page}")
         return 0
     shared = next((field for field in attributes() if field["name"] == options.name), None)
     if shared and not options.pictures:
@@ -91,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
         if options.json:
             print_json(found)
         else:
-            print(f"no entry is called `{options.name}`; these may be meant:")
+            print(f"no entry named `{options.name}`" + ("; related entries:" if found else ""))
             if found:
                 print("\n" + _list(found[:_MOST_FOUND], summary=True))
             _print_guides(pages)
@@ -114,8 +115,6 @@ def _print_guides(pages: list[tuple[str, str]]) -> None:
         for about, address in pages[:4]:
             print(f"  {address}  {about}")
 
-
-_EXAMPLE = "An example: https://moldloft.github.io/moldloft/diagnostics.html, at"
 
 #: How each argument of all kinds is written.
 _ATTRIBUTES = {
@@ -146,7 +145,14 @@ _SHAPES = {
 }  # fmt: skip
 
 
-def _pictured(row: dict[str, Any]) -> bool:
+def has_picture(row: dict[str, Any]) -> bool:
+    """True if there is a picture of the example of an entry.
+
+    Parameters
+    ----------
+    row
+        The entry.
+    """
     if "library" in row:
         return pictured(row) is not None
     return bool(row["is_kind"] and row["example"] and row["class"] in _SHAPES)
@@ -160,7 +166,7 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
     from moldloft.files import Output, commit
 
     outputs = []
-    for row in filter(_pictured, rows):
+    for row in filter(has_picture, rows):
         if "library" in row:
             outputs.append(Output(f"{row['name']}.png", picture(row) or b""))
             continue
@@ -204,7 +210,7 @@ def _page(row: dict[str, Any]) -> str:
         lines.append("".join(cell.ljust(width) for cell in cells) + field["help"])
     words = synonyms(row)
     if words:
-        lines += ["", f"Also looked for as: {', '.join(words)}."]
+        lines += ["", f"Also found as: {', '.join(words)}."]
     if row["example"]:
         lines += ["", "Example:", *(f"  {line}" for line in example_lines(row["example"]))]
     return "\n".join(line.rstrip() for line in lines)

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def as_data(value: Any) -> Any:
-    """The value as JSON holds it; a shape as its class."""
+    """The value for JSON; a shape is represented by its class."""
     from numpy import ndarray
 
     from moldloft.implicit import Field, Set
@@ -66,9 +66,9 @@ def as_data(value: Any) -> Any:
 
 
 def as_text(value: Any) -> str:
-    """The value as a person reads it.
+    """The value as text for a reader.
 
-    Numbers have all their digits; each row of a surface is on a line of its own.
+    Numbers with all digits; each row of a surface on a line of its own.
 
     >>> as_text(2.0), as_text([1.0, 2.5]), as_text(1 / 3)
     ('2', '{1, 2.5}', '0.3333333333333333')

@@ -32,7 +32,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the page of a model without errors."""
+    """Writes the page of a model that has no errors."""
     from moldloft.errors import Error
     from moldloft.workbench.export import exported_page
     from moldloft.workbench.page import NO_ENGINE, engine_packed

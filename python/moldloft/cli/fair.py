@@ -53,25 +53,25 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="D|FILE",
         required=True,
         type=words.tolerance,
-        help="largest distance from the original; 0 changes nothing; `none` for no limit; a file "
-        "has one for each point",
+        help="maximum distance from the original; `none`: no limit; a file has one value per point",
     )
     parser.add_argument(
         "--as",
         dest="role",
         choices=["control", "points", "fit"],
-        help="points are data on the curve (the default of the optimum), are moved themselves, or "
-        "are control points, whose index is their parameter: the rule of the report of 1991",
+        help="meaning of the points: fit, data on the curve (the default of the optimum); points, "
+        "moved directly; control, control points with their index as parameter (the report of "
+        "1991)",
     )
     parser.add_argument(
-        "--closed", action="store_true", help="the last point joins the first; of surfaces along u"
+        "--closed", action="store_true", help="closed curve, or surface closed along u"
     )
     parser.add_argument("--closed-v", action="store_true", help="the surface is closed along v")
     parser.add_argument(
         "--mode",
         choices=["optimum", "faithful", "literal", "vertex", "sweeps", "levels"],
-        help="the optimum, with a certificate (the default); or local steps: knots removed "
-        "and re-inserted, the report's literal rule, single points, sweeps, all wavelengths",
+        help="optimum, with a certificate (the default), or local steps: faithful (knots removed "
+        "and re-inserted), literal (the rule of the report), vertex, sweeps, levels",
     )
     parser.add_argument(
         "--measure",
@@ -86,21 +86,21 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--breaks",
         metavar="auto|I,J",
         default="",
-        help="points that are intended breaks; of surfaces rows, as in u5,v2; `auto` finds corners "
-        "and wrong digits",
+        help="points at intended breaks; for surfaces rows, as in u5,v2; `auto` finds corners and "
+        "wrong digits",
     )
     parser.add_argument("--fixed", metavar="I,J", default="", help="points that do not move")
     parser.add_argument(
         "--ends",
         metavar="END[,END]",
-        help="kept at open ends: free, position, tangent, curvature or a number of points; of a "
+        help="fixed at open ends: free, position, tangent, curvature or a number of points; for a "
         "network corners, ends or none",
     )
     parser.add_argument(
         "--rims",
         metavar="WORD|u0=WORD,..",
         default="corners",
-        help="kept at rims of a surface: corners, position, tangent or curvature; of all, or of "
+        help="fixed at rims of a surface: corners, position, tangent or curvature, for all rims or "
         "some, as in u0=curvature,v1=position",
     )
     parser.add_argument(
@@ -114,7 +114,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="P[,Q]",
         type=words.degrees,
         default=3,
-        help="polynomial degree; default: 3; of surfaces one or two",
+        help="polynomial degree, one or two for surfaces; default: 3",
     )
     parser.add_argument(
         "--knots",
@@ -131,7 +131,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--period",
         metavar="D",
         type=float,
-        help="how far the first of the knots of a closed curve is from itself, once round",
+        help="period of the knots of a closed curve",
     )
     parser.add_argument(
         "--along",
@@ -143,13 +143,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--across",
         metavar="X,Y[,Z]",
         type=words.vector,
-        help="points stay in the planes across this direction",
+        help="points stay in planes normal to this direction",
     )
     parser.add_argument("--box", action="store_true", help="limit each coordinate separately")
     for word, place, what in (
         ("through", "T", "the curve passes through X,Y[,Z] at T, or the surface at U,V"),
-        ("tangent", "T", "the curve runs along X,Y[,Z] at T"),
-        ("normal", "U,V", "the surface's normal at U,V is along X,Y,Z"),
+        ("tangent", "T", "the curve has the tangent X,Y[,Z] at T"),
+        ("normal", "U,V", "the surface has the normal X,Y,Z at U,V"),
     ):
         parser.add_argument(
             f"--{word}",
@@ -157,60 +157,60 @@ def add(parser: argparse.ArgumentParser) -> None:
             type=words.condition,
             action="append",
             default=[],
-            help=f"{what}, parameters in [0, 1]; may be repeated",
+            help=f"{what}, parameters in [0, 1]; repeatable",
         )
     parser.add_argument(
         "--join",
         metavar="FILE",
         action="append",
         default=[],
-        help="points of a curve that shares an end with this one, which continues it "
-        "with the same tangent and curvature (both fitted: --as fit); may be repeated",
+        help="points of a curve that shares an end with this one, which continues it with the same "
+        "tangent and curvature (both fitted: --as fit); repeatable",
     )
     parser.add_argument(
         "--keep",
         choices=["area", "volume", "centroid"],
         action="append",
         default=[],
-        help="keep the area, the volume (of revolution about x; of a surface that between it and "
-        "the original) or, of curves, the centroid, to first order",
+        help="keep to first order the area, the volume (of revolution about x; for a surface that "
+        "between it and the original) or, for curves, the centroid",
     )
     parser.add_argument(
         "--spacing",
         metavar="WORD|X,Y[,Z]",
         type=words.spacing,
         default="auto",
-        help="parameters of points: chord, centripetal, a coordinate (x, y, z) or a direction that "
-        "they run along, index, or curvature (of single curves: lengths, longer where they turn; "
-        "the default where one is to be near the truth, else chord)",
+        help="parametrisation: chord, centripetal, a coordinate (x, y, z) or a direction in which "
+        "points ascend, index, or curvature (single curves: chords weighted by curvature; the "
+        "default of the goal near, otherwise chord)",
     )
     parser.add_argument(
-        "--at", metavar="FILE", help="the parameters of the points themselves, rising, in [0, 1]"
+        "--at", metavar="FILE", help="parameters of the points, ascending, in [0, 1]"
     )
     parser.add_argument(
         "--goal",
-        metavar="WORD[=SHARE]",
+        metavar="WORD[=FRACTION]",
         type=words.goal,
         default="near",
-        help="which of the results within the tolerance: near (the default: no fairer than noise "
-        "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
-        "such noise, nearest=SHARE above the least, energy=MOST (the nearest that measures at "
-        "most this), closest (the nearest that has the shapes asked for)",
+        help="choice among the results within the tolerance: near (default: the fairest that noise "
+        "of this size explains; unmoved if there is little to gain), fairest, budget=FRACTION "
+        "of such noise, nearest=FRACTION above the minimum, energy=MAX (the nearest that "
+        "measures at most this), closest (the nearest with the required shape)",
     )
     parser.add_argument(
         "--shape",
         metavar="WORD[=I-J]",
         action="append",
         default=[],
-        help="what shape the curve has: convex, concave, one-way (no inflection), straight, arc, "
-        "each of the whole curve or between two points (arc=9-15; straight=1-9:0,1 in a "
-        "direction); pieces=K of monotone curvature; within=X,Y:MOST; side=X,Y; may be repeated",
+        help="shape of the curve: convex, concave, one-way (no inflection), straight, arc, for the "
+        "whole curve or between two points (arc=9-15; straight=1-9:0,1 in a direction); "
+        "pieces=K of monotone curvature; within=X,Y:MAX; side=X,Y; repeatable",
     )
     parser.add_argument(
         "--release",
         metavar="auto|I,J",
         default="",
-        help="points that are wrong and may be left; `auto`: the wrong digits that were found",
+        help="wrong points without a tolerance; `auto`: the wrong digits that are found",
     )
     parser.add_argument(
         "--bends",
@@ -222,29 +222,29 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=int,
         help="number of control points of a least-squares fit; default: interpolate all points",
     )
-    parser.add_argument("--steps", type=int, help="local steps; of surfaces per point")
+    parser.add_argument("--steps", type=int, help="local steps, for surfaces per point")
     parser.add_argument(
         "--stop",
-        metavar="WORD[=SHARE]",
+        metavar="WORD[=FRACTION]",
         type=words.stop,
         action="append",
         default=[],
-        help="local steps end when a move is shorter than this share of the tolerance "
-        "(move=SHARE), a step lowers the measure by less (drop=SHARE), the certified gap is below "
-        "it (gap=SHARE), or a pass brings no fewer monotone pieces (pieces); may be repeated",
+        help="end of local steps: a move is shorter than this fraction of the tolerance "
+        "(move=FRACTION), a step lowers the measure by less (drop=FRACTION), the certified gap"
+        " is below it (gap=FRACTION), or a pass leaves the number of monotone pieces (pieces);"
+        " repeatable",
     )
     parser.add_argument(
         "--accuracy",
-        metavar="SHARE",
+        metavar="FRACTION",
         type=float,
-        help="certified gap of the optimum of a curve, as a share of the measure; default: as "
-        "small as rounding allows",
+        help="certified gap of the optimum of a curve, relative to the measure; default: as small "
+        "as rounding allows",
     )
     parser.add_argument(
         "--original",
         metavar="FILE",
-        help="the points as they were first read, where FILE was faired already: tolerances are "
-        "counted from these",
+        help="the original points, if FILE is a faired result: tolerances refer to these",
     )
     parser.add_argument(
         "--passes", type=int, help="passes of the faithful mode, which this implies"
@@ -253,22 +253,22 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--units",
         choices=["m", "cm", "mm", "ft", "in"],
-        help="what the numbers of a file of points are in; default: what it states. Splines are "
-        "written with it",
+        help="unit of the numbers in a file of points, also stated in splines; default: that of the"
+        " file",
     )
     parser.add_argument(
         "--round",
         metavar="STEP",
         type=words.step,
-        help="the step of the numbers written, as in 0.001 or 1/16; 0 for all digits; default: of "
-        "a table of offsets its own digit, all digits of other points",
+        help="step of written numbers, as in 0.001 or 1/16; 0 for all digits; default: the last "
+        "digit of a table of offsets, all digits of other points",
     )
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
-    parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
+    parser.add_argument("--plot", metavar="P.png", help="pictures of the result, .png or .svg")
     parser.add_argument(
         "--report",
         metavar="P.html",
-        help="one page about it: pictures to scale, every point and its move, the spline",
+        help="one page: pictures to scale, every point, the spline",
     )
     parser.add_argument(
         "--sheet",
@@ -282,8 +282,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=10,
         default=0,
-        help="offsets that their neighbours contradict, the clearest first, with the reading that "
-        "probably meant; default of COUNT: 10",
+        help="list COUNT (default 10) offsets that contradict their neighbours, the clearest first,"
+        " with the probable reading",
     )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
@@ -293,7 +293,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=assignment,
         action="append",
         default=[],
-        help="a parameter of the model; may be repeated",
+        help="a parameter of the model; repeatable",
     )
     parser.add_argument("--library", metavar="DIR", action="append", default=[])
 
@@ -445,15 +445,15 @@ class Source(abc.ABC):
         """The result by these options."""
 
     def facts(self) -> dict[str, Any]:
-        """Data of the report beside those of the result."""
+        """Data of the report in addition to those of the result."""
         return {"source": self.title}
 
     def notes(self) -> list[str]:
-        """Sentences beside those of the result."""
+        """Sentences in addition to those of the result."""
         return []
 
     def stated(self) -> list[tuple[str, str]]:
-        """What a page says besides the result: where it came from, and how to make it again."""
+        """Provenance on a page: the source, and the command to repeat the result."""
         import datetime
 
         command = shlex.join(["moldloft", *sys.argv[1:]])
@@ -465,16 +465,16 @@ class Source(abc.ABC):
         raise Error("--suspects: for files of points and tables of offsets")
 
     def sheet(self, result: Any, path: Path) -> Path:
-        """Writes the sheet; the path that it was written to."""
+        """Writes the sheet and returns its path."""
         raise Error("--sheet: for files of points and tables of offsets; --report is for others")
 
     @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
-        """Writes the result; the path that it was written to."""
+        """Writes the result and returns its path."""
 
 
 def _numbers(path: str | None) -> list[float] | None:
-    """The numbers of a file, in their order, with the line of one that is none."""
+    """The numbers of a file, in order; an error names the line of an invalid one."""
     if path is None:
         return None
     from moldloft.fairing.files import read_numbers
@@ -554,7 +554,7 @@ def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[st
 
 
 def _original(options: argparse.Namespace, count: int) -> Any:
-    """The points that tolerances are counted from, where they are not those of the file."""
+    """The points to which tolerances refer, if they differ from those of the file."""
     if not options.original:
         return None
     from moldloft.fairing.files import read_points
@@ -575,7 +575,7 @@ def commit_file(path: Path, data: bytes) -> Path:
 
 
 def known_ending(path: Path, source: Path | None) -> None:
-    """Refuses an ending that says nothing, before anything is written."""
+    """Rejects an unknown extension before any output."""
     from moldloft.fairing.spline_files import POINTS, SPLINES
 
     ending = path.suffix.lower()
@@ -705,7 +705,7 @@ class _Points(Source):
         return result
 
     def _different(self) -> list[int]:
-        """Of each different point its first row; of each row of the curves its point."""
+        """The first row of each distinct point, and the point of each row of the curves."""
         rows: list[int] = []
         keys: dict[Any, int] = {}
         self.of_row: list[int] = []
@@ -746,7 +746,7 @@ class _Points(Source):
         return [options.tol[k] for k in rows]
 
     def _across(self, result: NetworkFairing, rows: list[int]) -> None:
-        """Half-breadths that were not below zero and are now."""
+        """Half-breadths that became negative."""
         new, old = result.points[:, 1], self.file.points[rows][:, 1]
         over = (new < 0) & (old >= 0)
         if over.any():

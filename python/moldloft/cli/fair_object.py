@@ -54,11 +54,11 @@ class ObjectSource(Source):
         return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
 
     def facts(self) -> dict[str, Any]:
-        """The source, and how far the points are from the object."""
+        """The source, and the distance of the points from the object."""
         return {"source": self.title, "fit_error": self.error}
 
     def notes(self) -> list[str]:
-        """How far the object is from the curve through its points."""
+        """Distance of the object from the curve through its points."""
         if self.error is None:
             return []
         count = " x ".join(str(n) for n in self.made.points.shape[:-1])
@@ -67,7 +67,7 @@ class ObjectSource(Source):
         ]
 
     def write(self, result: Any, path: Path) -> Path:
-        """Writes the result; the path that it was written to."""
+        """Writes the result and returns its path."""
         if self.made.points.ndim == 3:
             if path.suffix.lower() == ".vts":
                 result.write_vtk(path)

@@ -1,4 +1,4 @@
-"""The suspects and the sheet of ``moldloft fair``: what a file of points adds to a result."""
+"""The suspects and the sheet of ``moldloft fair`` for a file of points."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def suspects_of(
     file
         The file read.
     result
-        What was made of it.
+        The faired result.
     rows
-        Of each point of the result its row in the curves of the file.
+        For each point of the result, its row in the curves of the file.
     motion
         The motion of the points: axes of each, a direction, or a word.
     most
@@ -66,7 +66,7 @@ def readings(file: PointFile, rows: list[int]) -> dict[tuple[int, int], str]:
     file
         The file read.
     rows
-        Of each point its row in the curves of the file.
+        For each point, its row in the curves of the file.
     """
     if file.cells is None:
         return {}

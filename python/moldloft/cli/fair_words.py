@@ -12,7 +12,7 @@ __all__ = ["condition", "degrees", "goal", "spacing", "step", "stop", "tolerance
 
 
 def tolerance(text: str) -> float | str | None:
-    """A length, a file of lengths, or none."""
+    """A length, a file of lengths, or ``None`` for no limit."""
     if text.lower() == "none":
         return None
     try:
@@ -36,7 +36,7 @@ def step(text: str) -> float:
     except (ValueError, ZeroDivisionError):
         value = -1.0
     if value < 0:
-        raise argparse.ArgumentTypeError(f"`{text}` is no step, such as 0.001 or 1/16")
+        raise argparse.ArgumentTypeError(f"expected a step such as 0.001 or 1/16, found `{text}`")
     return value
 
 
@@ -53,7 +53,7 @@ def stop(text: str) -> tuple[str, float | bool]:
             raise ValueError
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"`{text}` is none of move=SHARE, drop=SHARE, gap=SHARE, pieces"
+            f"expected move=FRACTION, drop=FRACTION, gap=FRACTION or pieces, found `{text}`"
         ) from None
     return STOPS[word], float(share)
 

@@ -33,7 +33,7 @@ def _ended_as(old: bytes, new: bytes) -> bytes:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Formats each file; a program that does not parse stays as it is and is reported."""
+    """Formats each file; a program with syntax errors is unchanged and reported."""
     from moldloft.errors import Error
     from moldloft.language import format_text
     from moldloft.storage import digest, put, read_bytes, recover

@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draws all objects, the failed ones too; of a text that has none, nothing."""
+    """Draws all objects, including failed ones; draws nothing for a text without objects."""
     from moldloft.digraph import Node, digraph_svg
 
     model = open_model(options)

@@ -91,7 +91,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=_opening,
         action="append",
         default=[],
-        help="a downflooding point; may be repeated",
+        help="a downflooding point; repeatable",
     )
     parser.add_argument(
         "--booklet", metavar="FILE", help="a stability booklet of the loading (.html, .pdf)"
@@ -113,7 +113,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--sides",
         choices=["both", "one"],
         default="both",
-        help="count a mirrored model with its image (the default), or one side alone",
+        help="figures of both sides of a mirrored model (the default), or of one side",
     )
     parser.add_argument(
         "--table", metavar="LOW,HIGH,N", type=_range, help="a table over N drafts from LOW to HIGH"
@@ -138,7 +138,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-going",
         action="store_true",
-        help="figures of what was made, though objects failed or the skin is open below the water",
+        help="figures of an incomplete model: with failed objects, or a skin open below the water",
     )
     parser.add_argument(
         "--json", action="store_true", help="figures as data with their units; angles in degrees"

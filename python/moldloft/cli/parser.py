@@ -1,4 +1,4 @@
-"""The command line's grammar: argparse, with what people expect of a command today.
+"""Command line parser: argparse with suggestions, examples and short usage errors.
 
 No abbreviations of options, negative numbers as values, the nearest name where a word is unknown,
 one line for a usage error instead of the whole usage, and colours on a terminal.
@@ -22,7 +22,7 @@ _NEGATIVE = re.compile(r"-(\d|\.\d)[\d.,eE+:-]*$")
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """The hint about a word that is unknown.
+    """The hint about an unknown word.
 
     >>> meant("bulid", ["build", "check"])
     '; did you mean `build`?'
@@ -32,14 +32,14 @@ def meant(word: str, known: Iterable[str]) -> str:
 
 
 def usage_error(message: str, prog: str) -> NoReturn:
-    """Says what is wrong with the command line and ends with status 2."""
+    """Prints an error about the command line and ends with status 2."""
     text = f"error: {message}\nhelp: `{prog} --help` lists the arguments"
     print(painted(text, sys.stderr), file=sys.stderr)
     raise SystemExit(2)
 
 
 class _Help(argparse.RawDescriptionHelpFormatter):
-    """Help as wide as the terminal up to 100 columns, texts as they were written."""
+    """Help in the width of the terminal, at most 100 columns, with unchanged texts."""
 
     def __init__(self, prog: str, **options: Any) -> None:
         import shutil
@@ -64,7 +64,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-(?!h$|-)")
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As in argparse; the error of an unknown option suggests the nearest one."""
+        """As in argparse; the error about an unknown option suggests the nearest one."""
         found, left = self.parse_known_args(args, namespace)
         if left:
             own = getattr(found, "parser", self)
@@ -75,12 +75,12 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As in argparse; the words are kept for messages about them."""
+        """As in argparse; stores the words for error messages."""
         self._words = list(sys.argv[1:] if args is None else args)
         return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Says what is wrong in a line."""
+        """Prints a one-line error."""
         if message.startswith("the following arguments are required"):
             # What is missing may be there under a misspelt name.
             for word in (word.partition("=")[0] for word in self._words):

@@ -1,4 +1,4 @@
-"""The reference as a page: kinds and functions in groups, with contents and synonyms."""
+"""The reference: an index of kinds and functions in groups, a page for each, an index of terms."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from moldloft.language import SYNONYMS, attributes
+from moldloft.terms import FIELDS
 
-__all__ = ["example_lines", "markdown", "signature"]
+__all__ = ["anchor", "entry_pages", "example_lines", "markdown", "signature", "terms_page"]
 
 Row = dict[str, Any]
 
@@ -32,7 +33,7 @@ KINDS = (
     ("Contours", "Families of sections.", ("contours",)),
     (
         "Lists, weights, conditions and the model",
-        "What has no shape of its own.",
+        "Objects without a shape.",
         ("farray", "list"),
     ),
     ("Named fields and sets", "Implicit solids as objects.", ("field", "set")),
@@ -155,7 +156,7 @@ def groups(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 
 
 def synonyms(row: Row) -> list[str]:
-    """Words that users may look for it by.
+    """Words that users may search for.
 
     >>> synonyms({"name": "CLoftSurf"})
     ['loft', 'skin']
@@ -183,69 +184,143 @@ def related(row: Row, rows: list[Row]) -> list[str]:
     return sorted(seen)[:8]
 
 
-def _anchor(row: Row, rows: list[Row]) -> str:
-    """Anchor of an entry: of names that differ by case alone, kinds first, libraries last."""
+def anchor(row: Row, rows: list[Row]) -> str:
+    """Name of an entry's page: of names that differ by case only, kinds first, libraries last."""
     name = str(row["name"]).lower()
     alike = [r for r in rows if r["name"].lower() == name]
     before = sorted(alike, key=lambda r: not r["is_kind"]).index(row)
     return f"{name}_{before}" if before else name
 
 
-def _entry(row: Row, rows: list[Row], pictured: Callable[[Row], bool]) -> list[str]:
-    lines = ["", f"### {row['name']}", "", f"`{signature(row)}` → {row['class']}", ""]
-    if pictured(row):
-        lines += [f"![{row['name']}](kinds/{row['name']}.png)", ""]
-    lines += [str(row["doc"]).partition("\n\nCalled as ")[0].strip()]
-    if row["fields"]:
-        lines += ["", "| argument | class | default | meaning |", "| --- | --- | --- | --- |"]
+def _link(row: Row, rows: list[Row]) -> str:
+    return f"[{row['name']}]({anchor(row, rows)}.md)"
+
+
+def _arguments(row: Row) -> list[str]:
+    lines = ["", "## Arguments", "", "| argument | class | default | meaning |"]
+    lines += ["| --- | --- | --- | --- |"]
     for field in row["fields"]:
         many = " list" if field["many"] else ""
         default = _default(field)
         if field["default"] is None:
-            default = "required" if field["required"] else "none"
+            default = "required" if field["required"] else "–"
         cells = [f"`{field['name']}`", f"{field['class']}{many}", default, field["help"]]
         lines.append("| " + " | ".join(cells) + " |")
-    if row["columns"]:
-        lines += ["", f"Model file columns: `{row['columns']}`"]
-    if row["example"]:
-        lines += ["", "```", *example_lines(row["example"]), "```"]
-    words = synonyms(row)
-    if words:
-        lines += ["", f"Also looked for as: {', '.join(words)}."]
-    near = related(row, rows)
-    if near:
-        by_name = {r["name"]: r for r in rows}
-        links = ", ".join(f"[{name}](#{_anchor(by_name[name], rows)})" for name in near)
-        lines += ["", f"See also: {links}."]
+    if row["is_kind"]:
+        lines += ["", "Every kind also takes the [common arguments](../reference.md"]
+        lines[-1] += "#arguments-of-every-kind): colour, visibility, divisions, spacing, tags."
     return lines
 
 
-def markdown(rows: list[Row], pictured: Callable[[Row], bool], libraries: list[Row]) -> str:
-    """The page, made from the declarations and from the libraries' routines."""
+def entry_page(row: Row, rows: list[Row], pictured: bool, group: str, beside: list[Row]) -> str:
+    """The page of an entry: signature, picture, meaning, arguments, example, related entries.
+
+    Parameters
+    ----------
+    row
+        The entry.
+    rows
+        All entries.
+    pictured
+        True if there is a picture of its example.
+    group
+        Title of its group in the reference.
+    beside
+        The entries of its group.
+    """
+    lines = [f"# {row['name']}", "", f"`{signature(row)}` → {row['class']}", ""]
+    if pictured:
+        lines += [f"![Example of {row['name']}](../kinds/{row['name']}.png)", ""]
+    lines += [str(row["doc"]).partition("\n\nCalled as ")[0].strip()]
+    if row.get("library"):
+        lines += ["", f'A routine of a library: `load "{row["library"]}";`']
+    if row["fields"]:
+        lines += _arguments(row)
+    if row["columns"]:
+        lines += ["", f"Model file columns: `{row['columns']}`"]
+    if row["example"]:
+        lines += ["", "## Example", "", "```sdl", *example_lines(row["example"]), "```"]
+    near = related(row, rows)
+    by_name = {r["name"]: r for r in rows}
+    lines += ["", "## Related", ""]
+    if near:
+        lines += ["See also: " + ", ".join(_link(by_name[name], rows) for name in near) + ".", ""]
+    others = [_link(other, rows) for other in beside if other is not row]
+    lines += [f"[{group}](../reference.md): {', '.join(others)}." if others else group]
+    words = synonyms(row) + [word for word in found_as(row) if word not in synonyms(row)]
+    if words:
+        lines += ["", f"Also found as: {', '.join(words)}."]
+    return "\n".join(lines) + "\n"
+
+
+def found_as(row: Row) -> list[str]:
+    """Terms of the fields that the entry explains.
+
+    >>> found_as({"name": "GeoSnake"})
+    ['geodesic', 'shortest path on a surface']
+    """
+    name = row["name"]
+    terms = [known[name] for known in FIELDS.values() if name in known]
+    return [word for line in terms for word in line.split(", ")]
+
+
+def entry_pages(
+    rows: list[Row], pictured: Callable[[Row], bool], libraries: list[Row]
+) -> dict[str, str]:
+    """The pages of all entries by name of their file, without extension."""
+    every = [*rows, *libraries]
+    parts = [(title, chosen) for title, _, chosen in groups(rows)]
+    files = dict.fromkeys(row["library"] for row in libraries)
+    parts += [
+        (f"Library {file}", [row for row in libraries if row["library"] == file]) for file in files
+    ]
+    return {
+        anchor(row, every): entry_page(row, every, pictured(row), title, chosen)
+        for title, chosen in parts
+        for row in chosen
+    }
+
+
+def terms_page(rows: list[Row]) -> str:
+    """The index of terms: each field with its terms and the pages that explain them."""
+    lines = [
+        "# Index of terms",
+        "",
+        "Find the page, kind or function for a term of your field. `moldloft doc TERM` does the",
+        "same in the terminal.",
+    ]
+    names = {row["name"]: anchor(row, rows) for row in rows}
+    for field, known in FIELDS.items():
+        lines += ["", f"## {field}", "", "| term | see |", "| --- | --- |"]
+        found = [(term, target) for target, terms in known.items() for term in terms.split(", ")]
+        for term, target in sorted(found, key=lambda pair: pair[0].lower()):
+            page = f"reference/{names[target]}.md" if target in names else f"{target}.md"
+            lines.append(f"| {term} | [{target}]({page}) |")
+    return "\n".join(lines) + "\n"
+
+
+def _first_sentence(doc: str) -> str:
+    text = " ".join(doc.partition("\n\n")[0].split())
+    found = re.match(r".*?\w\)?[.](?=\s+[A-Z`]|$)", text)
+    return found[0] if found else text
+
+
+def _rows_of(chosen: list[Row]) -> list[str]:
+    lines = ["", "| name | result | meaning |", "| --- | --- | --- |"]
+    for row in chosen:
+        first = _first_sentence(str(row["doc"])).replace("|", "\\|")
+        lines.append(f"| `{row['name']}` | {row['class']} | {first} |")
+    return lines
+
+
+def markdown(rows: list[Row], libraries: list[Row]) -> str:
+    """The index, made from the declarations and from the libraries' routines."""
     lines = [
         "# Reference of kinds and functions",
         "",
-        "Made by `make reference` from the declarations in `crates/`; not edited by hand. Angles",
-        "are in radians, lengths in the unit of the model. `moldloft doc NAME` shows an entry in",
-        "the terminal, and searches when there is none of that name.",
-        "",
-        "## Contents",
-    ]
-    parts = groups(rows)
-    for kinds, title in ((True, "Kinds"), (False, "Functions")):
-        lines += ["", f"**{title}**", ""]
-        for name, _, chosen in parts:
-            if chosen and chosen[0]["is_kind"] is kinds:
-                links = " ".join(f"[{r['name']}](#{_anchor(r, rows)})" for r in chosen)
-                lines += [f"- **{name}**: {links}"]
-    files = list(dict.fromkeys(row["library"] for row in libraries))
-    by_file = {file: [row for row in libraries if row["library"] == file] for file in files}
-    every = [*rows, *libraries]
-    lines += ["", "**Libraries**", ""]
-    for file, chosen in by_file.items():
-        links = " ".join(f"[{r['name']}](#{_anchor(r, every)})" for r in chosen)
-        lines += [f"- **{file}**: {links}"]
-    lines += [
+        "All kinds of objects and all functions, in groups. The site has a page for each, with",
+        "picture, arguments and example. `moldloft doc NAME` prints it in the terminal; other",
+        "words are searched for. Angles are in radians, lengths in the unit of the model.",
         "",
         "## Arguments of every kind",
         "",
@@ -261,18 +336,13 @@ def markdown(rows: list[Row], pictured: Callable[[Row], bool], libraries: list[R
         "",
         "[Panels and joins](panels.md) explains divisions, spacing, tags and orientation.",
     ]
-    for title, about, chosen in parts:
+    for title, about, chosen in groups(rows):
         lines += ["", f"## {title}"]
         lines += ["", about] if about else []
-        for row in chosen:
-            lines += _entry(row, rows, pictured)
-    for file, chosen in by_file.items():
-        lines += [
-            "",
-            f"## Library {file}",
-            "",
-            f'Routines of the language, after `load "{file}";`.',
-        ]
-        for row in chosen:
-            lines += _entry(row, every, pictured)
+        lines += _rows_of(chosen)
+    for file in dict.fromkeys(row["library"] for row in libraries):
+        lines += ["", f"## Library {file}", ""]
+        lines += [f'Routines of the language, after `load "{file}";`.']
+        lines += _rows_of([row for row in libraries if row["library"] == file])
+    lines += ["", "Made by `make reference` from the declarations in `crates/`."]
     return "\n".join(lines) + "\n"

@@ -94,7 +94,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draws what has a value; errors are reported besides. Without any value there is no file."""
+    """Draws objects that have a value and reports errors. Writes no file if no object has one."""
     from moldloft.errors import Error
 
     if options.output not in (None, "-") and Path(options.output).suffix.lower() != ".png":

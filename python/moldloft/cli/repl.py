@@ -55,7 +55,7 @@ class Session:
         Raises
         ------
         Error
-            When it has errors; it is left out then.
+            If it has errors; it is then omitted.
         """
         if not entry.strip():
             return []
@@ -92,7 +92,7 @@ class Session:
         return model.printed[printed:] + [str(d).rstrip() for d in new]
 
     def undo(self) -> bool:
-        """Takes back the last entry; false when there is none."""
+        """Removes the last entry; false if there is no entry."""
         if not self._before:
             return False
         self.model.text = self._before.pop()
@@ -156,7 +156,7 @@ def run(options: argparse.Namespace) -> int:
         print(str(diagnostic), file=sys.stderr)
     with _editor(session) if terminal else contextlib.nullcontext(input) as ask:
         if terminal:
-            print("moldloft repl: :help lists the commands, exit ends", file=sys.stderr)
+            print("moldloft repl: help lists the commands, exit ends", file=sys.stderr)
         while True:
             try:
                 entry = _read(ask if terminal else None)
@@ -169,6 +169,8 @@ def run(options: argparse.Namespace) -> int:
             word = entry.strip().rstrip(";").strip()
             if word in _ENDS and word not in session.names():
                 break
+            if word in ("help", "?") and word not in session.names():
+                entry = ":help"
             try:
                 lines = _command(session, entry.strip())
                 for line in session.run(entry) if lines is None else lines:
@@ -179,7 +181,7 @@ def run(options: argparse.Namespace) -> int:
             except KeyboardInterrupt:
                 if not terminal:
                     raise
-                print("\ninterrupted: the line is left out", file=sys.stderr)
+                print("\ninterrupted: the entry is discarded", file=sys.stderr)
     return 1 if failed and not terminal else 0
 
 
@@ -194,7 +196,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
     if word == ":text":
         return session.model.text.splitlines()
     if word == ":undo":
-        return [] if session.undo() else ["there is nothing to take back"]
+        return [] if session.undo() else ["nothing to undo"]
     if word == ":save" and rest.strip():
         from pathlib import Path
 
@@ -203,7 +205,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
         path = Path(rest.strip())
         commit(path.parent, [Output(path.name, session.model.text.encode())])
         return [f"wrote {path}"]
-    raise Error(f"unknown command `{word}`; :help lists them")
+    raise Error(f"unknown command `{word}`; help lists the commands")
 
 
 def _editor(session: Session) -> contextlib.AbstractContextManager[Callable[[str], str]]:

@@ -1,4 +1,4 @@
-"""Text of others on a terminal: characters that would steer it are shown as pictures."""
+"""Untrusted text on a terminal: control characters are shown as symbols."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u20
 
 
 def shown(text: str) -> str:
-    r"""The text with pictures (U+2400 to U+2421) for controls, and codes for those without one.
+    r"""The text with symbols (U+2400 to U+2421) for control characters, and codes for others.
 
     >>> shown("a\x1b]0;title\x07b\tc")
     'a␛]0;title␇b\tc'
@@ -39,7 +39,7 @@ class OwnText(str):
 
 
 class ShownStream:
-    """A stream that shows all it is given, but :class:`OwnText`.
+    """A stream that escapes all text except :class:`OwnText`.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="a dimension or variable of the last object, after FILE was run; may be repeated",
+        help="a dimension or variable of the last object, after FILE was run; repeatable",
     )
     parser.add_argument("--json", action="store_true", help="the objects as data, and the replies")
     parser.add_argument("--edit", action="store_true", help="open the prompt after running FILE")
@@ -203,7 +203,7 @@ class Host:
             self.saved = self.session.journal_length()
 
     def _ask_to_overwrite(self, path: Path) -> None:
-        """On a terminal a file of somebody else is not overwritten without an answer."""
+        """Asks on a terminal before a file of another origin is overwritten."""
         known = self.options.force or path.resolve() in self.own_files
         if known or not path.exists() or not sys.stdin.isatty():
             return
@@ -257,7 +257,7 @@ class Host:
         return line.rstrip("\r\n")
 
     def _begin(self, terminal: bool) -> None:
-        """Opens the journal, after what an earlier session may have left."""
+        """Opens the journal, after recovery of an earlier session."""
         from moldloft.storage import BusyError, Lock, recover
         from moldloft.storage.journal import (
             ENDING,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -100,18 +99,13 @@ def run(options: argparse.Namespace) -> int:
 def _sweep(study: Study, options: argparse.Namespace) -> Results:
     from moldloft.study import sweep
 
-    began = time.monotonic()
     with Progress() as progress, _Cluster(options.cluster) as executor:
         progress.stage("reading the model")
 
         def tell(number: int, count: int, states: Mapping[str, int]) -> None:
-            left = (time.monotonic() - began) / number * (count - number)
             failed = number - states.get("done", 0)
-            progress.stage(
-                "evaluating cases",
-                f"{number} of {count} ({100 * number // count} %), {failed} not done, "
-                f"{left:.0f} s left",
-            )
+            detail = f"{number} of {count}" + (f" ({failed} failed)" if failed else "")
+            progress.stage("evaluating cases", detail, number / count)
 
         try:
             return sweep(
@@ -124,7 +118,7 @@ def _sweep(study: Study, options: argparse.Namespace) -> Results:
                 progress=tell,
             )
         except KeyboardInterrupt:
-            print(f"stopped; `moldloft study resume {options.study}` goes on", file=sys.stderr)
+            print(f"stopped; `moldloft study resume {options.study}` continues", file=sys.stderr)
             raise
 
 

@@ -84,8 +84,8 @@ def fair(
         curve; a grid ``(m, n, 3)``, a :class:`SplineSurface` or a :class:`SurfaceFairing`, a
         surface.
     tol
-        How far the result may be from the original: a length, or one for each point. 0 leaves a
-        point alone. ``None`` means no limit and is an error for closed curves.
+        Maximum distance of the result from the original: a length, or one per point. 0 leaves a
+        point unchanged. ``None`` means no limit and is an error for closed curves.
     **options
         Those of :func:`~moldloft.fairing.curve.fair_curve` or
         :func:`~moldloft.fairing.surface.fair_surface`.
@@ -93,12 +93,12 @@ def fair(
     Returns
     -------
     Fairing or SurfaceFairing
-        The faired points and what was done to them.
+        The faired points, with a report.
 
     Raises
     ------
     FairingError
-        When there is too little to fair, a number is not finite, the tolerance is negative, or
+        If there is too little to fair, a number is not finite, the tolerance is negative, or
         conditions contradict each other.
 
     Examples

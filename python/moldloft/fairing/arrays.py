@@ -1,4 +1,4 @@
-"""Points as arrays, and what is refused about them."""
+"""Points as arrays, with checks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["direction", "motions_of", "narrowed", "points_of", "radii", "refuse_
 
 
 def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
-    """Points in three columns, and how many columns they came with."""
+    """Points in three columns, and the number of columns of the input."""
     try:
         given = np.asarray(points, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -36,7 +36,7 @@ def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
 
 
 def refuse_repeats(points: Floats, closed: bool) -> None:
-    """Neighbours that coincide have no direction between them."""
+    """Rejects coincident neighbours, which have no direction between them."""
     after = np.roll(points, -1, axis=0) if closed else points[1:]
     before = points if closed else points[:-1]
     same = (after == before).all(axis=1)
@@ -50,7 +50,7 @@ def refuse_repeats(points: Floats, closed: bool) -> None:
 
 
 def radii(tol: ArrayLike | None, count: int) -> list[float]:
-    """The tolerance of each point; infinite for none."""
+    """The tolerance of each point; infinite without a limit."""
     if tol is None:
         return [np.inf] * count
     given = np.asarray(tol, dtype=np.float64)
@@ -112,7 +112,7 @@ def motions_of(
 
 
 def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
-    """A remark about a tolerance of more than a twentieth of the extent, as for curves."""
+    """A warning about a tolerance above a twentieth of the extent."""
     if tol is None or not len(points):
         return ()
     most = float(np.max(np.asarray(tol, np.float64)))
@@ -126,7 +126,7 @@ def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
 
 
 def narrowed(points: Floats, width: int) -> Floats:
-    """Points with the columns that the user's had."""
+    """Points with the number of columns of the input."""
     return np.ascontiguousarray(points[..., :width])
 
 

@@ -1,4 +1,4 @@
-"""What callers ask for, in the words of the kernel."""
+"""Options of callers, translated for the kernel."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from moldloft.fairing.arrays import direction
 
 
 def goal_of(given: Any) -> tuple[str, float | None]:
-    """The word of a goal and its share, where one was given."""
+    """The keyword of a goal and its fraction, if given."""
     word, share = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     return str(word), None if share is None else float(share)
 
 
 def only_data(goal: Any) -> None:
-    """Refuse goals that tell one result from another where there are no data to be near to."""
+    """Reject goals that need data if there are none."""
     word, _ = goal_of(goal)
     if word not in ("near", "fairest"):
         raise FairingError(f'the goal `{word}` is for optima of data, `as_="fit"`')
@@ -26,7 +26,7 @@ EXACT = (
     "the points are on lines, conics, plane cubics or helices and stay as they are: the goal "
     "`fairest` moves them"
 )
-"""What is said where exact points stay although others would move."""
+"""Note for exact points that stay although the goal moves others."""
 
 EXACT_NEAREST = (
     "the points are on lines, conics, plane cubics or helices: of the splines with these knots the "
@@ -36,7 +36,7 @@ EXACT_NEAREST = (
 
 
 def stays_near(goal: Any, free: bool) -> bool:
-    """Whether a goal leaves exact points where they are: nothing else is asked of them."""
+    """True if exact points stay where they are: goal ``"near"`` without conditions."""
     return free and goal_of(goal)[0] == "near"
 
 
@@ -48,7 +48,7 @@ def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:
 
 
 def ends_of(ends: Any, closed: bool) -> tuple[str | None, str | None]:
-    """What the first and the last end keep, where something was said."""
+    """End conditions of the first and the last end, if given."""
     both = ends if isinstance(ends, (tuple, list)) and len(ends) == 2 else (ends, ends)
     words = tuple(None if e is None else str(e) for e in both)
     return (None, None) if closed else (words[0], words[1])

@@ -65,7 +65,7 @@ class _Row:
 
 @dataclass
 class _Grid:
-    """A table with a row for each line, whichever way it was written."""
+    """A table with a row for each line, independent of its layout in the file."""
 
     names: list[str]
     head: int
@@ -182,7 +182,7 @@ def blocks(text: str) -> OffsetTable | None:
     Raises
     ------
     FairingError
-        With the line of a cell that is no length, or of a station without a position.
+        With the line of a cell that is not a length, or of a station without a position.
 
     Examples
     --------
@@ -210,7 +210,7 @@ def blocks(text: str) -> OffsetTable | None:
 
 
 class _Reading:
-    """A grid of names becomes offsets, lines and cells."""
+    """Converts a grid of names to offsets, lines and cells."""
 
     def __init__(self, text: str, grid: _Grid, comma: bool, head: str) -> None:
         self.grid, self.comma = grid, comma
@@ -333,7 +333,7 @@ class _Reading:
     def _add(
         self, k: int, line: str, point: Sequence[float], cells: list[tuple[int, _Cell]]
     ) -> int:
-        """An offset; where others are on it they and it stay."""
+        """Adds an offset; it and others at the same position become fixed."""
         out = self.out
         assert out.motions is not None
         row = len(out.points)

@@ -1,4 +1,4 @@
-"""Cells of a table at their places in its text, and lengths in the notation of a cell."""
+"""Cells of a table with their positions in the text, and lengths in the notation of a cell."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MOST_DECIMALS = 15
 
 @dataclass
 class Cells:
-    """The cells of a table that hold its coordinates."""
+    """The cells of a table that contain coordinates."""
 
     text: str
     """The text as it was read, with its byte order mark and ends of lines."""
@@ -53,7 +53,7 @@ class Cells:
         return self.text[start:end]
 
     def written(self, texts: Sequence[str | None]) -> str:
-        """The text with other numbers in its cells; columns set by blanks keep their width.
+        """The text with other numbers in its cells; columns separated by blanks keep their width.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ def _decimals(cell: str) -> int:
 
 
 def step_of(cells: Sequence[str], tolerance: float) -> float:
-    """The step to which a table is written: its own digit, finer where a tolerance has few of them.
+    """The step of written offsets: the digit of the table, or finer for small tolerances.
 
     Of feet, inches and eighths it is a sixteenth of an inch. Of decimals it is the last digit of
     the cell with the most; a fifth of the tolerance or less, so that fairing is not lost again.
@@ -152,7 +152,7 @@ def step_of(cells: Sequence[str], tolerance: float) -> float:
 
 
 def rounded(value: float, given: float, step: float, tolerance: float) -> float:
-    """A faired number at a whole number of steps, within the tolerance of the one that was read.
+    """A faired number rounded to a step, within the tolerance of the original.
 
     The nearest; where that is beyond the tolerance the next one towards the number read, and that
     number itself where there is none between.

@@ -1,4 +1,4 @@
-"""Conditions of fair curves: places, tangents, joins, shapes."""
+"""Conditions on fair curves: points, tangents, joins, shape."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["join_conditions", "linear_conditions"]
 Condition = tuple[str, float, tuple[float, float, float], tuple[float, float, float]]
 
 TOGETHER = 1e-9
-"""Ends within this share of a curve's extent are one place."""
+"""Maximum distance of coincident ends, relative to the extent of a curve."""
 
 
 def _vector(vector: ArrayLike) -> tuple[float, float, float]:
@@ -32,7 +32,7 @@ def linear_conditions(
     tangents: Iterable[tuple[float, ArrayLike]],
     keep: Sequence[str],
 ) -> tuple[list[Condition], list[str]]:
-    """The conditions, and what they are called in refusals."""
+    """The conditions, with their names for error messages."""
     out: list[Condition] = []
     labels = []
     none = (0.0, 0.0, 0.0)
@@ -52,7 +52,7 @@ def linear_conditions(
 
 
 def join_conditions(joins: Sequence[Spline], spline: Spline) -> list[Condition]:
-    """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
+    """Joins at the ends of the curve: conditions with parameter 0 or 1."""
     if joins and spline.closed:
         raise FairingError("a closed curve has no ends to join")
     out: dict[int, Condition] = {}

@@ -1,4 +1,4 @@
-"""Fairing of splines and their control points, and of fits of data: what goes in and comes out."""
+"""Fairing of splines, their control points and fits of data: conversion of input and result."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Own:
-    """Knots and weights of the user's."""
+    """Knots and weights given by the user."""
 
     knots: ArrayLike | None
     weights: ArrayLike | None
@@ -32,7 +32,7 @@ class Own:
 
     @property
     def given(self) -> bool:
-        """Whether there are any."""
+        """True if knots or weights are given."""
         return self.knots is not None or self.weights is not None
 
     def control(self, data: Floats, degree: int, closed: bool) -> Spline:
@@ -50,7 +50,7 @@ class Own:
 
 @dataclass
 class Prepared:
-    """The spline to fair and where it comes from."""
+    """The spline to fair, with its origin."""
 
     spline: Spline
     data: Floats
@@ -62,7 +62,7 @@ class Prepared:
     findings: tuple[Finding, ...]
     corrected: tuple[Finding, ...]
     own: bool = False
-    """Whether knots or weights were given."""
+    """True if knots or weights were given."""
 
 
 def prepared(
@@ -75,7 +75,7 @@ def prepared(
     breaks: Sequence[int] | str,
     own: Own,
 ) -> Prepared:
-    """The spline to fair, and what the data give away."""
+    """The spline to fair, with properties found in the data."""
     if own.given and (isinstance(points, Spline) or role == "points"):
         raise FairingError("knots and weights are for control points and fits")
     if isinstance(points, Spline):
@@ -147,7 +147,7 @@ def _least_squares(
 
 
 def left(tol: ArrayLike | None, made: Prepared) -> ArrayLike | None:
-    """What a fit that misses its data leaves of their tolerances."""
+    """Tolerances of the data minus the residuals of the fit."""
     if tol is None or made.role != "fit" or made.parameters is None:
         return tol
     each = np.asarray(radii(tol, len(made.data)))
@@ -168,7 +168,7 @@ def left(tol: ArrayLike | None, made: Prepared) -> ArrayLike | None:
 
 
 def spread(tol: ArrayLike | None, made: Prepared, n: int) -> list[float]:
-    """The tolerance of data points as that of control points: the least near each."""
+    """Tolerances of control points from those of data points: the smallest near each."""
     if tol is None or np.ndim(tol) == 0:
         return radii(tol, n)
     each = np.asarray(radii(tol, len(made.data)))
@@ -191,11 +191,11 @@ def spread(tol: ArrayLike | None, made: Prepared, n: int) -> list[float]:
 
 
 UNEVEN = 1.8
-"""From here on the steps between points are not those of an index: half stations are 2."""
+"""Ratio of steps between points above which the spacing is uneven: half stations give 2."""
 
 
 def uneven(data: Floats) -> list[str]:
-    """What is to be said where the index is the parameter and points do not follow it."""
+    """Warning for points spaced unevenly although their index is the parameter."""
     steps = np.linalg.norm(np.diff(data, axis=0), axis=1)
     if len(steps) < 2 or not (steps > 0).all():
         return []
@@ -280,7 +280,7 @@ def result(
 
 
 def _counted(numbers: Numbers, spline: Spline) -> Numbers:
-    """The same sums with the counts of the curve that is laid through the points."""
+    """The same sums with the counts of the curve through the points."""
     curvature = spline.samples().curvature
     return Numbers(
         numbers.measure,

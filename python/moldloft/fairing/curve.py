@@ -80,15 +80,16 @@ def fair_curve(
         ``(n, 2)`` or ``(n, 3)``, or a :class:`Spline`; or the :class:`Fairing` of points, which are
         then faired again: from the points as they were read, at the same parameters.
     tol
-        How far the curve, or each point, may move; ``None`` for no limit.
+        Maximum distance that the curve, or each point, may move; ``None`` for no limit.
     as_
-        What points are: ``"fit"``, data on the curve, which stays within the tolerance of each;
+        Meaning of the points: ``"fit"``, data on the curve, which stays within the tolerance of
+        each;
         ``"points"``, moved themselves, each within the tolerance; ``"control"``, the control points
         of a uniform spline, whose parameter is the index: the rule of the report of 1991. By
         default data for the optimum, control points for the other modes, which are the report's.
         A spline is its own.
     closed
-        Whether the last point is followed by the first, which is not repeated.
+        True for a closed curve, whose first point is not repeated at the end.
     degree
         Polynomial degree.
     measure
@@ -116,20 +117,20 @@ def fair_curve(
     fixed
         Points (control points of fits and splines), from 0, that do not move.
     ends
-        What open ends keep: ``"free"``, ``"position"``, ``"tangent"``, ``"curvature"`` or a number
-        of control points; or two of these. By default nothing of data that the curve is near, the
-        tangent where control points of fits and splines move, and two points otherwise.
+        Fixed quantities of open ends: ``"free"``, ``"position"``, ``"tangent"``, ``"curvature"`` or
+        a number of control points; or two of these. By default nothing of data that the curve is
+        near, the tangent where control points of fits and splines move, and two points otherwise.
     motion
-        ``"ball"``; ``"box"``, each coordinate by itself; a direction such as ``(0, 1)``, the only
+        ``"ball"``; ``"box"``, each coordinate separately; a direction such as ``(0, 1)``, the only
         one in which points move (offsets at fixed stations); ``("across", direction)``, a plane in
         which they stay.
     through, tangents
         Conditions of an optimum: pairs of a parameter in [0, 1] and the point or the direction
         that the curve has there.
     keep
-        What else an optimum keeps, to first order: ``"area"`` (swept about the origin in the xy
-        plane), ``"volume"`` (of revolution about the x axis), ``"centroid"`` (of the control
-        points).
+        Further quantities that an optimum keeps, to first order: ``"area"`` (swept about the origin
+        in the xy plane), ``"volume"`` (of revolution about the x axis), ``"centroid"`` (of the
+        control points).
     joins
         Open splines that begin or end where the curve does: an optimum runs on from them with the
         same tangent direction and curvature. They stay as they are.
@@ -143,18 +144,20 @@ def fair_curve(
     at
         The parameters themselves, rising, in [0, 1].
     goal
-        Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals
-        are at most half (of curves that are not plane, or whose points move in one direction, four
-        fifths) of what noise has that fills the tolerances evenly, and the data's
+        Choice among the curves within the tolerances. ``"near"``: the fairest whose squared
+        residuals are at most half (of curves that are not plane, or whose points move in one
+        direction, four fifths) of what noise has that fills the tolerances evenly, and the data's
         own curve where there is little to gain: exact data stay. ``"fairest"``: the least of the
-        measure. ``("budget", share)``: the first with a share of your own. ``("nearest", share)``:
-        the nearest to the data whose measure exceeds the least by at most this share.
+        measure. ``("budget", fraction)``: the first with another fraction. ``("nearest",
+        fraction)``: the nearest to the data whose measure exceeds the minimum by at most this
+        fraction.
         ``("energy", most)``: the nearest whose measure is at most this. ``"closest"``: the nearest
-        that has the ``shape``, whatever it measures. Data that are as fair as asked do not move.
+        that has the ``shape``, whatever its measure. Data that meet the goal already do not move.
         Other modes than optima of data have ``"near"``, which leaves points on a line, conic,
         plane cubic or helix as they are, and ``"fairest"``.
     shape
-        What shape an optimum of data has, in the words of the command and of models, points from 1:
+        Shape conditions of an optimum of data, as in the command and in models, points counted from
+        1:
         ``"convex=4-10"`` or ``"concave=1-4"``, a turn to the left or to the right only between two
         points (seen from above, or in a vertical plane with z up: of a graph over x from left to
         right what these words mean); ``"one-way=1-9"``, no inflection there; ``"straight=1-9"``, or
@@ -162,35 +165,36 @@ def fair_curve(
         and arcs that begin or end at its ends or one point from these; ``"pieces=2"``, at most so
         many pieces of monotone curvature; ``"within=0,1:4.6"``, the largest value along a
         direction; ``"side=0,-1"``, it leaves the points only against this direction. A word alone
-        is about the whole curve. Signs, lines and limits hold of the whole curve, not of samples.
+        applies to the whole curve. Signs, lines and limits hold on the whole curve, not only at
+        samples.
     release
         Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
-        :attr:`Fairing.findings`. Nothing is released by itself.
+        :attr:`Fairing.findings`. No point is released automatically.
     original
         The points as they were read, when ``points`` were faired already: tolerances are counted
         from these, so that fairing a result again is fairing the original.
     bends
-        Whether the curve may have more inflections, and under ``"near"`` more than two monotone
+        True if the curve may have more inflections, and under ``"near"`` more than two monotone
         pieces of curvature more, than the fairest within the tolerance.
     count
-        Fit by least squares with so many control points instead of through all points.
+        Number of control points of a least-squares fit, instead of a curve through all points.
     knots, weights, period
         Knots and weights of your own, of control points or of a fit; see :class:`Spline` and
         :meth:`Spline.fit`. Weights stay as they are.
     steps
         Local steps (by default one per point), sweeps (10) or cycles of levels (2).
     least_move, least_drop, stop_gap, stop_pieces
-        Local steps end when a move is shorter than this share of the tolerance, a step lowers the
-        measure by less than this share, the certified gap is below this share, or n steps bring no
-        fewer monotone pieces.
+        Local steps end when a move is shorter than this fraction of the tolerance, a step lowers
+        the measure by less than this fraction, the certified gap is below this fraction, or n steps
+        bring no fewer monotone pieces.
     accuracy
-        The certified gap of an optimum, as a share of the measure; by default as small as rounding
-        allows.
+        Maximum certified gap of an optimum, relative to the measure; by default as small as
+        rounding allows.
     draft
-        Whether a draft of an optimum of data is enough, as while a tolerance slides: within the
-        tolerances and under the goal's budget, but with bends as they come.
+        True to accept a draft of an optimum of data, for interactive use: within the
+        tolerances and the budget of the goal, but without control of inflections.
     log
-        Whether local steps are written down.
+        True to record local steps.
 
     Returns
     -------

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: int) -> list[int]:
-    """Points by number, or those that findings of a kind propose."""
+    """Points by number, or those proposed by findings of a kind."""
     if isinstance(given, str):
         if given != "auto":
             raise FairingError(f"expected numbers of points or `auto`, found `{given}`")
@@ -37,7 +37,7 @@ def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: i
 
 @dataclass
 class Data:
-    """Data and what is asked of the curve near them, in the words of the caller."""
+    """Data and the options of the curve near them, as given by the caller."""
 
     points: ArrayLike
     tol: ArrayLike | None

@@ -1,4 +1,4 @@
-"""The fairing desk: a session in which lines are looked at, marked and faired step by step.
+"""The fairing desk: a session to inspect, mark and fair lines step by step.
 
 Every step is a command, a line of text; the log of commands is the session. Replayed on what the
 desk was opened on it gives the same bits, and taking back a step is leaving out its command.
@@ -50,7 +50,7 @@ REMEMBERED = 64
 
 
 class Desk:
-    """A session of fairing: what is faired, the marks on it, and the log of commands.
+    """A fairing session: the points and lines, their marks, and the log of commands.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Desk:
         :class:`SplineSurface`, a :class:`~moldloft.fairing.files.PointFile`, or a
         :class:`DeskSource`.
     tolerance
-        How far curves may be from points; :attr:`suggested` without one.
+        Maximum distance of curves from points; default :attr:`suggested`.
     log
         Commands to begin with, see :data:`COMMANDS`.
 
@@ -147,7 +147,7 @@ class Desk:
 
     @property
     def log(self) -> tuple[str, ...]:
-        """The commands that were run and not taken back."""
+        """The commands that were run and not undone."""
         return tuple(self._log)
 
     @property
@@ -163,7 +163,7 @@ class Desk:
 
     @staticmethod
     def replay(text: str) -> Desk:
-        """The session that :attr:`text` is of.
+        """The session recorded in a text, the value of :attr:`text`.
 
         Parameters
         ----------
@@ -175,7 +175,7 @@ class Desk:
         return Desk(source, whole["tolerance"], whole["log"])
 
     def follow(self, log: Sequence[str]) -> None:
-        """Have that log: what it has in common with the present one is not run again.
+        """Replace the log; commands in common with the current one are not run again.
 
         Parameters
         ----------
@@ -191,14 +191,14 @@ class Desk:
             self._take(command)
 
     def _take(self, command: str) -> DeskState:
-        """The state after a command, which is the last of the log then."""
+        """The state after a command, which is appended to the log."""
         state = changed(self.source, self.state, command, self)
         self._states.append(state)
         self._log.append(command)
         return state
 
     def run(self, command: str) -> None:
-        """Carry out a command; one that cannot be faired changes nothing.
+        """Run a command; one that cannot be faired changes nothing.
 
         Parameters
         ----------
@@ -227,7 +227,7 @@ class Desk:
         Returns
         -------
         str or None
-            The command; ``None`` when there is none.
+            The command; ``None`` if there is no command.
         """
         if not self._log:
             return None
@@ -236,12 +236,12 @@ class Desk:
         return self._undone[-1]
 
     def redo(self) -> str | None:
-        """Run the command that was taken back last.
+        """Run the last undone command again.
 
         Returns
         -------
         str or None
-            The command; ``None`` when there is none.
+            The command; ``None`` if there is no command.
         """
         if not self._undone:
             return None
@@ -286,20 +286,20 @@ class Desk:
         return self._made(self.log, self.state, progress)
 
     def preview(self, command: str, *, draft: bool = True) -> DeskResult:
-        """What a command would come to; the session stays as it is.
+        """Result of a command without running it in the session.
 
         Parameters
         ----------
         command
             As for :meth:`run`.
         draft
-            Whether drafts of curves are enough, as while a tolerance slides: within the tolerances
-            and under the budget, but with bends as they come.
+            True to accept drafts of curves, for interactive use: within the tolerances
+            and the budget, but without control of inflections.
 
         Returns
         -------
         DeskResult
-            The result, of which :attr:`DeskCurve.draft` says whether it is a draft.
+            The result; :attr:`DeskCurve.draft` is true for a draft.
         """
         return faired(self.source, self.after(command), draft=draft)
 
@@ -315,7 +315,7 @@ class Desk:
 
     @property
     def cut(self) -> Fairing | None:
-        """The line that was cut and not put back, faired."""
+        """The faired section line, before it is put back."""
         draft = self.state.draft
         return None if draft is None else fair_line(draft_task(self.source, self.state, draft))
 
@@ -325,7 +325,7 @@ class Desk:
         return self._made(self.log[:-1], self._states[-2]) if self._log else None
 
     def compared(self) -> Floats:
-        """How far each line has moved by the last command, sampled.
+        """Distance that each line moved by the last command, sampled.
 
         Returns
         -------
@@ -354,7 +354,7 @@ class Desk:
     # -- what commands see -----------------------------------------------------------------------
 
     def places(self, state: DeskState) -> tuple[Place, ...]:
-        """Where the points of a state are once it is faired.
+        """Positions of the points of a state after fairing.
 
         Parameters
         ----------
@@ -364,7 +364,7 @@ class Desk:
         return faired(self.source, state).points
 
     def suspicion(self, state: DeskState, point: int) -> tuple[str, Place | None] | None:
-        """What is suspected of a point of a state, and its reading, if anything is.
+        """Suspicion about a point of a state, with a suggested reading, if there is one.
 
         Parameters
         ----------
@@ -386,12 +386,12 @@ class Desk:
         normal, at
             The plane, normal · p = at.
         name
-            What the line is called.
+            Name of the line.
         """
         return cut(self.source, state, normal, at, name)
 
     def drafted(self, state: DeskState) -> tuple[Place, ...]:
-        """The faired points of the line that was cut from a state.
+        """The faired points of the section line of a state.
 
         Parameters
         ----------
@@ -416,7 +416,7 @@ class Desk:
         Parameters
         ----------
         name
-            What the object is called; names of further objects begin with it.
+            Name of the object, and prefix of the names of further objects.
 
         Returns
         -------
@@ -489,7 +489,7 @@ def as_base64(data: bytes) -> str:
 
 
 def summary(curve: DeskCurve) -> dict[str, Any]:
-    """What is to be said of a line in a list, as plain data."""
+    """Summary of a line for a list, as plain data."""
     return {
         "name": curve.name,
         "points": list(curve.points),

@@ -1,4 +1,4 @@
-"""Results of a fairing desk as files: the table as it came, splines, the sheet."""
+"""Results of a fairing desk as files: the table in its original form, splines, the sheet."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ __all__ = ["encoded"]
 def encoded(
     source: DeskSource, result: DeskResult, log: Sequence[str], begin: float, name: str
 ) -> bytes:
-    """The result as a file of that name."""
+    """The result as the content of a file with this name."""
     path = Path(name)
     ending = path.suffix.lower()
     if ending in SPLINES:

@@ -1,4 +1,4 @@
-"""What a state of a fairing desk comes to: its lines faired, and what is to be said of each."""
+"""Result of a state of a fairing desk: its faired lines, with notes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KEPT = 256
 """Fairings that are remembered: undo and the line before last cost nothing."""
 
 ON_PLANE = 1e-9
-"""A point is on a plane within this share of the extent."""
+"""Maximum distance of a point on a plane, relative to the extent."""
 
 PER_SPAN = 16
 """Samples on a span between which a plane is looked for."""
@@ -43,7 +43,7 @@ STEEP = 0.2
 
 @dataclass(frozen=True)
 class Task:
-    """One line to be faired by itself: all that decides its bits."""
+    """A line that is faired separately: all data that determine its result."""
 
     points: tuple[Place, ...]
     width: int
@@ -87,7 +87,7 @@ class DeskCurve:
     """A line of a desk, before and after."""
 
     name: str
-    """What it is called."""
+    """Name of the line."""
     points: tuple[int, ...]
     """Its points, from 0."""
     before: Spline
@@ -95,7 +95,7 @@ class DeskCurve:
     after: Spline
     """The faired curve."""
     moved: Floats
-    """How far each of its points is from the curve, or has moved."""
+    """Distance of each point from the curve, or its displacement."""
     limits: Floats
     """The tolerance of each."""
     inflections: tuple[int, int]
@@ -105,30 +105,30 @@ class DeskCurve:
     jumps: tuple[Floats, Floats]
     """The jumps of the third derivative at the knots before and after."""
     certified: bool
-    """Whether the result is proved to be the optimum, up to :attr:`gap`."""
+    """True if the result is proved to be the optimum, up to :attr:`gap`."""
     gap: float
-    """The gap as a share of the measure."""
+    """The gap relative to the measure."""
     locked: bool
-    """Whether the line stays as it was when it was locked."""
+    """True if the line is locked in an earlier state."""
     draft: bool
-    """Whether it is a draft, as while a tolerance slides."""
+    """True if it is a draft for interactive use."""
     notes: tuple[str, ...] = ()
-    """What the user should know."""
+    """Notes for the user."""
 
     @property
     def share(self) -> float:
-        """The largest share of a limit that is taken; 0 where nothing moves."""
+        """The largest used fraction of a limit; 0 if no point moves."""
         shares = self.moved / np.where(self.limits > 0, self.limits, np.inf)
         return float(shares[np.isfinite(shares)].max(initial=0.0))
 
     @property
     def worst(self) -> int:
-        """The point that is moved the most, from 0."""
+        """Index of the point with the largest displacement."""
         return self.points[int(np.argmax(self.moved))]
 
     @property
     def kept(self) -> bool:
-        """Whether every point without a release is within its limit."""
+        """True if every point without a release is within its limit."""
         finite = np.isfinite(self.limits)
         scale = float(np.abs(self.before.control_points).max(initial=0.0))
         rounding = 1e-6 * self.limits[finite] + 64 * np.finfo(float).eps * scale
@@ -142,15 +142,15 @@ class DeskSuspect:
     point: int
     """The point, from 0."""
     line: int
-    """The line on which it stands out, from 0."""
+    """Index of the line on which it was found, from 0."""
     kind: str
     """``"outlier"``, ``"corner"`` or ``"order"``."""
     text: str
     """A sentence about it."""
     reading: Place | None
-    """Where its neighbours say that it is, of a wrong reading."""
+    """Position predicted by its neighbours, for a wrong reading."""
     accepted: bool
-    """Whether the suspicion was accepted."""
+    """True if the suspicion was accepted."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class DeskResult:
     curves: tuple[DeskCurve, ...]
     """Its lines."""
     points: tuple[Place, ...]
-    """Where the points are."""
+    """Positions of the points."""
     suspects: tuple[DeskSuspect, ...]
     """What stands out."""
     parts: tuple[Fairing | NetworkFairing | SurfaceFairing, ...]
@@ -176,7 +176,7 @@ Progress = Callable[[int, int, str], object]
 def faired(
     source: DeskSource, state: DeskState, *, draft: bool = False, progress: Progress | None = None
 ) -> DeskResult:
-    """A state with its lines faired: the same bits whenever, and whatever was faired before."""
+    """A state with its lines faired; the bits do not depend on earlier fairings."""
     if source.kind == "network":
         return _of_network(source, state)
     if source.kind == "surface":
@@ -204,7 +204,7 @@ def faired(
 
 
 def task(source: DeskSource, state: DeskState, k: int, draft: bool = False) -> Task:
-    """What decides the bits of a line that is faired by itself."""
+    """The data that determine the result of a line that is faired separately."""
     if k in state.locked:
         return task(source, state.locked[k], k)
     line = state.lines[k]
@@ -236,7 +236,7 @@ def task(source: DeskSource, state: DeskState, k: int, draft: bool = False) -> T
 
 @lru_cache(maxsize=KEPT)
 def fair_line(asked: Task) -> Fairing:
-    """A line faired by itself."""
+    """A line faired separately."""
     points = np.array(asked.points)[:, : asked.width]
     if asked.span is not None:
         return _ranged(asked, points)
@@ -255,7 +255,7 @@ def fair_line(asked: Task) -> Fairing:
 
 
 def _ranged(asked: Task, points: Floats) -> Fairing:
-    """The curve through the points, of which the part between two of them is faired.
+    """The curve through the points, faired between two of them.
 
     Control points of which the curve outside hangs stay, so that it stays there to the bit.
     """
@@ -337,7 +337,7 @@ def _curve(state: DeskState, k: int, asked: Task, fairing: Fairing) -> DeskCurve
 
 
 def _reading(at: Place, off: Place, motion: str | Place) -> Place:
-    """Where a wrong point belongs: its error is across the curve, its motion may be along a way."""
+    """Correct position of a wrong point, whose motion may be restricted to a direction."""
     error = np.array(off)
     if not isinstance(motion, str):
         way = np.array(motion) / np.linalg.norm(motion)
@@ -401,7 +401,7 @@ def _placed(state: DeskState) -> list[Place]:
 def _of_network(source: DeskSource, state: DeskState) -> DeskResult:
     if state.shapes:
         word = state.shapes[0][1].partition("=")[0]
-        raise FairingError(f"{word}: shapes are for curves faired by themselves, not for networks")
+        raise FairingError(f"{word}: shape conditions apply to single curves, not to networks")
     lists = tuple(o.points + o.points[:1] if o.closed else o.points for o in state.lines)
     own = [line.points for line in state.lines]
     closed = [o.closed for o in state.lines]
@@ -461,7 +461,7 @@ def _fair_network(asked: _NetTask) -> NetworkFairing:
 
 def _of_surface(source: DeskSource, state: DeskState) -> DeskResult:
     if state.shapes:
-        raise FairingError("shapes are for curves faired by themselves, not for surfaces")
+        raise FairingError("shape conditions apply to single curves, not to surfaces")
     m, n = source.grid
     knuckles = sorted(state.knuckles)
     rows = sorted({k // n for k in knuckles if all(k // n * n + j in knuckles for j in range(n))})
@@ -469,7 +469,7 @@ def _of_surface(source: DeskSource, state: DeskState) -> DeskResult:
     alone = [k for k in knuckles if k // n not in rows and k % n not in columns]
     if alone:
         raise FairingError(
-            f"knuckle {alone[0] + 1}: of a surface whole rows or columns of points are knuckles"
+            f"knuckle {alone[0] + 1}: on a surface, knuckles are whole rows or columns of points"
         )
     asked = _SurfaceTask(
         points=tuple(_placed(state)),
@@ -573,14 +573,14 @@ def cut(source: DeskSource, state: DeskState, normal: Place, at: float, name: st
 
 
 def _along(places: Floats) -> Floats:
-    """The direction in which places are spread the most."""
+    """The direction of largest spread of the points."""
     _, _, axes = np.linalg.svd(places - places.mean(axis=0))
     way: Floats = axes[0]
     return way if way[int(np.argmax(np.abs(way)))] > 0 else -way
 
 
 def _parameters(spline: Spline, points: Floats, samples: Any) -> Floats:
-    """Where points of a curve are on it, in its order."""
+    """Parameters of points on a curve, ascending."""
     at, start = [], 0
     for p in points:
         far = np.linalg.norm(samples.points[start:] - p, axis=1)
@@ -590,7 +590,7 @@ def _parameters(spline: Spline, points: Floats, samples: Any) -> Floats:
 
 
 def _roots(spline: Spline, t: Floats, off: Floats, n: Floats, at: float) -> list[float]:
-    """Where a curve meets a plane."""
+    """Parameters at which a curve meets a plane."""
     out = []
     for k in np.flatnonzero(np.diff(np.sign(off)) != 0):
         low, high = float(t[k]), float(t[k + 1])
@@ -611,7 +611,7 @@ def _roots(spline: Spline, t: Floats, off: Floats, n: Floats, at: float) -> list
 
 
 def draft_task(source: DeskSource, state: DeskState, draft: DeskDraft) -> Task:
-    """A line that was cut, faired by itself in its plane; points of the network stay."""
+    """A section line, faired separately in its plane; points of the network stay."""
     motion: str | Place | tuple[str, Place] = ("across", draft.normal)
     if not isinstance(source.motion, str):
         along = sum(a * b for a, b in zip(source.motion, draft.normal, strict=True))

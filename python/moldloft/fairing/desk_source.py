@@ -1,4 +1,4 @@
-"""What a fairing desk is opened on: numbered points, and the lines through them."""
+"""Input of a fairing desk: numbered points, and the lines through them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LARGEST = 20_000
 """Points that a desk takes: each of its steps is seen on a screen."""
 
 SAMPLES = 65
-"""Points that stand for a spline, and for each direction of a surface half of them."""
+"""Number of sampled points of a spline, and twice that of each direction of a surface."""
 
 Place = tuple[float, float, float]
 
@@ -40,16 +40,16 @@ class DeskLine:
     """A line through points of a desk."""
 
     name: str
-    """What it is called: ``waterline 1.5``."""
+    """Its name, such as ``waterline 1.5``."""
     points: tuple[int, ...]
     """Its points, from 0; of a closed line the first is not repeated."""
     closed: bool = False
-    """Whether the last point is followed by the first."""
+    """True if the last point is followed by the first."""
 
 
 @dataclass(frozen=True)
 class DeskSource:
-    """Points and lines as a desk was opened on them: all that a log of commands begins from.
+    """Input of a desk, to which a log of commands applies.
 
     Examples
     --------
@@ -66,15 +66,15 @@ class DeskSource:
     points: tuple[Place, ...]
     """All points, in three coordinates."""
     width: int
-    """How many coordinates they came with."""
+    """Number of coordinates in the input."""
     lines: tuple[DeskLine, ...]
     """The lines through them: of a surface the rows of its grid, then its columns."""
     point_names: tuple[str, ...] = ()
-    """What the points are called; empty for numbers."""
+    """Names of the points; empty for numbers."""
     motion: str | Place = "ball"
     """In which directions points move: ``"ball"``, or the one of offsets."""
     unit: str | None = None
-    """The unit of length, where it is known."""
+    """The unit of length, if known."""
     objects: tuple[str, ...] = ()
     """The model's own point objects, where the points are these."""
     table: tuple[str, str] | None = None
@@ -89,7 +89,7 @@ class DeskSource:
         return len(self.points) // rows, rows
 
     def as_dict(self) -> dict[str, Any]:
-        """The source as plain data, which JSON takes without loss."""
+        """The source as plain data for JSON, without loss."""
         return asdict(self)
 
     @staticmethod
@@ -125,7 +125,7 @@ class DeskSource:
     def _checked(self) -> DeskSource:
         count = len(self.points)
         if self.kind not in ("curves", "network", "surface") or not self.lines:
-            raise FairingError("a desk opens curves, a network or a surface, found none")
+            raise FairingError("expected curves, a network or a surface, found no lines")
         if count > LARGEST:
             raise FairingError(f"expected at most {LARGEST} points at a desk, found {count}")
         if any(not 0 <= k < count for line in self.lines for k in line.points):
@@ -149,9 +149,9 @@ class DeskSource:
             :class:`Spline` or a :class:`SplineSurface`, which are sampled; a table of offsets or
             several curves as :func:`~moldloft.fairing.files.read_points` has read them.
         name
-            What the curve or the surface is called.
+            Name of the curve or the surface.
         closed
-            Whether the curve returns to its first point.
+            True for a closed curve.
         motion
             ``"ball"``, or the direction in which points move.
         """
@@ -199,7 +199,7 @@ class DeskSource:
 
     @staticmethod
     def of_object(model: Model, name: str) -> DeskSource:
-        """A curve or a surface of a model; of fair objects and splines the points they are of.
+        """A curve or a surface of a model; for fair objects and splines their defining points.
 
         Parameters
         ----------
@@ -226,12 +226,12 @@ class DeskSource:
 
 
 def is_point(document: Any, name: str) -> bool:
-    """Whether an object of a model is a point."""
+    """True if an object of a model is a point."""
     return bool(document.object(name)["class"] == "point")
 
 
 def place(p: Any) -> Place:
-    """Three coordinates as numbers of Python, which JSON writes to the bit."""
+    """Three coordinates as Python floats, which JSON stores exactly."""
     x, y, z = (float(c) for c in (*p, 0.0, 0.0)[:3])
     if not np.isfinite([x, y, z]).all():
         raise FairingError(f"expected a place, found {p}")
@@ -244,7 +244,7 @@ def places(points: Any) -> tuple[Place, ...]:
 
 
 def of_table(file: PointFile, text: str | None) -> DeskSource:
-    """The lines of a file of points: those of a table of offsets share points, others may."""
+    """The lines of a file of points; those of a table of offsets share points."""
     width = file.width
     rows: list[int] = []
     known: dict[bytes, int] = {}

@@ -1,6 +1,6 @@
 """The state of a fairing desk, and the commands that change it.
 
-A command is a line of text: a word and what it is about. Points and lines are counted from 1. The
+A command is a line of text: a keyword and its arguments. Points and lines are counted from 1. The
 state is a value: a command makes another one, so that a log of commands is the whole history.
 """
 
@@ -24,9 +24,9 @@ COMMANDS: dict[str, str] = {
     "goal": "goal near or goal fairest",
     "knuckle": "knuckle K: an intended break",
     "fix": "fix K: the curve passes through the point",
-    "free": "free K: nothing is said of the point any more; a moved one returns",
-    "move": "move K X Y Z: the point is dragged there, and pinned",
-    "accept": "accept K: a suspect is a wrong reading, and may be left",
+    "free": "free K: removes marks of the point; a moved one returns",
+    "move": "move K X Y Z: moves and fixes the point",
+    "accept": "accept K: the suspect is a wrong reading, without a tolerance",
     "straight": "straight A-B, or straight A-B X,Y in a direction",
     "flat": "flat A-B: straight along the axis nearest to it",
     "arc": "arc A-B: a circular arc",
@@ -34,17 +34,17 @@ COMMANDS: dict[str, str] = {
     "convex": "convex A-B: turns to the left only",
     "concave": "concave A-B: turns to the right only",
     "side": "side X,Y line L: the curve leaves its points only against this direction",
-    "within": "within X,Y:MOST line L: the largest value along a direction",
-    "pieces": "pieces N line L: at most so many pieces of monotone curvature",
-    "clear": "clear line L: its shapes go",
-    "range": "range A-B: all outside stays; range off",
-    "lock": "lock L: the line stays as it is now",
+    "within": "within X,Y:MAX line L: the largest value along a direction",
+    "pieces": "pieces N line L: at most N pieces of monotone curvature",
+    "clear": "clear line L: removes its shape conditions",
+    "range": "range A-B: points outside do not move; range off",
+    "lock": "lock L: keeps the line in its current state",
     "unlock": "unlock L",
-    "cut": "cut z 1.5, or cut X,Y,Z:C: a line from the network, along a plane",
-    "put": "put back: the line that was cut becomes one of the network",
-    "drop": "drop: the line that was cut goes",
+    "cut": "cut z 1.5, or cut X,Y,Z:C: section of the network by a plane",
+    "put": "put back: adds the section line to the network",
+    "drop": "drop: deletes the section line",
 }
-"""The commands, with what they take."""
+"""The commands, with their arguments."""
 
 _SPANS = ("straight", "flat", "arc", "one-way", "convex", "concave")
 _SPAN = re.compile(r"(\d+)\s*-\s*(\d+)")
@@ -59,20 +59,20 @@ class DeskDraft:
     normal: Place
     """The normal of its plane."""
     points: tuple[Place, ...]
-    """Where the plane meets the lines."""
+    """Intersections of the plane with the lines."""
     on: tuple[tuple[tuple[int, int], ...], ...]
     """Of each point the lines that pass there, each with the number of its points before it; empty
     where it is a point of the network."""
     known: tuple[int, ...]
-    """Of each point its number in the network, -1 for a new one."""
+    """Index of each point in the network, -1 for a new one."""
 
 
 @dataclass(frozen=True)
 class DeskState:
-    """All that has been decided at a desk. Points and lines are counted from 0."""
+    """The decisions made at a desk. Points and lines are counted from 0."""
 
     tolerance: float
-    """How far curves may be from points."""
+    """Maximum distance of curves from points."""
     points: tuple[Place, ...]
     """The points, moved ones where they were dragged to."""
     lines: tuple[DeskLine, ...]
@@ -94,7 +94,7 @@ class DeskState:
     shapes: tuple[tuple[int, str], ...] = ()
     """Lines and the shapes they have, whose points count along the line from 1."""
     span: tuple[int, int, int] | None = None
-    """A line and the first and last place along it of the range that is faired."""
+    """A line, with the first and last index along it of the faired range."""
     locked: Mapping[int, DeskState] = field(default_factory=dict)
     """Lines that stay, each with the state in which it was locked."""
     held: Mapping[int, Place] = field(default_factory=dict)
@@ -119,7 +119,7 @@ class DeskState:
         return own / self.weights.get(point, 1.0)
 
     def line_of(self, a: int, b: int) -> tuple[int, int, int]:
-        """The line through two points, and their places along it in its order.
+        """The line through two points, and their indices along it, ascending.
 
         Parameters
         ----------
@@ -134,19 +134,19 @@ class DeskState:
 
 
 class Eyes(Protocol):
-    """What a command may have to know of a state once it is faired."""
+    """Queries of commands about the faired result of a state."""
 
     def places(self, state: DeskState) -> tuple[Place, ...]:
-        """Where the points are."""
+        """Positions of the points."""
 
     def suspicion(self, state: DeskState, point: int) -> tuple[str, Place | None] | None:
-        """What is suspected of a point, and its reading, if anything is."""
+        """Suspicion about a point, with a suggested reading, if there is one."""
 
     def cut_along(self, state: DeskState, normal: Place, at: float, name: str) -> DeskDraft:
         """The line along a plane."""
 
     def drafted(self, state: DeskState) -> tuple[Place, ...]:
-        """The faired points of the line that was cut."""
+        """The faired points of the section line."""
 
 
 def changed(source: DeskSource, state: DeskState, command: str, eyes: Eyes) -> DeskState:
@@ -155,23 +155,23 @@ def changed(source: DeskSource, state: DeskState, command: str, eyes: Eyes) -> D
     Parameters
     ----------
     source
-        What the desk was opened on.
+        The input of the desk.
     state
         The state before.
     command
         A line of text, see :data:`COMMANDS`.
     eyes
-        What is seen of a state once it is faired.
+        Queries about the faired result of a state.
 
     Raises
     ------
     FairingError
-        When it is no command, or one that the state does not take.
+        If it is not a command, or not applicable to the state.
     """
     words = command.replace("\u2212", "-").split()
     word = words[0].lower() if words else ""
     if word not in COMMANDS:
-        raise FairingError(f"`{command}` is no command; expected one of: {', '.join(COMMANDS)}")
+        raise FairingError(f"`{command}` is not a command; expected one of: {', '.join(COMMANDS)}")
     parse = _Words(source, state, word, words[1:])
     if word in _SPANS:
         return _shaped(state, word, parse)
@@ -200,7 +200,7 @@ def changed(source: DeskSource, state: DeskState, command: str, eyes: Eyes) -> D
     if word == "cut":
         normal, at, name = parse.plane()
         if source.kind != "network":
-            raise FairingError("cut: lines are cut from networks, and this is none")
+            raise FairingError("cut: only networks have sections")
         return replace(state, draft=eyes.cut_along(state, normal, at, name))
     if state.draft is None:
         raise FairingError(f"{command}: no line was cut")
@@ -384,7 +384,7 @@ def _accepted(source: DeskSource, state: DeskState, point: int, eyes: Eyes) -> D
 
 
 def along(motion: str | Place, at: Place, to: Place) -> Place:
-    """The place nearest to another that a point may move to."""
+    """The permitted position of a point nearest to a given one."""
     if isinstance(motion, str):
         return to
     size = sum(c * c for c in motion)

@@ -1,4 +1,4 @@
-"""What was decided at a fairing desk as statements of a model, which give the same curves."""
+"""The result of a fairing desk as statements of a model, which give the same curves."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _list(items: Iterable[Any]) -> str:
 
 
 def _wrapped(statement: str) -> str:
-    """A statement on lines of no more than so many columns, broken between words."""
+    """A statement wrapped between words."""
     out, line = [], ""
     for word in statement.split(" "):
         if line and len(line) + 1 + len(word) > WIDTH:
@@ -127,7 +127,7 @@ def _curves(source: DeskSource, state: DeskState, result: DeskResult, name: str)
 
 
 def _as_it_is(name: str, spline: Spline) -> str:
-    """A spline of these control points and knots: no other statement knows of ranges."""
+    """A spline of these control points and knots, since no other statement has ranges."""
     knots, control, _ = spline.open_form()
     rows = ", ".join(_place(p) for p in control)
     return (
@@ -148,7 +148,7 @@ def _network(source: DeskSource, state: DeskState, name: str) -> list[str]:
         if not own:
             out.append(f"AbsPoint {names[-1]}({', '.join(map(_number, at))});")
     if state.span is not None:
-        raise FairingError("a range is no statement of a network: end it, or lock its line")
+        raise FairingError("a range cannot be a statement of a network: end it, or lock its line")
     lists = [
         _list(names[p] for p in (line.points + line.points[:1] if line.closed else line.points))
         for line in state.lines
@@ -175,7 +175,7 @@ def _network(source: DeskSource, state: DeskState, name: str) -> list[str]:
 
 def _surface(source: DeskSource, state: DeskState, name: str) -> list[str]:
     if state.span is not None or state.held:
-        raise FairingError("ranges and locks are no statements of a surface: end them")
+        raise FairingError("ranges and locks cannot be statements of a surface: end them")
     m, n = source.grid
     grid = np.array(state.points).reshape(m, n, 3)
     out = [f"surface {name}_points[{m}, {n}];"]

@@ -1,4 +1,4 @@
-"""What pages and pictures of fairings have in common: colours, round numbers, places of teeth."""
+"""Common parts of pages and pictures of fairings: colours, round numbers, comb teeth."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def exaggeration(moves: Floats, extent: float) -> float:
     Parameters
     ----------
     moves
-        How far points moved.
+        Displacements of the points.
     extent
-        The size of what is drawn.
+        Size of the drawing.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def exaggeration(moves: Floats, extent: float) -> float:
 
 
 def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
-    """Samples that follow length and turn alike: enough teeth at a nose.
+    """Samples distributed by length and turning, so that a nose has enough comb teeth.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
 
 
 def by_length(samples: Samples) -> Floats:
-    """The size of the curvature at places even in length.
+    """Magnitude of the curvature at points evenly spaced in arc length.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a fairing of a curve has to say."""
+"""Report of the fairing of a curve."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Arc:
     centre: Floats
     """Its centre."""
     off: float
-    """How far the spline is from the circle, sampled."""
+    """Sampled distance of the spline from the circle."""
 
     def __str__(self) -> str:
         x = ", ".join(f"{c:.6g}" for c in self.centre)
@@ -49,7 +49,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Fairing:
-    """A faired curve and all that is to be said about it."""
+    """A faired curve, with its report."""
 
     points: Floats
     """The faired points, as many and with as many columns as were given: the control points, the
@@ -63,9 +63,9 @@ class Fairing:
     tol: float | None
     """The largest tolerance; ``None`` for no limit."""
     as_: str
-    """What the points were: ``"control"``, ``"points"`` or ``"fit"``."""
+    """Meaning of the points: ``"control"``, ``"points"`` or ``"fit"``."""
     mode: str
-    """How it was done."""
+    """Fairing mode."""
     measure: str
     """The measure that was minimised."""
     breaks: tuple[int, ...]
@@ -90,33 +90,33 @@ class Fairing:
     steps: int
     """Newton steps, local steps or sweeps."""
     stopped: str | None
-    """Which rule ended local steps: steps, move, drop, gap, pieces, stalled or done."""
+    """Criterion that ended local steps: steps, move, drop, gap, pieces, stalled or done."""
     active: int | None
-    """How many limits an optimum reaches."""
+    """Number of limits that an optimum reaches."""
     findings: tuple[Finding, ...]
-    """Corners and wrong points that stand out and were not taken into account."""
+    """Corners and wrong points that were found and not taken into account."""
     corrected: tuple[Finding, ...]
-    """Those that were, by ``breaks="auto"``."""
+    """Corners and wrong points taken into account by ``breaks="auto"``."""
     jump_lengths_before: Floats
     """The jump at each knot before."""
     jump_lengths_after: Floats
     """The jump at each knot of the result."""
     notes: tuple[str, ...]
-    """What the user should know."""
+    """Warnings and notes for the user."""
     seconds: float
     """Time of the fairing."""
     goal: str = "fairest"
-    """Which of the curves within the tolerances was wanted."""
+    """Goal: choice among the curves within the tolerances."""
     residuals: Floats | None = field(default=None, repr=False)
     """The distance of each point that was given from the curve at its parameter, for fits."""
     used: float | None = None
     """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
     parameters: Floats | None = field(default=None, repr=False)
-    """Where the points that were given are on the curve, from 0 to 1."""
+    """Parameters of the given points on the curve, from 0 to 1."""
     arcs: tuple[Arc, ...] = ()
-    """The circular arcs that were asked for."""
+    """The circular arcs of ``shape`` conditions."""
     thin: bool = False
-    """Whether the spline has fewer knots than there are points: their feet are their parameters."""
+    """True if the spline has fewer knots than there are points: their feet are their parameters."""
     fairer: float = 0.0
     """How far the curve went from the goal's own (0) towards the fairest (1; 2 with lengths for
     parameters), so that it bends no more often than that one."""
@@ -126,7 +126,7 @@ class Fairing:
 
     @property
     def deviation_data(self) -> float:
-        """No point that was given is farther from the curve than this.
+        """Bound of the distance of the given points from the curve.
 
         The distance from the curve's point at its parameter, or the move of the point itself.
         """
@@ -159,13 +159,13 @@ class Fairing:
 
     @property
     def gap_relative(self) -> float:
-        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        """The gap relative to the measure (of at least a trillionth of the original one)."""
         size = max(self.value, 1e-12 * self.before.measure)
         return self.gap / size if size > 0 else 0.0
 
     @cached_property
     def displacement(self) -> tuple[Floats, Floats]:
-        """How far each place of the curve has moved: share of the arc length and percent of it."""
+        """Displacement along the curve: fraction of arc length, and distance in percent."""
         if self.spline.closed != self.original.closed:
             raise FairingError("the faired curve and its original are not alike")
         before, after = self.original.samples(8), self.spline.samples(8)
@@ -173,7 +173,7 @@ class Fairing:
         return before.arc, 100.0 * far / self.length if self.length > 0 else far
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints.
+        """The report as plain data, as printed by ``moldloft fair --json``.
 
         Returns
         -------

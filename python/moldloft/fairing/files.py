@@ -52,7 +52,7 @@ class PointFile:
     """A file of points: rows of two or three numbers."""
 
     path: Path
-    """Where it was read."""
+    """Path of the file."""
     points: Floats
     """All rows in the order of the curve, ``(n, 2)`` or ``(n, 3)``."""
     lines: list[int]
@@ -62,19 +62,19 @@ class PointFile:
     head: list[str]
     """Title or names of columns, comments."""
     delimiter: str | None = None
-    """What separates columns; ``None`` for blanks."""
+    """Separator of columns; ``None`` for blanks."""
     counts: tuple[int, int] | None = None
-    """Of an aerofoil in two halves, from the leading edge each: the numbers of their points."""
+    """Numbers of points of the halves of an aerofoil, if each starts at the leading edge."""
     notes: list[str] = field(default_factory=list)
-    """What reading it showed."""
+    """Notes from reading."""
     inches: bool = False
-    """Whether lengths were in feet, inches and eighths; they are inches here."""
+    """True if lengths were in feet, inches and eighths; they are inches here."""
     unit: str | None = None
     """The unit of length that the file states, of feet, inches and eighths inches."""
     comma: bool = False
-    """Whether numbers had decimal commas."""
+    """True if numbers had decimal commas."""
     offsets: bool = False
-    """Whether it is a table of offsets: stations, half-breadths and heights. Its blocks are then
+    """True if it is a table of offsets: stations, half-breadths and heights. Its blocks are then
     the stations and the waterlines, which share their points."""
     moves: int = 1
     """The coordinate that a table of offsets gives: 1, half-breadths at stations and waterlines, or
@@ -82,11 +82,11 @@ class PointFile:
     table: Floats | None = None
     """The rows of a table of offsets as they were."""
     places: list[int] = field(default_factory=list)
-    """Of each row of the curves the row of the table."""
+    """Row in the table of each row of the curves."""
     cells: Cells | None = None
-    """The cells that hold the coordinates of rows, in a table of offsets or of named columns."""
+    """The cells of the coordinates of rows, in a table of offsets or of named columns."""
     fixed_stations: bool = False
-    """Whether the rows of a single curve are stations with one offset each."""
+    """True if the rows of a single curve are stations with one offset each."""
     names: list[str] = field(default_factory=list)
     """Names of the curves of a table of offsets."""
     point_names: list[str] = field(default_factory=list)
@@ -120,7 +120,7 @@ def read_points(path: str | os.PathLike[str], data: bytes | None = None) -> Poin
     FairingError
         With the line at fault.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     path = Path(path)
     data = _bytes(path) if data is None else data
@@ -173,7 +173,7 @@ _WORKBOOKS = (".xlsx", ".xlsm", ".xls", ".ods")
 
 
 def _refuse_binary(path: Path, data: bytes) -> None:
-    """Workbooks and other files that are no text are refused by name."""
+    """Workbooks and other binary files are rejected by name."""
     zipped = data.startswith(b"PK\x03\x04")
     compound = data.startswith(b"\xd0\xcf\x11\xe0")
     if path.suffix.lower() in _WORKBOOKS:
@@ -181,7 +181,7 @@ def _refuse_binary(path: Path, data: bytes) -> None:
             raise FairingError(f"`{path}` is a workbook: save its sheet as CSV")
         raise FairingError(f"`{path}` is text and no workbook: give it the ending .csv")
     if zipped or compound or b"\0" in data[:4096]:
-        raise FairingError(f"`{path}` is no text: expected rows of points")
+        raise FairingError(f"`{path}` is not text: expected rows of points")
 
 
 def _of_table(path: Path, table: OffsetTable, encoding: str) -> PointFile:
@@ -272,7 +272,7 @@ def _as_offsets(
 
 
 def _written(file: PointFile, axis: int, groups: dict[float, list[int]]) -> dict[float, str]:
-    """The places along an axis as they are written in the table."""
+    """The positions along an axis as written in the table."""
     if file.cells is None:
         return {}
     at = {owner: k for k, owner in enumerate(file.cells.owners)}
@@ -293,7 +293,7 @@ def _of_curves(file: PointFile, curves: list[tuple[str, list[int]]]) -> PointFil
     table = file.points
     long = [(name, rows) for name, rows in curves if len(rows) >= FEWEST]
     if not long:
-        raise FairingError(f"{file.path}: none of the curves has {FEWEST} points")
+        raise FairingError(f"{file.path}: no curve has {FEWEST} points")
     notes = list(file.notes)
     short = [name for name, rows in curves if 0 < len(rows) < FEWEST]
     if short:
@@ -318,11 +318,13 @@ def _of_curves(file: PointFile, curves: list[tuple[str, list[int]]]) -> PointFil
 
 
 def _at(path: Path, error: FormatError) -> FairingError:
-    """The same fault with its place in the file."""
+    """The error with its position in the file."""
     what = f"expected {error.expected}, found {error.found}"
     if error.place == "line":
         return FairingError(f"{path}:{error.number}: {what}")
-    return FairingError(f"`{path}` is no {error.format} grid: {error.place} {error.number}: {what}")
+    return FairingError(
+        f"`{path}` is not a valid {error.format} grid: {error.place} {error.number}: {what}"
+    )
 
 
 def points_text(
@@ -385,7 +387,7 @@ def _rounded_point(point: Floats, given: Floats, step: float, tol: float) -> Flo
 def cell_texts(
     points: Floats, like: PointFile, tol: Floats | float | None = None, step: float | None = None
 ) -> list[str | None]:
-    """The numbers of the cells of a table that changed, as they are written; ``None`` for others.
+    """Texts of the changed cells of a table; ``None`` for unchanged ones.
 
     Parameters
     ----------
@@ -399,11 +401,11 @@ def cell_texts(
     Raises
     ------
     FairingError
-        When a coordinate changed that has no cell.
+        If a coordinate changed that has no cell.
     """
     cells, given = like.cells, like.points if like.table is None else like.table
     if cells is None:
-        raise FairingError(f"`{like.path}` is no table with cells")
+        raise FairingError(f"`{like.path}` is not a table with cells")
     changed = {(int(k), int(axis)) for k, axis in np.argwhere(points != given)}
     if beyond := changed - set(cells.owners):
         row, axis = min(beyond)
@@ -449,7 +451,7 @@ def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     FairingError
         With the line of a word that is not a number.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     path = Path(path)
     out = []
@@ -472,11 +474,11 @@ class GridFile:
     """A Plot3D file of surfaces."""
 
     path: Path
-    """Where it was read."""
+    """Path of the file."""
     grids: list[Floats]
     """Its blocks, ``(m, n, 3)`` each."""
     variant: Plot3DVariant
-    """What Plot3D leaves open."""
+    """Variant of the Plot3D format."""
     iblank: list[NDArray[np.int32]] | None = None
     """A whole number for each point of each block, if the file has them."""
 
@@ -487,7 +489,7 @@ class GridFile:
 
     @property
     def counted(self) -> bool:
-        """Whether it begins with the number of blocks."""
+        """True if it begins with the number of blocks."""
         return self.variant.multi
 
     def __post_init__(self) -> None:
@@ -497,7 +499,7 @@ class GridFile:
             self.variant = Plot3DVariant(layout=self.variant)
 
     def encoded(self, grids: Sequence[Floats]) -> bytes:
-        """The file with other coordinates; :meth:`write` takes its place."""
+        """The content of the file with other coordinates; :meth:`write` replaces the file."""
         message = "GridFile.encoded is GridFile.write, or moldloft.grids.encode_plot3d"
         warnings.warn(message, DeprecationWarning, stacklevel=2)
         return self._encoded(grids)
@@ -525,7 +527,7 @@ _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"
 
 
 def is_grid(path: Path) -> bool:
-    """True for a Plot3D grid: by its name, and for names that others use too by its start."""
+    """True for a Plot3D grid, by its name or, for ambiguous names, by its first bytes."""
     if path.suffix.lower() in (".p3d", ".plot3d"):
         return True
     if path.suffix.lower() not in _GRID_SUFFIXES:
@@ -556,7 +558,7 @@ def read_grids(path: str | os.PathLike[str]) -> GridFile:
     Raises
     ------
     FairingError
-        When it is not such a file, or holds volumes.
+        If it is not such a file, or contains volumes.
     """
     path = Path(path)
     try:

@@ -43,7 +43,7 @@ _FEWEST = 7
 
 
 def order_of(points: Floats, closed: bool) -> list[Finding]:
-    """Points in no order, runs in reversed order, and rings that were given as open.
+    """Findings about points out of order, reversed runs, and closed curves given as open.
 
     Swapped neighbours are found with the wrong digits.
     """
@@ -52,7 +52,7 @@ def order_of(points: Floats, closed: bool) -> list[Finding]:
     if n < _FEWEST or not steps.any():
         return []
     if _shuffled(points, steps):
-        return [_order(0, f"points 1 to {n}: in no order? the way through them turns back")]
+        return [_order(0, f"points 1 to {n}: out of order? the line through them turns back")]
     ring = not closed and (points[0] == points[-1]).all()
     if ring and _smooth_seam(points):
         return [
@@ -80,7 +80,7 @@ def _shuffled(points: Floats, steps: Floats) -> bool:
 
 
 def _smooth_seam(points: Floats) -> bool:
-    """Whether a ring turns at its seam as beside it."""
+    """True if a closed curve turns as much at its seam as beside it."""
     way = np.diff(points, axis=0)
     round_ = np.vstack([way[-3:], way[:3]])
     units = round_ / np.maximum(np.linalg.norm(round_, axis=1), 1e-300)[:, None]
@@ -89,7 +89,7 @@ def _smooth_seam(points: Floats) -> bool:
 
 
 def _reversed_run(points: Floats, steps: Floats) -> list[Finding]:
-    """The run of points whose reversal, or exchange with the rest, shortens the way most."""
+    """The run of points whose reversal, or exchange with the rest, shortens the polyline most."""
     n = len(points)
     usual = float(np.median(steps))
     extent = float(np.linalg.norm(np.ptp(points, axis=0)))
@@ -102,7 +102,7 @@ def _reversed_run(points: Floats, steps: Floats) -> list[Finding]:
         return float(np.linalg.norm(points[a] - points[b]))
 
     def smooth(order: list[int], joints: list[int]) -> bool:
-        """Whether the way in another order runs on at its new steps."""
+        """True if the polyline in another order is smooth at its new joints."""
         way = np.diff(points[order], axis=0)
         size = np.linalg.norm(way, axis=1)
         for k in joints:
@@ -139,13 +139,13 @@ def _reversed_run(points: Floats, steps: Floats) -> list[Finding]:
     if not text or whole - gain > _SHORTER * whole:
         return []
     share = f"{100 * gain / whole:.0f} %"
-    return [_order(index, f"{text} the way through all points is {share} shorter so")]
+    return [_order(index, f"{text} the line through all points is {share} shorter so")]
 
 
 def along_lines(
     points: Floats, lines: Sequence[tuple[list[int], bool]], marked: Collection[int] = ()
 ) -> tuple[tuple[int, Finding], ...]:
-    """What stands out along lines through numbered points: the line and the finding.
+    """Findings along lines through numbered points: line and finding.
 
     A line is its points and whether it is closed. A wrong digit shows in all lines that judge its
     point, a knuckle in one.
@@ -164,7 +164,7 @@ def grid_lines(shape: tuple[int, int], closed: tuple[bool, bool]) -> list[tuple[
 def lines_exact(
     grid: Floats, closed: tuple[bool, bool], breaks: tuple[Sequence[int], Sequence[int]] = ((), ())
 ) -> bool:
-    """Whether all lines of a grid are exact from break to break."""
+    """True if all lines of a grid are exact from break to break."""
     m, n = grid.shape[:2]
     places = np.arange(m * n).reshape(m, n)
     marked = {*places[list(breaks[0])].ravel(), *places[:, list(breaks[1])].ravel()}

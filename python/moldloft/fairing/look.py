@@ -1,4 +1,4 @@
-"""How light plays on a surface: normals, curvatures, reflections on a grid of parameters."""
+"""Normals, curvatures and reflections of a surface on a grid of parameters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Look"]
 
 
 class Look:
-    """A surface on a grid of parameters: its normals and curvatures, and how light plays on it.
+    """A surface on a grid of parameters: normals, curvatures, reflections.
 
     Made by :meth:`SplineSurface.look` and by :meth:`moldloft.Object.look`. Arrays are ``(m, n)`` or
     ``(m, n, 3)``, NaN where the surface is singular.
@@ -46,7 +46,7 @@ class Look:
 
     @property
     def normals(self) -> Floats:
-        """Unit normals along the product of the derivatives by u and v."""
+        """Unit normals in the direction S_u x S_v."""
         return self._core.normals
 
     @property
@@ -94,7 +94,7 @@ class Look:
         return self._core.highlight(vector_of(point), vector_of(along))
 
     def reflection(self, view: ArrayLike, point: ArrayLike, along: ArrayLike) -> Floats:
-        """Zero where an eye far away in direction ``view`` sees the line reflected.
+        """Zero where a distant eye in direction ``view`` sees the reflected line.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Look:
         return self._core.orthotomic(vector_of(p), k)
 
     def fields(self) -> dict[str, Floats]:
-        """The curvatures by name, as files for viewers have them."""
+        """The curvatures by name, for files of viewers."""
         largest, smallest = self.principal
         return {
             "gaussian_curvature": self.gaussian,

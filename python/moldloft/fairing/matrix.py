@@ -29,17 +29,17 @@ class OffsetTable:
     cells: Cells
     """Its cells, whose owners are the offsets."""
     heights: bool = False
-    """Whether all offsets are heights at buttocks, not half-breadths at waterlines."""
+    """True if all offsets are heights at buttocks, not half-breadths at waterlines."""
     unit: str | None = None
     """The unit that it states."""
     inches: bool = False
-    """Whether lengths are in feet, inches and eighths."""
+    """True if lengths are in feet, inches and eighths."""
     comma: bool = False
-    """Whether numbers have decimal commas."""
+    """True for decimal commas."""
     stations: dict[float, str] = field(default_factory=dict)
-    """Names of stations by their places."""
+    """Names of stations by position."""
     levels: dict[float, str] = field(default_factory=dict)
-    """Names of waterlines or buttocks by their places."""
+    """Names of waterlines or buttocks by position."""
     curves: list[tuple[str, list[int]]] | None = None
     """Lines by name with their offsets; ``None`` where stations and levels are all."""
     motions: list[str] | None = None
@@ -47,31 +47,31 @@ class OffsetTable:
     point_names: list[str] = field(default_factory=list)
     """Names of the offsets."""
     notes: list[str] = field(default_factory=list)
-    """Facts about the table that a user should know."""
+    """Notes about the table for the user."""
 
 
 def number_at(cell: str, comma: bool) -> float | None:
-    """The length of a cell; ``None`` where it is none.
+    """The length in a cell; ``None`` if it is not a length.
 
     Parameters
     ----------
     cell
         The cell without blanks round it.
     comma
-        Whether numbers have decimal commas.
+        True for decimal commas.
     """
     return length(cell.replace(",", ".") if comma else cell)
 
 
 def place_at(cell: str, comma: bool) -> float | None:
-    """The place in a head of a column or the label of a row: `0.5`, `WL 0.5`, `0.5 m`.
+    """The position in a column head or row label: `0.5`, `WL 0.5`, `0.5 m`.
 
     Parameters
     ----------
     cell
         The cell without blanks round it.
     comma
-        Whether numbers have decimal commas.
+        True for decimal commas.
     """
     value = number_at(cell, comma)
     if value is not None:
@@ -91,7 +91,7 @@ def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
     Raises
     ------
     FairingError
-        When all but a few of its cells say a place.
+        If nearly all, but not all, of its cells are positions.
     """
     cells = [line[a:b].strip('"').strip() for a, b in spans(line)]
     if any(sign in line for sign in SEPARATORS):
@@ -125,7 +125,7 @@ def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
 
 
 def rows_are_stations(corner: str, above: str) -> bool | None:
-    """Whether rows are stations, by the word of the corner, or by what precedes the table.
+    """True if rows are stations, according to the corner cell or the text before the table.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def rows_are_stations(corner: str, above: str) -> bool | None:
 
 
 def decimal_commas(text: str) -> bool:
-    """Whether the numbers of a table have decimal commas.
+    """True if a table has decimal commas.
 
     Parameters
     ----------
@@ -268,11 +268,11 @@ def _unquoted(line: str, start: int, end: int) -> tuple[int, int]:
 
 
 def _unit(head: str, above: str) -> str | None:
-    """The unit of the heads of columns, or that stands in brackets: `0.5 m`, `station (m)`."""
+    """The unit in column heads, also in brackets: `0.5 m`, `station (m)`."""
     cells = [head[a:b].strip('"').strip() for a, b in spans(head)]
     behind = [cell.rpartition(" ")[2] for cell in cells[1:] if " " in cell]
     words = behind + _BRACKETS.findall(f"{above} {cells[0]}")
     units = {unit for word in words if (unit := unit_named(word))}
     if len(units) > 1:
-        raise FairingError(f"places in {' and '.join(sorted(units))}: expected one unit")
+        raise FairingError(f"positions in {' and '.join(sorted(units))}: expected one unit")
     return units.pop() if units else None

@@ -37,7 +37,7 @@ __all__ = ["NetworkFairing", "network"]
 
 @dataclass(frozen=True)
 class NetworkFairing:
-    """A faired network and all that is to be said about it."""
+    """A faired network, with its report."""
 
     points: Floats
     """The faired points, with as many columns as were given."""
@@ -48,15 +48,15 @@ class NetworkFairing:
     data: Floats
     """The points that were given, in three columns."""
     lists: tuple[tuple[int, ...], ...]
-    """Of each curve its points, from 0; of a closed one the first again at the end."""
+    """Points of each curve, from 0; a closed one repeats the first at the end."""
     tol: float | None
     """The largest tolerance; ``None`` for no limit."""
     mode: str
-    """How it was done."""
+    """Fairing mode."""
     measure: str
     """The measure that was minimised."""
     shared: int
-    """How many points stand in more than one curve."""
+    """Number of points in more than one curve."""
     measure_before: float
     """The measure over all curves before."""
     measure_after: float
@@ -79,21 +79,21 @@ class NetworkFairing:
     seconds: float
     """Time of the fairing."""
     goal: str = "fairest"
-    """Which of the networks within the tolerance was wanted."""
+    """Goal: choice among the networks within the tolerance."""
     used: float | None = None
     """The mean of the squared moves over tolerances; 1 is noise that fills these evenly."""
     findings: tuple[tuple[int, Finding], ...] = ()
     """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding,
     whose index is the point's."""
     notes: tuple[str, ...] = ()
-    """What the user should know."""
+    """Warnings and notes for the user."""
     names: tuple[str, ...] = ()
-    """What the curves are called, such as ``station 3``; numbers where there are none."""
+    """Names of the curves, such as ``station 3``; by default their numbers."""
     point_names: tuple[str, ...] = ()
-    """What the points are called; numbers where there are none."""
+    """Names of the points; by default their numbers."""
 
     def name(self, curve: int) -> str:
-        """What a curve is called in messages and pages.
+        """Name of a curve in messages and pages.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class NetworkFairing:
         return self.names[curve] if self.names else f"curve {curve + 1}"
 
     def point_name(self, point: int) -> str:
-        """What a point is called in messages and pages.
+        """Name of a point in messages and pages.
 
         Parameters
         ----------
@@ -131,12 +131,12 @@ class NetworkFairing:
 
     @property
     def gap_relative(self) -> float:
-        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        """The gap relative to the measure (of at least a trillionth of the original one)."""
         size = max(self.value, 1e-12 * self.measure_before)
         return self.gap / size if size > 0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints.
+        """The report as plain data, as printed by ``moldloft fair --json``.
 
         Returns
         -------
@@ -231,7 +231,7 @@ def network(
     steps: int | None = None,
     original: ArrayLike | None = None,
 ) -> NetworkFairing:
-    """Fair curves that share points, all at once: the stations, waterlines and buttocks of a hull.
+    """Fair curves that share points, all at once: stations, waterlines, buttocks of a hull.
 
     Parameters
     ----------
@@ -239,10 +239,10 @@ def network(
         ``(n, 3)`` or ``(n, 2)``; or the :class:`NetworkFairing` of points, which are then faired
         again from the points as they were read.
     curves
-        Of each curve its points, from 0; a closed curve ends with its first. A number that stands
-        in several lists is one point of all these curves.
+        The points of each curve, from 0; a closed curve ends with its first point. A number that
+        stands in several lists is one point of all these curves.
     tol
-        How far each point may move.
+        Maximum distance that each point may move.
     degree
         Polynomial degree of the curves.
     measure
@@ -254,27 +254,27 @@ def network(
         (``"x"``) or a direction where it rises or falls along a curve (chords elsewhere), or
         ``"index"``, the rule of the report of 1991, which the modes other than the optimum keep.
     goal
-        Which of the networks within the tolerance; see :func:`~moldloft.fairing.fair`. ``"near"``,
-        or ``("near", share)``, is the fairest where its squared residuals are no more than those of
-        noise that fills the tolerances evenly, give or take one and a half of their standard
-        deviations: the data do not speak against it. Where they are a quarter more the measure is
-        not that of the hull, and the squares are at most ``share`` (0.3) of noise's; between the
-        two the budget is continuous, and it falls to 0.05 where they are much more. Fewer than 40
-        moving points do not tell: theirs is ``share``.
+        Choice among the networks within the tolerance; see :func:`~moldloft.fairing.fair`.
+        ``"near"``, or ``("near", share)``, is the fairest where its squared residuals are no more
+        than those of noise that fills the tolerances evenly, give or take one and a half of their
+        standard deviations: the data do not speak against it. Where they are a quarter more the
+        measure is not that of the hull, and the squares are at most ``share`` (0.3) of noise's;
+        between the two the budget is continuous, and it falls to 0.05 where they are much more.
+        Fewer than 40 moving points do not tell: theirs is ``share``.
     breaks
         Points that are intended breaks of all their curves.
     fixed
         Points that do not move: ``"corners"`` (at which every curve that has them ends),
         ``"ends"``, ``"none"``, or numbers.
     motion
-        As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone. Or a
+        As for curves: ``(0, 1, 0)`` moves only half-breadths of stations and waterlines. Or a
         list with the axes of each point, such as ``"y"``, ``"yz"`` or ``""`` for one that stays.
     bound
         ``"points"``: the tolerance is that of the points, between which a curve may swing farther;
         ``"curve"``: no curve is farther from its original than the smaller tolerance of the two
         points next to it, all along. Of the optimum at parameters.
     passes, steps
-        Of the faithful mode; sweeps.
+        Maximum number of sweeps of the faithful mode.
     original
         The points as they were read, when ``points`` were faired already: tolerances are counted
         from these, so that fairing a result again is fairing the original.
@@ -349,7 +349,9 @@ def network(
             "none": np.zeros(count, bool),
         }.get(fixed)
         if kept is None:
-            raise FairingError(f"fixed points are corners, ends, none or numbers, not `{fixed}`")
+            raise FairingError(
+                f"fixed: expected corners, ends, none or numbers of points, found `{fixed}`"
+            )
         still = [int(i) for i in np.flatnonzero(kept)]
     else:
         still = [_number(i, count) for i in fixed]

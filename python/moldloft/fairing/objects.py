@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 __all__ = ["Sampled", "sampled"]
 
 SHARE = 0.01
-"""How far a fit may be off, as a share of the tolerance."""
+"""Maximum error of a fit, relative to the tolerance."""
 
 
 @dataclass
 class Sampled:
-    """Points that stand for an object."""
+    """Points sampled on an object."""
 
     points: Floats
     """``(n, 3)`` of a curve, ``(m, n, 3)`` of a surface."""
     role: str
     """``"fit"`` for shapes, ``"control"`` for rows of points."""
     error: float | None
-    """How far the spline through the points is from the shape between them."""
+    """Distance between the spline through the points and the shape."""
     closed: bool = False
-    """Whether a curve returns to its start without a corner."""
+    """True if a curve returns to its start without a corner."""
     breaks: list[int] = field(default_factory=list)
     """Points at which a curve has corners."""
 
@@ -44,7 +44,7 @@ class Sampled:
 def sampled(model: Model, name: str, tol: float | None) -> Sampled:
     """The curve, the surface or the rows of points called ``name``, as points.
 
-    There are so many that the spline through them is within a hundredth of the tolerance.
+    Their number keeps the spline through them within a hundredth of the tolerance.
     """
     document = model._document
     if not document.has(name):
@@ -64,7 +64,7 @@ def sampled(model: Model, name: str, tol: float | None) -> Sampled:
 
 
 def _corners(model: Model, name: str) -> tuple[list[float], bool]:
-    """Parameters at which the tangent turns, and whether the curve closes smoothly."""
+    """Parameters of corners, and true if the curve closes smoothly."""
     document = model._document
     eps = 1e-7
     _, _, breaks = document.curve_derivatives(name, np.array([0.5]))

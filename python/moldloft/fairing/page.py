@@ -1,4 +1,4 @@
-"""A fairing as one HTML page: pictures by place and to scale, and every point in a table."""
+"""A fairing as one HTML page: pictures to scale, and every point in a table."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ WIDE = 960.0
 
 
 class _Picture:
-    """Lines of the plane as SVG, each unit as long along both axes unless asked otherwise."""
+    """Plane lines as SVG, by default with equal scales along both axes."""
 
     def __init__(self, corners: Floats, height: float | None = None) -> None:
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -139,7 +139,7 @@ def _figure(picture: _Picture, caption: str) -> str:
 
 
 def _number(x: float, least: float = 0.0) -> str:
-    """A number to six digits; what is smaller than `least` is rounding."""
+    """A number to six digits; zero below `least`."""
     return f"{x:.6g}" if abs(x) > least else "0"
 
 
@@ -162,7 +162,7 @@ def _moved(
     axes: tuple[int, int],
     wrong: set[int],
 ) -> str:
-    """The shape to scale, with the moves of points drawn larger at their places."""
+    """The shape to scale, with exaggerated displacements of points."""
     ij = list(axes)
     away = moved - data
     lengths = np.linalg.norm(away, axis=1)
@@ -225,7 +225,7 @@ def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
 
 
 def _combs(pairs: Sequence[tuple[Spline, Spline]], axes: tuple[int, int]) -> str:
-    """Combs of the curves that lie in planes parallel to a view, before and after, alike in scale.
+    """Combs of the curves in planes parallel to a view, before and after, with the same scale.
 
     Stations in the body plan, waterlines in the plan, buttocks in the profile.
     """
@@ -300,7 +300,7 @@ def _bends(fairing: Fairing) -> str:
         height = float(picture.place(np.array([[0.0, y]]))[0, 1])
         picture.text(WIDE - 2, height - 3, f"{value:g}", QUIET, end=True)
     picture.text(WIDE - 60, 12, f"largest {largest:.4g}, median {usual:.4g}", QUIET, end=True)
-    picture.text(8, picture.height - 8, "share of the length", QUIET)
+    picture.text(8, picture.height - 8, "fraction of the length", QUIET)
     how = "on a logarithmic scale" if swamped else "cut where it was rougher before"
     return _figure(picture, f"Curvature along the curve, {how}: before orange, after blue.")
 
@@ -313,7 +313,7 @@ def _points(
     wrong: set[int],
     called: list[str] | None = None,
 ) -> str:
-    """Every point: as given, as faired, the distance and its share of the tolerance."""
+    """Every point: as given, as faired, and the distance, also in percent of the tolerance."""
     width = 2 if np.ptp(data[:, 2]) == 0 and not data[:, 2].any() else 3
     names = "xyz"[:width]
     head = ["point", *names, *(f"{c} faired" for c in names), "distance"]
@@ -367,7 +367,7 @@ def _of_curve(fairing: Fairing) -> list[str]:
 
 
 def _curves(fairing: NetworkFairing, pairs: list[tuple[Spline, Spline]], off: Floats) -> str:
-    """Every curve: its inflections and monotone pieces, and where it moved most."""
+    """Every curve: inflections, monotone pieces, and position of the largest displacement."""
     head = ["curve", "inflections", "faired", "monotone pieces", "faired", "largest move", "at"]
     if fairing.tol:
         head.append("of the tolerance")
@@ -430,7 +430,7 @@ def _surface(
     data: Floats | None = None,
     moved: Floats | None = None,
 ) -> list[str]:
-    """Three views of a surface, with the moves of its points where these are given."""
+    """Three views of a surface, with displacements of its points if given."""
     before, after = (s.grid(61, 41) for s in (original, surface))
     both = np.vstack([before.reshape(-1, 3), after.reshape(-1, 3)])
     parts = []
@@ -476,7 +476,7 @@ def page(
     title
         Its heading.
     facts
-        What stands below the heading besides the version of the program: names and values, such as
+        Entries below the heading in addition to the program version: names and values, such as
         the file, its unit and the command.
 
     Returns
@@ -518,12 +518,12 @@ def write_page(
     title: str = "Fairing",
     facts: Sequence[tuple[str, str]] = (),
 ) -> Path:
-    """Writes :func:`page` into a file, all of it or nothing.
+    """Writes :func:`page` to a file atomically.
 
     Parameters
     ----------
     fairing
-        What was faired.
+        The faired result.
     path
         The file.
     title

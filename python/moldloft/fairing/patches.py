@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 __all__ = ["PatchesFairing", "patches"]
 
 ROUNDING = 1e-13
-"""What rounding moves, as a share of the size."""
+"""Displacement due to rounding, relative to the size."""
 
 _EDGES = (("u0", "u1"), ("v0", "v1"))
 
 
 @dataclass(frozen=True)
 class PatchesFairing:
-    """Faired surfaces and all that is to be said about them."""
+    """Faired surfaces, with their report."""
 
     grids: tuple[Floats, ...]
     """The faired grids: control points, or where the surfaces have the parameters of the points."""
@@ -41,13 +41,13 @@ class PatchesFairing:
     originals: tuple[SplineSurface, ...]
     """The surfaces before."""
     seams: tuple[tuple[tuple[int, str], tuple[int, str]], ...]
-    """The edges that two of them share: a surface, from 0, and its edge, such as ``"u1"``."""
+    """Shared edges: the surfaces, from 0, and their edges, such as ``"u1"``."""
     keeps: str
-    """What runs on across seams."""
+    """Continuity across seams."""
     tol: float | None
     """The largest tolerance; ``None`` for no limit."""
     as_: str
-    """What the points were: ``"control"`` or ``"fit"``."""
+    """Meaning of the points: ``"control"`` or ``"fit"``."""
     measure: str
     """The measure that was minimised."""
     measure_before: float
@@ -71,12 +71,12 @@ class PatchesFairing:
 
     @property
     def gap_relative(self) -> float:
-        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        """The gap relative to the measure (of at least a trillionth of the original one)."""
         size = max(self.value, 1e-12 * self.measure_before)
         return self.gap / size if size > 0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints.
+        """The report as plain data, as printed by ``moldloft fair --json``.
 
         Returns
         -------
@@ -137,7 +137,7 @@ def patches(
     motion: Any = "ball",
     goal: str = "near",
 ) -> PatchesFairing:
-    """Fair surfaces that share edges as one, so that they run on across these.
+    """Fair surfaces that share edges together, with continuity across the edges.
 
     Where an edge of one surface has the same control points as an edge of another (or of itself),
     in either direction, there is a seam: its points move for both. Degree and knots along it must
@@ -148,14 +148,14 @@ def patches(
     surfaces
         Grids ``(m, n, 3)`` or :class:`SplineSurface`, on clamped knots.
     tol
-        How far each control point may move; ``None`` for no limit.
+        Maximum distance that each control point may move; ``None`` for no limit.
     seams
-        What is continuous across seams: ``"position"``, ``"tangent"`` or ``"curvature"``. The ratio
+        Continuity across seams: ``"position"``, ``"tangent"`` or ``"curvature"``. The ratio
         of the speeds of the parameters on both sides is read from the surfaces as they are.
     as_, degree
-        What the points of grids are, ``"fit"`` or ``"control"``, and of what degree.
+        Meaning of the points of grids, ``"fit"`` or ``"control"``, and their degree.
     measure, bound, rims, motion
-        As for surfaces; rims that are seams keep what ``seams`` says.
+        As for surfaces; ``seams`` applies to rims that are seams.
     goal
         ``"fairest"``, or ``"near"``, which differs where all lines of all grids are exact (lines,
         conics, plane cubics, helices): these move no farther than continuity across the seams asks
@@ -169,7 +169,7 @@ def patches(
     Raises
     ------
     FairingError
-        When surfaces cannot be joined, or not run on within the tolerance.
+        If surfaces cannot be joined, or not run on within the tolerance.
 
     Examples
     --------
@@ -191,7 +191,7 @@ def patches(
     if goal not in ("near", "fairest"):
         raise FairingError(f"the goal of surfaces with seams is near or fairest, not `{goal}`")
     if not surfaces:
-        raise FairingError("expected surfaces, found none")
+        raise FairingError("expected one surface or more, found 0")
     started = time.perf_counter()
     before: list[SplineSurface] = []
     at: list[tuple[Floats, Floats] | None] = []

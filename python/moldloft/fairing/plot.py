@@ -1,4 +1,4 @@
-"""Pictures of fairings. Matplotlib is looked for when one is drawn."""
+"""Pictures of fairings; Matplotlib is imported when one is drawn."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ STYLE = {
 
 
 def needed() -> Any:
-    """Matplotlib, or what to do without it."""
+    """Matplotlib; if it is missing, an error with the command to install it."""
     try:
         import matplotlib
         from matplotlib.figure import Figure
@@ -90,7 +90,7 @@ def _plane(points: Floats) -> tuple[int, int]:
 
 
 def _near_equal(ax: Any, x: Floats, y: Floats) -> None:
-    """Equal scales, unless the shape is so slender that nothing would be seen; then it says so."""
+    """Equal scales, or for very slender shapes unequal scales with a note."""
     wide, high = float(np.ptp(x)), float(np.ptp(y))
     if high > 0 and wide > 0 and 0.12 <= high / wide <= 8:
         ax.set_aspect("equal", adjustable="datalim")
@@ -157,7 +157,7 @@ def _shape(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
 
 
 def _zoom(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
-    """Where the curve moved most, as it is, with the tolerance round the original."""
+    """Detail of the largest displacement, to scale, with the tolerance band."""
     i, j = _plane(before.points)
     ax.set_title("Zoom on the largest move")
     far = np.linalg.norm(after.points - before.points, axis=1)
@@ -203,7 +203,7 @@ def _curvature(ax: Any, before: Samples, after: Samples) -> None:
     ax.set_title("Curvature")
     ax.plot(before.arc, before.curvature, color=BEFORE, lw=0.8, label="before")
     ax.plot(after.arc, after.curvature, color=AFTER, label="after")
-    ax.set_xlabel("share of the arc length")
+    ax.set_xlabel("fraction of the arc length")
     ax.set_ylabel("curvature")
     bend = np.interp(np.linspace(0, 1, 1001), after.arc, np.abs(after.curvature))
     usual = float(np.median(bend))
@@ -221,7 +221,7 @@ def _decade(x: float) -> float:
 
 
 def _range(ax: Any, before: Floats, after: Floats) -> None:
-    """The faired curve fills the height; what was rougher is cut off, and said to be."""
+    """Range of the faired curve; rougher parts of the original are cut off, with a note."""
     low, high = float(after.min()), float(after.max())
     all_low, all_high = float(before.min()), float(before.max())
     room = max(high - low, 1e-9 * max(abs(high), abs(low), 1e-300))
@@ -318,7 +318,7 @@ def _displacement(ax: Any, fairing: Fairing) -> None:
             ax.axhline(bound, color=BEFORE, lw=0.8, ls="--", label="tolerance")
             ax.legend(loc="lower right")
     ax.set_ylim(0, None)
-    ax.set_xlabel("share of the arc length")
+    ax.set_xlabel("fraction of the arc length")
     ax.set_ylabel("%")
 
 
@@ -357,7 +357,7 @@ def _metric(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
         metric = np.abs(grid_metric(_around(samples, i, j))[:, 1])
         curves.append(metric)
         ax.plot(samples.arc, metric, color=colour, lw=0.8 if colour == BEFORE else 1.1, label=label)
-    ax.set_xlabel("share of the arc length")
+    ax.set_xlabel("fraction of the arc length")
     ax.set_ylabel("$|\\eta_y|$")
     # Most of it: where the curve is steep the metric falls to zero.
     inner = np.percentile(curves[1], [15, 99])
@@ -434,7 +434,7 @@ def plot_surface(fairing: SurfaceFairing, path: str | PathLike[str]) -> None:
 
 
 def _light(normals: Floats) -> Floats:
-    """A direction at about sixty degrees from the mean normal, so that there are isophotes."""
+    """A light direction at about 60 degrees to the mean normal, which gives isophotes."""
     mean = np.nanmean(normals.reshape(-1, 3), axis=0)
     size = float(np.linalg.norm(mean))
     if size < 1e-9:
@@ -497,7 +497,7 @@ def _fields(
 
 
 def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
-    """The three views of a network before and after, and how far its points moved."""
+    """The three views of a network before and after, and the displacements of its points."""
 
     def lines(ax: Any, curves: Sequence[Spline], i: int, j: int, colour: str, width: float) -> None:
         for curve in curves:
@@ -543,7 +543,7 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
             for curve in curves:
                 samples = curve.samples(8)
                 ax.plot(samples.arc, samples.curvature, color=colour, lw=width)
-        ax.set_xlabel("share of the arc length")
+        ax.set_xlabel("fraction of the arc length")
         after = np.concatenate([c.samples(8).curvature for c in fairing.curves])
         before = np.concatenate([c.samples(8).curvature for c in fairing.originals])
         _range(ax, before, after)
@@ -551,7 +551,7 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
         i, j = _plane(given)
         if {i, j} == {0, 1} and np.ptp(given[:, 2]) > 0:
             i, j = 0, 2
-        ax.set_title("Moves of the points, by place")
+        ax.set_title("Displacements of the points")
         lines(ax, fairing.curves, i, j, "#c9ccd1", 0.5)
         most = fairing.tol or float(moved.max()) or 1.0
         dots = ax.scatter(

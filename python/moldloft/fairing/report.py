@@ -1,4 +1,4 @@
-"""What a fairing has to say for itself."""
+"""Reports about fairings."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Numbers:
     """Counts and sums over a curve."""
 
     measure: float
-    """The measure that was asked for."""
+    """The requested measure."""
     jumps: float
     """Sum of squared jumps of the highest derivative."""
     largest_jump: float
@@ -29,7 +29,7 @@ class Numbers:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that noise does not explain."""
+    """A feature of the data that noise does not explain."""
 
     kind: str
     """``"corner"``, probably an intended break, ``"outlier"``, probably a wrong digit, or
@@ -37,13 +37,13 @@ class Finding:
     index: int
     """The point, from 0."""
     vector: tuple[float, float, float]
-    """Of a corner the change of direction per step of the parameter, of an outlier its error."""
+    """Change of direction per parameter step of a corner, or error of an outlier."""
     text: str
     """A sentence about it; it counts points from 1."""
 
     @staticmethod
     def of(row: tuple[str, int, Any, str]) -> Finding:
-        """From the extension's row.
+        """Converts the record of the extension.
 
         Parameters
         ----------
@@ -65,24 +65,24 @@ def lines_of(rows: list[tuple[str, str, str]], tail: list[tuple[str, str]]) -> s
 
 
 def claims_optimum(gap: float, relative: float) -> bool:
-    """Whether a bound on the gap says anything: no measure is below 0 in any case."""
+    """True if the gap proves anything beyond a measure of at least 0."""
     return math.isfinite(gap) and (gap <= 0 or relative < 1)
 
 
 def certificate_of(value: float, gap: float, relative: float, *, moved: bool) -> str:
-    """What is proved of a result: the line of reports.
+    """The proved property of a result, as a line of reports.
 
     Parameters
     ----------
     value, gap, relative
         The measure of the result, the bound on how much less another may measure, and their ratio.
     moved
-        Whether anything has moved.
+        True if a point moved.
 
     Returns
     -------
     str
-        The measure and how far it is from the least, or that no such thing is claimed.
+        The measure and its distance from the minimum, or a note that there is no bound.
     """
     said = f"relative optimality gap <= {relative:.1e} with these knots and parameters"
     if not math.isfinite(gap):

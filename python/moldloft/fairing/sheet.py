@@ -1,6 +1,6 @@
 """A fairing as a sheet to sign: one content, as an HTML page or as PDF.
 
-:func:`_parts` says what is in it; the two forms are drawn from the same parts. Drawings are in
+:func:`_parts` defines the content; both formats are drawn from the same parts. Drawings are in
 millimetres of paper, so that a scale of 1 : n holds on both.
 """
 
@@ -89,12 +89,12 @@ class SheetTable:
     stations: list[str]
     """Names of its columns."""
     cells: dict[tuple[str, str], tuple[str, str | None]]
-    """Of a row and a column the offset as it was read and as it is now; ``None`` for unmoved."""
+    """Offset of each row and column before and after; ``None`` if unchanged."""
 
 
 @dataclass
 class SheetDetails:
-    """Facts of a sheet beside the result."""
+    """Data of a sheet in addition to the result."""
 
     facts: Sequence[tuple[str, str]] = ()
     """Names and values of the title block: source, date, the command that repeats it."""
@@ -105,11 +105,11 @@ class SheetDetails:
     unit: str | None = None
     """The unit of the points (m, cm, mm, ft, in), for the scale."""
     eighths: bool = False
-    """Whether the table is in feet, inches and eighths."""
+    """True if the table is in feet, inches and eighths."""
     limits: Floats | None = None
     """The tolerance of each point, where these differ."""
     notes: Sequence[str] = ()
-    """Sentences beside those of the result."""
+    """Sentences in addition to those of the result."""
 
 
 @dataclass
@@ -124,7 +124,7 @@ class _Text:
 
 @dataclass
 class _Table:
-    """Rows of texts; a cell that moved has the text before below the one after."""
+    """Rows of texts; a changed cell has the old text below the new one."""
 
     head: list[str]
     rows: list[list[str | tuple[str, str]]]
@@ -342,7 +342,7 @@ def _views(lines: _Lines) -> list[tuple[str, tuple[int, int]]]:
 
 
 def _scale(size: tuple[float, float], room: tuple[float, float], unit: str | None) -> float:
-    """The largest scale, in mm of paper for each unit of length, at which a size has room."""
+    """The largest scale at which a size fits, in mm of paper per unit of length."""
     most = min(r / s for r, s in zip(room, size, strict=True) if s > 0)
     if unit is None:
         return round_below(most)
@@ -456,7 +456,7 @@ def _combs(lines: _Lines, unit: str | None) -> list[_Part]:
 
 
 def _strips(lines: _Lines) -> list[_Part]:
-    """Curvature over the length, and the move of each point beside its limit, curve by curve."""
+    """Curvature over the length, and displacements of points with their limits, for each curve."""
     parts: list[_Part] = [
         _Heading("Curvature and deviation, curve by curve"),
         _Text(
@@ -511,7 +511,7 @@ def _strip(drawing: _Drawing, lines: _Lines, k: int, left: float, wide: float, t
             a = np.column_stack([x[mask], np.full(int(mask.sum()), foot)])
             b = np.column_stack([x[mask], tops[mask]])
             drawing.pairs(a, b, colour, 0.8)
-    drawing.text(right, 1.4, "share of the limit at each point", 2.0, "start", QUIET)
+    drawing.text(right, 1.4, "fraction of the limit at each point", 2.0, "start", QUIET)
 
 
 def _findings(result: Fairing | NetworkFairing) -> list[str]:
@@ -590,7 +590,7 @@ def sheet(
     title
         Its heading, such as the name of the boat.
     details
-        Source, table, unit and the rest that the result does not know.
+        Source, table, unit and other data that are not in the result.
 
     Returns
     -------
@@ -606,7 +606,7 @@ def write_sheet(
     title: str = "Fairing",
     details: SheetDetails | None = None,
 ) -> Path:
-    """Write a sheet, whole or not at all; the file's ending, ``.html`` or ``.pdf``, says how.
+    """Write a sheet atomically, in the format of the extension: ``.html`` or ``.pdf``.
 
     Parameters
     ----------
@@ -625,7 +625,7 @@ def write_sheet(
     Raises
     ------
     Error
-        When the ending is another one, or reportlab is not installed.
+        If the extension is another one, or reportlab is not installed.
 
     Examples
     --------
@@ -711,7 +711,7 @@ def _svg(drawing: _Drawing) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text in the letters that the fonts of every PDF have."""
+    """Text limited to the characters of the standard PDF fonts."""
     return text.encode("cp1252", "replace").decode("cp1252")
 
 

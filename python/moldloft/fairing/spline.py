@@ -47,11 +47,11 @@ class Samples:
     curvature_slope: Floats
     """Derivative of the curvature of a plane curve by arc length, ``(n,)``; NaN for others."""
     plane: tuple[float, float, float] | None
-    """The unit normal of the curve's plane, when it lies in one."""
+    """Unit normal of a plane curve; ``None`` for others."""
 
     @property
     def arc(self) -> Floats:
-        """The share of the length of the polyline through the points up to each, from 0 to 1."""
+        """Fraction of the length of the polyline up to each point, from 0 to 1."""
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         sums = np.concatenate([[0.0], np.cumsum(steps)])
         return sums / sums[-1] if sums[-1] > 0 else sums
@@ -72,9 +72,9 @@ class Spline:
     weights
         Positive weights of a rational curve.
     closed
-        Whether the last control point is followed by the first.
+        True for a closed curve.
     clamped
-        Whether uniform knots of an open curve are clamped.
+        True if uniform knots of an open curve are clamped.
     period
         Of closed curves with knots: how far the first knot is from itself, once round.
 
@@ -132,9 +132,9 @@ class Spline:
         degree
             The polynomial degree.
         spacing
-            How points get their parameters: ``"chord"``, ``"centripetal"`` or ``"index"``.
+            Parametrisation of the points: ``"chord"``, ``"centripetal"`` or ``"index"``.
         closed
-            Whether the curve returns to the first point.
+            True for a closed curve.
         breaks
             Points, from 0, at which the curve may have corners. A closed curve with breaks becomes
             an open one that begins and ends at the first of them.
@@ -181,7 +181,7 @@ class Spline:
         spacing
             ``"chord"``, ``"centripetal"``, ``"index"``, or an axis, ``"x"`` to ``"z"``.
         closed
-            Whether the curve closes.
+            True if the curve closes.
 
         Returns
         -------
@@ -206,7 +206,7 @@ class Spline:
         spacing: str = "chord",
         at: ArrayLike | None = None,
     ) -> Spline:
-        """The spline with knots and weights of your own that is nearest to points.
+        """The spline with given knots and weights nearest to points.
 
         It passes through them when it has as many control points as there are points.
 
@@ -221,7 +221,7 @@ class Spline:
         weights
             Positive weights, one per control point, that stay as they are: a rational curve.
         spacing
-            How points get their parameters.
+            Parametrisation of the points.
         at
             The parameters themselves, rising, in [0, 1].
 
@@ -310,12 +310,12 @@ class Spline:
 
     @property
     def closed(self) -> bool:
-        """Whether the curve is closed."""
+        """True if the curve is closed."""
         return self._core.closed
 
     @property
     def domain(self) -> tuple[float, float]:
-        """The knots that t = 0 and t = 1 stand for."""
+        """The knot values at t = 0 and t = 1."""
         return self._core.domain
 
     def open_form(self) -> tuple[Floats, Floats, list[float] | None]:
@@ -347,7 +347,7 @@ class Spline:
         return Samples(**self._core.at(flat))
 
     def samples(self, per_span: int = PER_SPAN) -> Samples:
-        """The same, ``per_span + 1`` times on each span; knots are looked at from both sides.
+        """The same, ``per_span + 1`` times on each span; knots are evaluated from both sides.
 
         Parameters
         ----------
@@ -426,7 +426,7 @@ class Spline:
         return self._core.comb(scale, per_span)
 
     def jumps(self) -> tuple[Floats, Floats]:
-        """Where the highest derivative jumps: parameters ``(k,)`` and jump vectors ``(k, 3)``.
+        """Jumps of the highest derivative: parameters ``(k,)`` and jump vectors ``(k, 3)``.
 
         Free of the parameter's unit: on uniform cubics the fourth difference of the control
         points.
@@ -454,9 +454,9 @@ class Spline:
         return self._core.measure(name)
 
     def monotone_pieces(self, share: float = 1e-3, per_span: int = PER_SPAN) -> int:
-        """In how many pieces the curvature rises or falls.
+        """Number of monotone pieces of the curvature.
 
-        Reversals below a share of its range are ignored.
+        Reversals below a fraction of its range are ignored.
 
         Parameters
         ----------
@@ -473,7 +473,7 @@ class Spline:
         return self._core.monotone_pieces(share, per_span)
 
     def inflections(self, per_span: int = PER_SPAN) -> int:
-        """How often the curvature changes its sign.
+        """Number of sign changes of the curvature.
 
         Parameters
         ----------
@@ -508,7 +508,7 @@ class Spline:
     def orthotomic(self, p: ArrayLike, k: float = 2.0, per_span: int = PER_SPAN) -> Floats:
         """The k-orthotomic for a point p, ``(m, 3)``.
 
-        It has cusps exactly at inflections, when p lies on no tangent.
+        It has cusps exactly at inflections, if p is on no tangent.
 
         Parameters
         ----------
@@ -528,12 +528,12 @@ class Spline:
         return self._core.orthotomic([float(c) for c in point[0]], k, per_span)
 
     def findings(self) -> list[Any]:
-        """Corners and single wrong control points that stand out among the jumps.
+        """Corners and single wrong control points, found by the jumps.
 
         Returns
         -------
         list
-            Each with its place, its kind and how far it stands out.
+            Each with its position, its kind and its prominence.
         """
         from moldloft.fairing.report import Finding
 
@@ -545,7 +545,7 @@ class Spline:
 
 
 def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
-    """In how many pieces a list rises or falls, reversals below a share of its range ignored.
+    """Number of monotone pieces of a list, without reversals below a fraction of its range.
 
     Parameters
     ----------
@@ -592,7 +592,7 @@ def divided_differences(points: ArrayLike, t: ArrayLike) -> Floats:
 
 
 def grid_metric(grid: ArrayLike) -> Floats:
-    """The metric eta_y of a plane grid, ``(m, n)``: how its lines crowd across the body.
+    """The metric eta_y of a plane grid, ``(m, n)``: the density of its lines normal to the body.
 
     Parameters
     ----------

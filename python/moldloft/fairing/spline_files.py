@@ -1,4 +1,4 @@
-"""Spline curves as files of others: IGES (entity 126), STEP, DXF (SPLINE), 3DM and JSON."""
+"""Spline curves as IGES (entity 126), STEP, DXF (SPLINE), 3DM and JSON files."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ POINTS = (".csv", ".tsv", ".txt", ".dat", ".xyz", ".pts")
 """Endings of files of points."""
 
 SPLINES = (".igs", ".iges", ".stp", ".step", ".dxf", ".3dm", ".json")
-"""Endings of files that hold the splines themselves."""
+"""Extensions of formats with exact splines."""
 
 MILLIMETRES = (".igs", ".iges", ".stp", ".step", ".3dm")
-"""Endings of files that say millimetres where no unit is known."""
+"""Extensions of formats that state millimetres by default."""
 
 
 _IGES_UNITS = {"in": (1, "INCH"), "mm": (2, "MM"), "ft": (4, "FT"), "m": (6, "M"), "cm": (10, "CM")}
@@ -35,7 +35,7 @@ _IGES_UNITS = {"in": (1, "INCH"), "mm": (2, "MM"), "ft": (4, "FT"), "m": (6, "M"
 def encoded(
     curves: Sequence[Spline], path: Path, unit: str | None = None, names: Sequence[str] = ()
 ) -> bytes:
-    """The curves in the format that the ending of ``path`` names.
+    """The curves in the format of the extension of ``path``.
 
     ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES, STEP and 3DM say
     millimetres, as they have no word for that; DXF and JSON say nothing. ``names`` are those of the
@@ -44,7 +44,7 @@ def encoded(
     Raises
     ------
     FairingError
-        When the ending is none of :data:`SPLINES`.
+        If the ending is none of :data:`SPLINES`.
     """
     ending = path.suffix.lower()
     if ending in (".igs", ".iges"):
@@ -62,7 +62,7 @@ def encoded(
 
 
 def _number(x: float) -> str:
-    """A number that reads back to the bit, with a decimal point."""
+    """A number with a decimal point that is read back exactly."""
     text = repr(float(x) + 0.0)
     return text if any(c in text for c in ".en") else text + "."
 
@@ -135,7 +135,7 @@ def _hollerith(text: str) -> str:
 
 
 def _wrapped(words: list[str], width: int) -> list[str]:
-    """Parameters with their delimiters in lines of a width; none is broken."""
+    """Parameters with their delimiters, wrapped between parameters."""
     lines, line = [], ""
     for k, word in enumerate(words):
         item = word + (";" if k == len(words) - 1 else ",")
@@ -147,7 +147,7 @@ def _wrapped(words: list[str], width: int) -> list[str]:
 
 
 def _is_flat(points: np.ndarray) -> tuple[float, float, float] | None:
-    """The unit normal of the plane that points lie in."""
+    """The unit normal of the plane of points, if they are coplanar."""
     away = points - points.mean(axis=0)
     _, sizes, axes = np.linalg.svd(away, full_matrices=False)
     if len(sizes) < 3 or sizes[2] > 1e-12 * max(float(sizes[0]), 1e-300):

@@ -1,4 +1,4 @@
-"""Fairing of surfaces, and how light plays on them."""
+"""Fairing of surfaces, with their normals, curvatures and reflections."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class SplineSurface:
     weights
         Positive weights ``(m, n)`` of a rational surface.
     closed
-        Whether it is closed along u and v.
+        True if it is closed along u and v.
     clamped
-        Whether uniform knots are clamped.
+        True if uniform knots are clamped.
     periods
         Of closed directions with knots: how far the first knot is from itself, once round.
     """
@@ -167,7 +167,7 @@ class SplineSurface:
 
     @property
     def closed(self) -> tuple[bool, bool]:
-        """Whether it is closed along u and v."""
+        """True if it is closed along u and v."""
         return self._core.closed
 
     @property
@@ -176,7 +176,7 @@ class SplineSurface:
         return self._core.knots()
 
     def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
-        """The surface at a grid of parameters in [0, 1], or at so many even ones each way.
+        """Points of the surface at a grid of parameters in [0, 1], or at numbers of even ones.
 
         Parameters
         ----------
@@ -244,7 +244,7 @@ def _weights(given: ArrayLike, shape: tuple[int, ...]) -> Floats:
 
 @dataclass
 class _Axis:
-    """How the lines of a grid along one direction are fitted: all alike."""
+    """Fit of the lines of a grid along one direction, common to all."""
 
     degree: int
     closed: bool
@@ -256,7 +256,7 @@ class _Axis:
     """The control points that are breaks."""
     breaks: list[int]
     own: bool
-    """Whether the knots are the user's."""
+    """True if the knots are the user's."""
 
     @classmethod
     def of(
@@ -334,7 +334,7 @@ def _parameters(given: ArrayLike) -> Floats:
 
 @dataclass(frozen=True)
 class SurfaceFairing:
-    """A faired surface and all that is to be said about it."""
+    """A faired surface, with its report."""
 
     points: Floats
     """The faired grid, ``(m, n, 3)``: the net, or where the surface has the parameters of the
@@ -348,9 +348,9 @@ class SurfaceFairing:
     tol: float | None
     """The largest tolerance; ``None`` for no limit."""
     as_: str
-    """What the points were: ``"control"`` or ``"fit"``."""
+    """Meaning of the points: ``"control"`` or ``"fit"``."""
     mode: str
-    """How it was done."""
+    """Fairing mode."""
     measure: str
     """The measure that was minimised."""
     measure_before: float
@@ -378,24 +378,24 @@ class SurfaceFairing:
     seconds: float
     """Time of the fairing."""
     goal: str = "fairest"
-    """Which of the surfaces within the tolerances was wanted."""
+    """Goal: choice among the surfaces within the tolerances."""
     residuals: Floats | None = field(default=None, repr=False)
     """The distance of each point from the surface at its parameters, for fits."""
     used: float | None = None
     """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
     stayed: bool = False
-    """Whether the points were exact and stayed in a mode that moves others."""
+    """True if exact points stayed in a mode that moves others."""
 
     @property
     def deviation_data(self) -> float:
-        """No point that was given is farther from the surface than this."""
+        """Bound of the distance of the given points from the surface."""
         if self.residuals is not None:
             return float(self.residuals.max())
         return float(np.linalg.norm(self.points - self.data, axis=2).max())
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Wrong digits and knuckles that stand out along the lines of a grid of data.
+        """Wrong digits and knuckles found along the lines of a grid of data.
 
         Their index is that of the point, row by row, from 0; nothing moves for them.
         """
@@ -412,13 +412,13 @@ class SurfaceFairing:
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know."""
+        """Warnings and notes for the user."""
         stays = (EXACT,) if self.stayed else ()
         return (*too_large(self.tol, self.data), *stays)
 
     @property
     def gap_relative(self) -> float:
-        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        """The gap relative to the measure (of at least a trillionth of the original one)."""
         size = max(self.value, 1e-12 * self.measure_before)
         return self.gap / size if size > 0 else 0.0
 
@@ -428,7 +428,7 @@ class SurfaceFairing:
         return 100.0 * self.deviation_certified / self.extent if self.extent > 0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints."""
+        """The report as plain data, as printed by ``moldloft fair --json``."""
         (bu, au), (bv, av) = self.jumps_along
         return {
             "points": list(self.data.shape[:2]),
@@ -532,14 +532,14 @@ _RIMS = ("u0", "u1", "v0", "v1")
 
 
 def _rims(rims: str | Mapping[str, str]) -> list[str]:
-    """What each rim keeps: at u = 0 and 1, at v = 0 and 1."""
+    """Rim conditions: at u = 0 and 1, at v = 0 and 1."""
     known = ("corners", "position", "tangent", "curvature")
     by_name = dict.fromkeys(_RIMS, rims) if isinstance(rims, str) else dict(rims)
     for name, word in by_name.items():
         if name not in _RIMS:
             raise FairingError(f"rims are {', '.join(_RIMS)}, not `{name}`")
         if word not in known:
-            raise FairingError(f"a rim keeps {', '.join(known)}, not `{word}`")
+            raise FairingError(f"rims: expected {', '.join(known)}, found `{word}`")
     return [by_name.get(name, "corners") for name in _RIMS]
 
 
@@ -551,7 +551,7 @@ def _conditions(
     normals: Iterable[tuple[Sequence[float], ArrayLike]],
     keep: Sequence[str],
 ) -> tuple[list[_Condition], list[str]]:
-    """The conditions, and what they are called in refusals."""
+    """The conditions, with their names for error messages."""
     out: list[_Condition] = []
     labels = []
     for word, rows in (("through", through), ("normal", normals)):
@@ -692,7 +692,7 @@ def fair_surface(
         A grid ``(m, n, 3)`` or a :class:`SplineSurface`; or the :class:`SurfaceFairing` of a grid,
         which is then faired again from the points as they were read.
     tol
-        How far each point of the net may move; ``None`` for no limit.
+        Maximum distance that each point of the net may move; ``None`` for no limit.
     as_
         ``"control"``: the grid is the control net of a uniform surface; ``"fit"``: data on the
         surface, which stays within the tolerance of each. Surfaces with knots or weights of their
@@ -713,7 +713,7 @@ def fair_surface(
     spacing
         Parameters of data in each direction, the mean over its lines; see curves.
     goal
-        Which of the surfaces within the tolerances of data; see curves. Other modes have
+        Choice among the surfaces within the tolerances of data; see curves. Other modes have
         ``"near"``, which leaves grids of exact lines as they are, and ``"fairest"``.
     breaks
         Rows of points along u and along v, from 0, that are knuckle lines: their points do not move
@@ -721,10 +721,11 @@ def fair_surface(
     fixed
         Points (i, j) of the net that do not move.
     ends
-        What curves keep at open ends in the faithful mode; see curves. The optimum keeps the four
-        corners, two by two points.
+        Fixed quantities of curves at open ends in the faithful mode; see curves. The optimum keeps
+        the four corners, two by two points.
     rims
-        What the rims keep to the bit, so that neighbours still fit: ``"corners"`` (only these),
+        Exactly fixed quantities of the rims, so that neighbours still fit: ``"corners"`` (only
+        these),
         ``"position"``, ``"tangent"`` or ``"curvature"``, of all rims or by name, as in
         ``{"u0": "curvature", "v1": "position"}``.
     motion
@@ -740,7 +741,7 @@ def fair_surface(
     steps
         Local steps per point of each curve (3), or sweeps (50).
     order
-        Which curves come first in a pass: ``"vu"``, those of constant v, or ``"uv"``.
+        Order of curves in a pass: ``"vu"``, those of constant v first, or ``"uv"``.
     original
         The grid as it was read, when ``points`` were faired already: tolerances are counted from
         it, so that fairing a result again is fairing the original.
@@ -748,7 +749,7 @@ def fair_surface(
     Raises
     ------
     FairingError
-        When there is too little to fair or something is wrong.
+        If there is too little to fair or something is wrong.
     """
     if isinstance(points, SurfaceFairing):
         as_, points = points.as_, points.data

@@ -1,9 +1,9 @@
-"""Suspects: cells of a table that their neighbours contradict, and the readings that were meant.
+"""Suspects: table cells that contradict their neighbours, with the probable readings.
 
 Each offset is predicted by the neighbours on each of its lines: by polynomials of different degree
 and width, whose disagreement is the error of the prediction. The predictions of its lines are
 weighed by their errors. The clearest suspect is put aside before the next is looked for, so that it
-hides no other and accuses no neighbour. The list is ranked; it is no test of significance.
+hides no other and accuses no neighbour. The list is a ranking, not a test of significance.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ _COSTS = {
 
 @dataclass(frozen=True)
 class Suspect:
-    """A coordinate of a point that its neighbours contradict."""
+    """A coordinate of a point that contradicts its neighbours."""
 
     index: int
     """The point, from 0."""
@@ -79,7 +79,7 @@ class Suspect:
     expected: float
     """The coordinate that the neighbours predict."""
     error: float
-    """The error of that prediction."""
+    """Error of the prediction."""
     score: float
     """The deviation as a multiple of its error; the rank is by this times the deviation."""
     meant: float | None
@@ -87,9 +87,9 @@ class Suspect:
     reading: str
     """The coordinate as it is written in the table."""
     meant_reading: str
-    """The reading that was probably meant, in the notation of the table; nothing for none."""
+    """The probable reading in the notation of the table; empty if unknown."""
     slip: str
-    """The kind of slip, such as ``an inch`` or ``a digit``; nothing where none explains it."""
+    """The kind of slip, such as ``an inch`` or ``a digit``; empty if unknown."""
     gain: float
     """Share of the squared third differences beside it, on all its lines, that is gone with the
     reading meant, or with the expected one."""
@@ -149,7 +149,7 @@ def suspects(
     point_names: Sequence[str] = (),
     readings: dict[tuple[int, int], str] | None = None,
 ) -> tuple[Suspect, ...]:
-    """Ranked list of coordinates that are probably wrong, with the readings that were meant.
+    """Ranked list of probably wrong coordinates, with the probable readings.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ class _Search:
         return out
 
     def neighbours(self, index: int, axis: int) -> list[int]:
-        """The points beside one, on lines along which the coordinate changes."""
+        """The adjacent points on lines along which the coordinate changes."""
         out = []
         for line in self.lines:
             if index in line and np.ptp(self.data[line, axis]) > 0:
@@ -284,7 +284,7 @@ class _Search:
         return out
 
     def gain(self, index: int, values: dict[tuple[int, int], float]) -> float:
-        """Share of the squared third differences beside a point that is gone with other values."""
+        """Relative reduction of the squared third differences near a point by other values."""
         before = after = 0.0
         moved = self.data.copy()
         axes = set()
@@ -359,7 +359,7 @@ class _Search:
         value: float,
         middle: float,
     ) -> bool:
-        """Whether each side alone leads to the point, and both together past it."""
+        """True if extrapolation from each side meets the point, and interpolation misses it."""
         if len(low) < _SIDE or len(high) < _SIDE:
             return False
         ends = []
@@ -375,7 +375,7 @@ class _Search:
 
 
 def _combined(own: list[_Prediction]) -> tuple[float, float]:
-    """Predictions of several lines as one: weighed by their errors, less sure where they differ."""
+    """Combined prediction of several lines, weighted by their errors, uncertain if they differ."""
     weights = np.array([1 / p.error**2 for p in own])
     off = np.array([p.off for p in own])
     mean = float((weights * off).sum() / weights.sum())
@@ -386,7 +386,7 @@ def _combined(own: list[_Prediction]) -> tuple[float, float]:
 
 
 def _monotone(t: Floats, here: float, before: int) -> bool:
-    """Whether places rise or fall along a line, past the point's own."""
+    """True if positions along a line are monotone without the point itself."""
     whole = np.insert(t, before, here)
     steps = np.diff(whole)
     return bool((steps > 0).all() or (steps < 0).all())
@@ -428,7 +428,7 @@ def _shown(value: float, like: str) -> str:
 
 
 def _slips(text: str, value: float) -> list[tuple[float, str]]:
-    """Readings that one slip of the pen turns into this one."""
+    """Readings that a single writing error turns into this one."""
     out: list[tuple[float, str]] = [(-value, "the sign")]
     found = re.fullmatch(r"[-\u2212]?(\d+)-(\d+)-(\d+)([+\u00bd-]?)", text)
     if found or notation(text) == "feet":
@@ -460,7 +460,7 @@ def _slips(text: str, value: float) -> list[tuple[float, str]]:
 
 
 def _meant(text: str, value: float, expected: float, error: float) -> tuple[float | None, str]:
-    """The likeliest reading that one slip turns into this one, and the slip."""
+    """The most likely intended reading, and the writing error."""
     best: tuple[float, float | None, str] = (_WITHIN**2, None, "")
     for reading, slip in _slips(text, value):
         if reading == value:

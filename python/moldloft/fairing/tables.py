@@ -1,4 +1,4 @@
-"""Text of points as people have it, made plain.
+"""Conversion of tables of points in common forms to plain rows.
 
 Aerofoils with prose, decimal commas, named columns, lengths in feet, inches and eighths.
 """
@@ -59,7 +59,7 @@ _AXES = {
     "wl": "z",
     "height": "z",
 }
-"""What named columns are, in the axes of a ship: x along, y across, z up."""
+"""Axis of named columns, in ship axes: x along, y across, z up."""
 
 
 def eighths(text: str) -> Fraction | None:
@@ -125,28 +125,28 @@ def length(text: str) -> float | None:
 
 @dataclass
 class Plain:
-    """Text that a reader of plain rows reads, line for line as it was, and what was done to it."""
+    """A table as plain rows, one for each line of the original, with a record of the changes."""
 
     text: str
     head: list[str] | None = None
     """The lines before the first row as they were."""
     notes: list[str] = field(default_factory=list)
     inches: bool = False
-    """Whether lengths were in feet, inches and eighths."""
+    """True if lengths were in feet, inches and eighths."""
     unit: str | None = None
     """The unit that the names of columns state: m, cm, mm, ft or in."""
     comma: bool = False
-    """Whether numbers had decimal commas."""
+    """True if numbers had decimal commas."""
     stations: bool = False
-    """Whether the rows are offsets: their columns are station, half-breadth and height."""
+    """True if the rows are offsets: their columns are station, half-breadth and height."""
     heights: bool = False
-    """Whether these are heights at buttocks, not half-breadths at waterlines."""
+    """True if these are heights at buttocks, not half-breadths at waterlines."""
     axes: list[int] | None = None
-    """Of x, y and z the columns, where names say which and others are beside them or between."""
+    """Columns of x, y and z, if names identify them among others."""
 
 
 def spans(line: str) -> list[tuple[int, int]]:
-    """Where the cells of a line begin and end: between :data:`SEPARATORS`, else blanks.
+    """Start and end of the cells of a line, separated by :data:`SEPARATORS` or blanks.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def spans(line: str) -> list[tuple[int, int]]:
 
 
 def _cells(line: str) -> list[str]:
-    """The cells of a line: between what separates them, else blanks."""
+    """The cells of a line, separated by separators or blanks."""
     line = line.strip().rstrip(f"{SEPARATORS} ")
     for sign in SEPARATORS:
         if sign in line:
@@ -182,7 +182,7 @@ def _numbers(cells: list[str]) -> bool:
 
 
 def plain(text: str) -> Plain:
-    """Text made plain. What it cannot make plain stays, for the reader to refuse with its line.
+    """Plain text of a table. Other content is kept, for the reader to report with its line.
 
     Parameters
     ----------
@@ -222,16 +222,16 @@ def _openfast(lines: list[str], out: Plain) -> list[str]:
         )
     if rows:
         made[rows[0]] = f"# {made[rows[0]]}"
-        out.notes.append(f"line {rows[0] + 1}: the reference of the aerofoil is no point of it")
+        out.notes.append(f"line {rows[0] + 1}: the reference point is not on the aerofoil")
     out.axes = [0, 1]
     return made
 
 
 def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
-    """Numbers with decimal commas, where something else separates the columns."""
+    """Converts decimal commas, if columns have another separator."""
 
     def pieces(line: str) -> list[str]:
-        """Cells and what separates them, in turn: semicolons and tabs before blanks."""
+        """Cells and separators, alternating; semicolons and tabs take precedence over blanks."""
         between = r"(\s*[;\t]\s*)" if ";" in line or "\t" in line.strip() else r"(\s+)"
         return re.split(between, line)
 
@@ -293,7 +293,7 @@ def _lengths(lines: list[str], out: Plain) -> list[str]:
 
 
 def names_axes(line: str) -> bool:
-    """Whether a line names columns of two axes or more.
+    """True if a line names columns of two axes or more.
 
     Parameters
     ----------
@@ -329,7 +329,7 @@ def unit_named(word: str) -> str | None:
     Parameters
     ----------
     word
-        A word, as it stands in brackets behind the name of a column.
+        Unit of a word such as those in brackets after the name of a column.
 
     Examples
     --------
@@ -341,7 +341,7 @@ def unit_named(word: str) -> str | None:
 
 
 def _named(lines: list[str], out: Plain) -> list[str]:
-    """Columns by name: x, y, z or station, half-breadth and height, among others that are left."""
+    """Columns by name: x, y, z or station, half-breadth and height; others are ignored."""
     first = next((k for k, s in enumerate(lines) if s.strip() and not s.startswith("#")), None)
     if first is None:
         return lines
@@ -407,7 +407,7 @@ def _named(lines: list[str], out: Plain) -> list[str]:
 
 
 def _in_levels(lines: list[str], axes: list[int], width: int) -> bool:
-    """Whether points run through stations of equal x, each through heights that others have, too.
+    """True if points run through stations of equal x, each through heights that others have, too.
 
     So rows of a table of offsets do, and no curve in space does.
     """
@@ -434,7 +434,7 @@ def _in_levels(lines: list[str], axes: list[int], width: int) -> bool:
 
 
 def _prose(lines: list[str], out: Plain) -> list[str]:
-    """Titles, lines of a program's own and prose round the rows of an aerofoil."""
+    """Removes titles, program output and prose around the rows of an aerofoil."""
     rows = [k for k, s in enumerate(lines) if len(c := _cells(s)) in (2, 3) and _numbers(c)]
     if len(rows) < 5:
         return lines

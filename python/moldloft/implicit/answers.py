@@ -21,13 +21,13 @@ __all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "
 
 
 def warn_of(remark: str, frames: int = 1) -> None:
-    """Warns the caller of a method, ``frames`` up, of a number beyond its accuracy."""
+    """Warns the caller of a method, ``frames`` up, about a number that misses its accuracy."""
     warnings.warn(remark, stacklevel=2 + frames)
 
 
 @dataclass(frozen=True)
 class Attributes:
-    """Attributes of a set by its handle."""
+    """Attributes of a set."""
 
     name: str | None = None
     """Name of its faces."""
@@ -43,7 +43,7 @@ class Attributes:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A primitive of a set with the attributes that reach it."""
+    """A primitive of a set with its attributes."""
 
     field: Field
     """The primitive, negated where a complement reached it."""

@@ -1,4 +1,4 @@
-"""Blends: surfaces that touch others along prescribed rails."""
+"""Blends: surfaces tangent to others along prescribed rails."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Division of space by a set: boxes that are solid, air, or hold few primitives."""
+"""Division of space by a set: boxes that are solid, empty, or contain few primitives."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class DivisionBox:
     set: Set
     """The same set inside of the box, and unspecified outside."""
     kind: str
-    """``"solid"``, ``"air"``, both proved, or ``"surface"`` where the surface may be."""
+    """``"solid"`` or ``"air"``, both proved, or ``"surface"`` if it may contain the surface."""
     depth: int
     """Number of halvings of the whole box along each axis."""
 
 
 class Division:
-    """A box halved wherever the surface of a set may be and too many primitives decide.
+    """A box, halved where the surface of a set may be and depends on many primitives.
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ class Division:
     Raises
     ------
     Error
-        When the set has no end and no box is given.
+        If the set has no end and no box is given.
     ValueError
-        When the depth is negative.
+        If the depth is negative.
 
     Examples
     --------
@@ -110,7 +110,7 @@ class Division:
         return self._box(low, high, box.set, box.depth + 1)
 
     def leaf(self, point: Triple) -> DivisionBox:
-        """The box that holds a point, without the rest of the division.
+        """The box that contains a point, without the rest of the division.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class Division:
         Raises
         ------
         ValueError
-            When the point is outside of the whole box.
+            If the point is outside of the whole box.
         """
         at = np.array(triple(point, "point"))
         if (at < self.low).any() or (at > self.high).any():
@@ -157,8 +157,8 @@ class Division:
     def section_svg(self, axis: str = "z", at: float | None = None) -> str:
         """The boxes that a plane across an axis cuts, as an SVG drawing.
 
-        Solid boxes are grey, those that may hold the surface yellow; the number of primitives that
-        are left is in the title of each.
+        Solid boxes are grey, those that may contain the surface yellow; the number of primitives
+        that are left is in the title of each.
 
         Parameters
         ----------
@@ -175,14 +175,14 @@ class Division:
         Raises
         ------
         ValueError
-            When the axis is another, or the plane does not cut the box.
+            If the axis is another, or the plane does not cut the box.
         """
         if axis not in ("x", "y", "z"):
             raise ValueError(f"an axis is x, y or z, found {axis!r}")
         k = "xyz".index(axis)
         place = float(0.5 * (self.low[k] + self.high[k]) if at is None else at)
         if not self.low[k] <= place <= self.high[k]:
-            raise ValueError(f"the plane {axis} = {place} does not cut the box that is divided")
+            raise ValueError(f"the plane {axis} = {place} does not intersect the box")
         i, j = [(1, 2), (0, 2), (0, 1)][k]
         width, height = self.high[i] - self.low[i], self.high[j] - self.low[j]
         line = 0.002 * max(width, height)

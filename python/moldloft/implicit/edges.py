@@ -54,7 +54,7 @@ class Edged:
         return type(self)(self._core.offset(float(distance)))
 
     def shell(self, thickness: float) -> Self:
-        """The wall of that thickness inside of the surface.
+        """A wall of given thickness inside the surface.
 
         Parameters
         ----------
@@ -64,12 +64,12 @@ class Edged:
         Returns
         -------
         Set
-            A new one, solid where the set is thinner than twice the wall.
+            A new set, solid where the original is thinner than twice the wall.
 
         Raises
         ------
         Error
-            When the thickness is not above 0, or a primitive has no offset: see :meth:`offset`.
+            If the thickness is not above 0, or a primitive has no offset: see :meth:`offset`.
 
         Examples
         --------
@@ -98,7 +98,7 @@ class Edged:
         Raises
         ------
         Error
-            When the width is not above 0, or no edge is between faces of these names.
+            If the width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------
@@ -133,7 +133,7 @@ class Edged:
         Raises
         ------
         Error
-            When the width is not above 0, or no edge is between faces of these names.
+            If the width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------
@@ -178,7 +178,7 @@ class Edged:
         Raises
         ------
         Error
-            When a width is not above 0, or no edge is between faces of these names.
+            If a width is not above 0, or no edge is between faces of these names.
 
         Examples
         --------

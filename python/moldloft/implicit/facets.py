@@ -181,7 +181,7 @@ class Facets:
 
     @property
     def best_volume(self) -> float:
-        """The same, corrected for the distance of the triangles from the surface.
+        """The enclosed volume, corrected for the distance of the triangles from the surface.
 
         It is the volume of the set except for ``blunt`` and ``unresolved`` parts, which raise a
         warning.
@@ -190,7 +190,7 @@ class Facets:
         if missed:
             cells = "cell" if missed == 1 else "cells"
             warn_of(
-                f"note[volume-uncertain]: the facets are not their set in {missed} {cells}\n"
+                f"note[volume-uncertain]: the facets may deviate from the set in {missed} {cells}\n"
                 "help: look at `blunt` and `unresolved`; `Set.mass` says how well it is known"
             )
         return float(self.summary["best_volume"])
@@ -238,7 +238,7 @@ class Facets:
 
     @cached_property
     def unresolved(self) -> list[Unresolved]:
-        """Positions at which cells are inconclusive or may miss a part; nothing else is missed.
+        """Positions at which cells are inconclusive or may miss a part; no other part is missed.
 
         Neighbours are one entry: at most 100 entries, the largest first.
         """
@@ -312,7 +312,7 @@ class Facets:
         *,
         width: float = 160,
     ) -> str:
-        """Sections through a point, as a drawing: one view beside the other, solid parts filled.
+        """Sections through a point, as a drawing of adjacent views with filled solid parts.
 
         Parameters
         ----------
@@ -331,9 +331,9 @@ class Facets:
         return _drawn([(n, self.section(n, point)) for n in normals], point, width)
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> Path:
-        """Write the facets to a file, whole or not at all; the ending selects the format.
+        """Write the facets to a file atomically; the extension selects the format.
 
-        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
+        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` contain solids and sheets; wires and
         points are written to ``obj`` and ``vtp``, and are an error in the others.
 
         Parameters

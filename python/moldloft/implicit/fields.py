@@ -1,4 +1,4 @@
-"""Implicit functions, and the primitives to make them of."""
+"""Implicit functions, and the primitives that they consist of."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Field(Moving):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -102,7 +102,7 @@ class Field(Moving):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -131,7 +131,7 @@ class Field(Moving):
         Raises
         ------
         ArgumentError
-            When the low corner is not below the high one, or a coordinate is not finite.
+            If the low corner is not below the high one, or a coordinate is not finite.
 
         Examples
         --------
@@ -205,7 +205,7 @@ class Field(Moving):
         Raises
         ------
         Error
-            When the matrix is singular.
+            If the matrix is singular.
 
         Examples
         --------
@@ -255,7 +255,7 @@ class Field(Moving):
         Raises
         ------
         Error
-            When a part is a function from outside, which has no text.
+            If a part is a function from outside, which has no text.
 
         Examples
         --------

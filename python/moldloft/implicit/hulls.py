@@ -20,7 +20,7 @@ def union(*sets: Set | Field) -> Set:
     Parameters
     ----------
     sets
-        The sets; of none it is empty.
+        The sets; the union of no sets is empty.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def intersection(*sets: Set | Field) -> Set:
     Parameters
     ----------
     sets
-        The sets; of none it is everything.
+        The sets; the intersection of no sets is everything.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def intersection(*sets: Set | Field) -> Set:
 
 
 def convex_hull(*sets: Set | Field) -> Set:
-    """The smallest convex set that holds all of the sets.
+    """The smallest convex set that contains all of the sets.
 
     Its surface is of planes, balls, cylinders and cones, and smooth where balls span it (Boissonnat
     and Karavelas 2003).
@@ -81,7 +81,7 @@ def convex_hull(*sets: Set | Field) -> Set:
     Raises
     ------
     Error
-        When the sets are others, or the hull has no volume.
+        If the sets are others, or the hull has no volume.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def minkowski_sum(a: Set | Field, b: Set | Field) -> Set:
     Raises
     ------
     Error
-        If the sum has no known closed form.
+        If no closed form of the sum is known.
 
     Examples
     --------

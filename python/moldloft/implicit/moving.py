@@ -69,7 +69,7 @@ def reflection(normal: Triple, point: Triple) -> tuple[Floats, list[float]]:
     n = np.array(triple(normal, "normal"))
     size = float(np.linalg.norm(n))
     if not size > 0 or not np.isfinite(size):
-        raise ValueError("the normal of the mirror has no length")
+        raise ValueError("the normal of the mirror plane is zero")
     n /= size
     p = np.array(triple(point, "point"))
     return np.eye(3) - 2 * np.outer(n, n), list(2 * n * (n @ p))
@@ -117,7 +117,7 @@ class Moving:
         Raises
         ------
         ArgumentError
-            When the vector has not three coordinates.
+            If the vector has not three coordinates.
 
         Examples
         --------
@@ -147,7 +147,7 @@ class Moving:
         Raises
         ------
         ArgumentError
-            When the direction has no length.
+            If the direction has no length.
 
         Examples
         --------
@@ -177,7 +177,7 @@ class Moving:
         Raises
         ------
         ArgumentError
-            When the normal has no length.
+            If the normal has no length.
 
         Examples
         --------
@@ -205,7 +205,7 @@ class Moving:
         Raises
         ------
         Error
-            When the factor is 0.
+            If the factor is 0.
 
         Examples
         --------

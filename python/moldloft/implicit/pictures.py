@@ -63,7 +63,7 @@ class Pictured:
         Parameters
         ----------
         path
-            File to write, besides the result.
+            File to write in addition.
         low, high
             The box that is shown.
         size
@@ -98,11 +98,11 @@ class Pictured:
         Raises
         ------
         Error
-            When the set has no end and no box is given.
+            If the set has no end and no box is given.
         ValueError
-            When a number is beyond its range, or a name in ``mirrors`` is not one of a primitive.
+            If a number is beyond its range, or a name in ``mirrors`` is not one of a primitive.
         FileError
-            When it cannot be written to ``path``.
+            If ``path`` cannot be written.
 
         Examples
         --------
@@ -166,13 +166,13 @@ class Pictured:
         if isinstance(mirrors, Mapping):
             unknown = [name for name in mirrors if name not in names]
             if unknown:
-                raise ValueError(f"no primitive is called {unknown[0]!r}: there are {names}")
+                raise ValueError(f"unknown primitive {unknown[0]!r}; expected one of: {names}")
             shares = [float(mirrors.get(name, 0.0)) for name in names]
         else:
             shares = [float(mirrors)] * len(names)
         wrong = [share for share in shares if not 0 <= share <= 1]
         if wrong:
-            raise ValueError(f"a mirror throws back a share of 0 to 1, found {wrong[0]}")
+            raise ValueError(f"reflectance: expected 0 to 1, found {wrong[0]}")
         return shares
 
 

@@ -1,4 +1,4 @@
-"""Sets that are no field's solid side: everything, nothing, boxes, tetrahedra, wires, points."""
+"""Sets other than solid sides of fields: everything, nothing, boxes, tetrahedra, wires, points."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the colour is not of the palette, or the tolerance negative.
+            If the colour is not of the palette, or the tolerance negative.
 
         Examples
         --------
@@ -180,7 +180,7 @@ class Set(Moving, Edged, Pictured):
         return Set(self._core.complement())
 
     def thin(self) -> Set:
-        """The faces as sheets, without the inside; of sets whose primitives meet.
+        """The faces as sheets without interior, for sets whose primitives intersect.
 
         Returns
         -------
@@ -197,7 +197,7 @@ class Set(Moving, Edged, Pictured):
         return Set(self._core.skin())
 
     def regularized(self) -> Set:
-        """An equal set without parts that combine to nothing new, such as A | A.
+        """An equal set without redundant parts, such as in A | A.
 
         Returns
         -------
@@ -231,7 +231,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the low corner is not below the high one, or a coordinate is not finite.
+            If the low corner is not below the high one, or a coordinate is not finite.
 
         Examples
         --------
@@ -260,7 +260,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the matrix is singular.
+            If the matrix is singular.
 
         Examples
         --------
@@ -314,7 +314,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When a primitive is a function from outside, which has no text.
+            If a primitive is a function from outside, which has no text.
 
         Examples
         --------
@@ -336,7 +336,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         FileError
-            When there is no such folder, or it cannot be written to.
+            If there is no such folder, or it cannot be written to.
         """
         from moldloft.storage import put
 
@@ -358,9 +358,9 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When that is not a name.
+            If that is not a name.
         Error
-            When a primitive is a function from outside, which has no text.
+            If a primitive is a function from outside, which has no text.
 
         Examples
         --------
@@ -421,7 +421,7 @@ class Set(Moving, Edged, Pictured):
         Returns
         -------
         bool
-            Sets that hold the same points may be combined differently, and are then not the same.
+            Sets of the same points that are combined differently are not the same.
 
         Examples
         --------
@@ -443,8 +443,8 @@ class Set(Moving, Edged, Pictured):
     ) -> Any:
         """-1 in the solid, 0 on the surface, 1 in air, for points ``(…, 3)``.
 
-        A primitive counts as zero at most ``tolerance`` from its surface. The fields ``known``
-        count as zero everywhere: the points are known to be on their surfaces.
+        A primitive counts as zero within ``tolerance`` of its surface. The fields ``known``
+        count as zero everywhere, for points that are on their surfaces by construction.
 
         Parameters
         ----------
@@ -463,7 +463,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -481,7 +481,7 @@ class Set(Moving, Edged, Pictured):
         return members if shape else int(members)
 
     def winner(self, points: ArrayLike) -> Any:
-        """The number in :attr:`leaves` of the primitive that decides at each point; -1 for none.
+        """Index in :attr:`leaves` of the primitive that determines each point; -1 without one.
 
         Parameters
         ----------
@@ -496,7 +496,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the points have another shape.
+            If the points have another shape.
 
         Examples
         --------
@@ -527,7 +527,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the low corner is not below the high one, or a coordinate is not finite.
+            If the low corner is not below the high one, or a coordinate is not finite.
 
         Examples
         --------
@@ -555,7 +555,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end.
+            If the set has no end.
 
         Examples
         --------
@@ -597,14 +597,15 @@ class Set(Moving, Edged, Pictured):
         -------
         Mass
             ``volume``, ``centroid`` ``(3,)`` and ``inertia`` ``(3, 3)`` for density 1, each with
-            its bracket. ``uncertain`` is how far the volume may be off, proved by the bracket;
+            its bracket. ``uncertain`` is the maximum error of the volume, proved by the bracket;
             ``estimate`` is by how much facets of two levels differ where edges are thinner than
             cells, and is warned of when it is more than a millionth of the volume.
 
         Raises
         ------
         Error
-            When the accuracy is not reached with that many cells; it says what is.
+            If the accuracy is not reached with this number of cells; the message states the one
+            reached.
 
         Examples
         --------
@@ -641,7 +642,7 @@ class Set(Moving, Edged, Pictured):
     ) -> Nearest | None:
         """The point of the surface, in a box, that is nearest to ``point``; None without a surface.
 
-        ``accuracy`` is how much nearer another point may be, by default 1e-6 of the box.
+        Another point may be nearer by at most ``accuracy``, by default 1e-6 of the box.
 
         Parameters
         ----------
@@ -662,7 +663,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end and no box is given.
+            If the set has no end and no box is given.
 
         Examples
         --------
@@ -687,7 +688,7 @@ class Set(Moving, Edged, Pictured):
     ) -> Distance | None:
         """The distance of another set from this one in a box; None if one of them is empty there.
 
-        ``accuracy`` is how much nearer they may be, by default 1e-5 of the box.
+        They may be nearer by at most ``accuracy``, by default 1e-5 of the box.
 
         Parameters
         ----------
@@ -708,7 +709,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When a set has no end and no box is given.
+            If a set has no end and no box is given.
 
         Examples
         --------
@@ -745,7 +746,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the direction or the length is 0.
+            If the direction or the length is 0.
 
         Examples
         --------
@@ -796,7 +797,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         Error
-            When the set has no end and no box is given, or more cells are needed than ``limit``.
+            If the set has no end and no box is given, or more cells are needed than ``limit``.
 
         Examples
         --------

@@ -41,7 +41,7 @@ def smooth_union(a: Field | Set, b: Field | Set, width: float, blend: str = "qua
     Raises
     ------
     Error
-        When the width is not above 0, or there is no such blend.
+        If the width is not above 0, or there is no such blend.
 
     Examples
     --------

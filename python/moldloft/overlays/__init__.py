@@ -1,4 +1,4 @@
-r"""Reference geometry: meshes, points and curves of other programs, laid over a model and measured.
+r"""Reference geometry: meshes, points and curves of other programs, compared with a model.
 
 >>> import tempfile, pathlib, moldloft
 >>> from moldloft import overlays

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["Deviation", "deviation"]
 
 _ALONG = 0.02
-"""Sine of the angle from the normal beyond which a point is beside its surface, not above it."""
+"""Sine of the angle from the normal beyond which a point is beyond an edge of its surface."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deviation:
-    """Points and what is nearest to them; arrays have a row for each point."""
+    """Points with the nearest points of the model; arrays have a row for each point."""
 
     points: Floats
     """The points, ``(n, 3)``."""
@@ -57,11 +57,11 @@ class Deviation:
 
     @property
     def worst(self) -> int:
-        """The number of the point farthest off, from 0."""
+        """Index of the point with the largest distance."""
         return int(np.abs(self.distances).argmax())
 
     def summary(self) -> str:
-        """A line for each surface: its points, rms, largest distance and where that is.
+        """A line for each surface: number of points, rms, largest distance and its position.
 
         Returns
         -------
@@ -77,7 +77,9 @@ class Deviation:
             rows.append(f"{name:20} {len(own):8} {rms:11.4g} {d.max():11.4g}  ({at})")
         beside = int(self.beside.sum())
         if beside:
-            rows.append(f"{beside} points are beside the surfaces: their distance is from an edge")
+            rows.append(
+                f"{beside} points are beyond the surfaces: their distance is that from an edge"
+            )
         return "\n".join(rows)
 
     def to_pandas(self) -> Any:
@@ -190,7 +192,7 @@ def _surfaces(model: Model, objects: Sequence[str] | str) -> list[str]:
     others = [name for name in shown if name not in names]
     if others:
         raise Error(
-            f"`{others[0]}` is known by triangles, not as a surface\n"
+            f"`{others[0]}` consists of triangles and is not a surface\n"
             "help: name the surfaces to measure against: objects = [...]"
         )
     if not names:
@@ -213,7 +215,7 @@ def _facing(model: Model, name: str) -> float:
 
 
 def _normals(surface: Any, parameters: Floats) -> Floats:
-    """Unit normals, by differences: only their side is used. At a pole those beside it."""
+    """Unit normals by differences, used only for their side; at a pole those of adjacent points."""
     step = 1e-4
     inside = np.clip(parameters, step, 1 - step)
     u, v = inside.T

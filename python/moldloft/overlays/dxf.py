@@ -33,7 +33,7 @@ _METRES = {
 """Units of $INSUNITS in metres (Autodesk, DXF Reference, HEADER section)."""
 
 _MOST_ANGLE = 1e6
-"""Radians beyond which an angle says little of where an arc ends."""
+"""Angle in radians beyond which the end of an arc is inaccurate."""
 
 
 def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
@@ -105,7 +105,7 @@ _DEEPEST = 16
 
 
 def _check_count(document: Any, space: Any) -> None:
-    """Refuses a drawing whose blocks, once inserted, hold more entities than a model may hold."""
+    """Rejects a drawing whose inserted blocks exceed the limit of entities of a model."""
     counts: dict[str, int] = {}
 
     def count(entities: Any, depth: int) -> int:

@@ -54,7 +54,7 @@ def fit(
     most: int = 400,
     steps: int = 40,
 ) -> Fit:
-    """Sets parameters of a model so that its surfaces come as near to points as they can.
+    """Sets parameters of a model to minimise the distance of its surfaces from points.
 
     The sum of the squares of the distances is minimised (Gauss and Newton's method, damped as by
     Levenberg and Marquardt): the derivative of a distance by a parameter is that of the surface's
@@ -78,7 +78,7 @@ def fit(
     Returns
     -------
     Fit
-        The parameters, what they were, and the deviation that is left.
+        The parameters, their previous values, and the remaining deviation.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def _tried(
 
 
 def _slopes(model: Model, now: Deviation, names: list[str]) -> Floats:
-    """The derivatives of the distances by the parameters, ``(points, parameters)``."""
+    """Derivatives of the distances with respect to the parameters, ``(points, parameters)``."""
     expressions = [
         f"{name}({float(u)!r}, {float(v)!r})"
         for name, (u, v) in zip(now.surfaces.tolist(), now.parameters, strict=True)
@@ -171,7 +171,7 @@ def _slopes(model: Model, now: Deviation, names: list[str]) -> Floats:
 
 
 def _unit(vectors: Floats) -> Floats:
-    """The directions of vectors; zero where they have none."""
+    """The directions of vectors; zero for zero vectors."""
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     unit: Floats = np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0)
     return unit

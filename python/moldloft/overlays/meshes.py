@@ -95,7 +95,7 @@ def mesh(path: Path, ending: str) -> Overlay:
         raise FileError(f"points are of shape (n, 3), not {points.shape}")
     points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
     faces = np.concatenate(blocks) if blocks else np.empty((0, 4), dtype=np.int64)
-    remarks = (f"{left} elements that are no faces are left out",) if left else ()
+    remarks = (f"{left} elements that are not faces are omitted",) if left else ()
     return _checked(path.name, points, faces, tuple(groups), remarks)
 
 
@@ -123,7 +123,7 @@ def _checked(
     if not np.isfinite(points).all():
         raise FileError("a coordinate is not a finite number")
     if faces.size and not (faces.min() >= 0 and faces.max() < len(points)):
-        raise FileError(f"a face has a corner that is none of the {len(points)} vertices")
+        raise FileError(f"a face has a vertex number beyond the {len(points)} vertices")
     return Overlay(name, points, faces.astype(np.uint32), groups, remarks=remarks)
 
 

@@ -38,7 +38,7 @@ class Overlay:
     name: str
     """The name of the file."""
     points: Floats = field(default_factory=_no_points)
-    """Vertices of faces, or points alone: ``(n, 3)``."""
+    """Vertices of faces, or points without faces: ``(n, 3)``."""
     faces: NDArray[np.uint32] = field(default_factory=_no_faces)
     """Four corners of each face, a triangle repeats its last: ``(m, 4)``."""
     groups: tuple[tuple[str, int, int], ...] = ()
@@ -49,7 +49,7 @@ class Overlay:
     """Omitted or doubtful content of the file."""
 
     def scaled(self, factor: float) -> Overlay:
-        """The same in another unit: every length times a factor.
+        """The overlay in another unit: every length times a factor.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Overlay:
             In the overlay's unit.
         """
         if per_curve < 2:
-            raise Error(f"per_curve = {per_curve} places: expected 2 or more")
+            raise Error(f"per_curve: expected 2 points or more, found {per_curve}")
         t = np.linspace(0, 1, per_curve)
         return np.concatenate([self.points, *(c(t) for c in self.curves.values())])
 
@@ -117,7 +117,7 @@ class Overlay:
             A line for each curve.
         """
         if not self.curves:
-            raise Error(f"`{self.name}` holds no curve; points and faces are overlays only")
+            raise Error(f"`{self.name}` contains no curve; points and faces can only be overlays")
         return "\n".join(c.to_sdl(name) for name, c in self.curves.items()) + "\n"
 
     def to_pyvista(self) -> Any:

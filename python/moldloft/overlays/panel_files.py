@@ -93,7 +93,7 @@ def read_panels(data: bytes, ending: str) -> Panels:
     Raises
     ------
     FileError
-        When the file is another, or cut short; the message has the line.
+        If the file is another, or cut short; the message has the line.
 
     Examples
     --------
@@ -106,9 +106,9 @@ def read_panels(data: bytes, ending: str) -> Panels:
     reader = {"gdf": _gdf, "mar": _nemoh, "dat": _nemoh, "pnl": _hams, "hst": _hydrostar}[ending]
     points, faces, mirrors = reader(lines)
     if not len(faces):
-        raise FileError("it holds no panels")
+        raise FileError("it contains no panels")
     if faces.min() < 0 or faces.max() >= len(points):
-        raise FileError(f"a panel has a corner that is none of the {len(points)} vertices")
+        raise FileError(f"a panel has a vertex number beyond the {len(points)} vertices")
     for axis in mirrors:
         image = points.copy()
         # 0 stays 0, not -0.

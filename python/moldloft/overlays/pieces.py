@@ -38,7 +38,7 @@ def arc(centre: ArrayLike, a: ArrayLike, b: ArrayLike, start: float, end: float)
     """
     c, a, b = (np.asarray(v, dtype=np.float64) for v in (centre, a, b))
     if not (np.isfinite([c, a, b]).all() and math.isfinite(end - start)):
-        raise FileError("an arc whose centre, radii or angles are no finite numbers")
+        raise FileError("an arc whose centre, radii or angles are not finite numbers")
     count = max(1, math.ceil(abs(end - start) / (math.pi / 2) - 1e-9))
     half = (end - start) / count / 2
     pieces = []

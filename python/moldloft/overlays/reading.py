@@ -1,4 +1,4 @@
-"""Files of other programs as overlays, by their endings."""
+"""Files of other programs as overlays, by extension."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _DRAWINGS = {
 }
 
 ENDINGS = {**_SURFACES, **_MESHES, **_PANELS, **_POINTS, **_DRAWINGS}
-"""The endings of the files that are read, and what of them."""
+"""Extensions of readable files, with the content that is read."""
 
 
 def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "") -> Overlay:
@@ -87,8 +87,8 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
     Raises
     ------
     FileError
-        When the file cannot be read, is not what its ending says, or cut short: the message says
-        where.
+        If the file cannot be read, is not of the format of its extension, or is truncated: the
+        message says where.
     """
     path = Path(path)
     for unit in (units, file_units):
@@ -96,20 +96,19 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
             raise Error(f"unknown unit `{unit}`; expected one of: {', '.join(METRES)}")
     found, stated = _located(path)
     if not len(found.points) and not found.curves:
-        raise FileError(f"cannot read `{path}`: it holds no points, faces or curves")
+        raise FileError(f"cannot read `{path}`: it contains no points, faces or curves")
     if not units:
         return found
     metres = METRES[file_units] if file_units else stated
     if metres is None:
         raise Error(
-            f"`{path.name}` does not say what unit its numbers are in\n"
-            'help: say it: file_units = "mm"'
+            f'`{path.name}` does not state its unit of length\nhelp: file_units = "mm" states it'
         )
     return found.scaled(metres / METRES[units])
 
 
 def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, list[str]]:
-    """The curves of a drawing (DXF, SVG) as a program, and what is doubtful or left out.
+    """The curves of a drawing (DXF, SVG) as a program, with remarks about other content.
 
     Parameters
     ----------
@@ -122,7 +121,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     Raises
     ------
     FileError
-        When the file cannot be read or holds no curve.
+        If the file cannot be read or contains no curve.
     """
     path = Path(path)
     found, metres = _located(path)
@@ -132,7 +131,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     else:
         found = found.scaled(metres / METRES[units])
     if not found.curves:
-        raise FileError(f"`{path}` holds no curve; points and faces are overlays only")
+        raise FileError(f"`{path}` contains no curve; points and faces can only be overlays")
     return f'# {path.name}\nModel info(units = "{units}");\n{found.to_sdl()}', remarks
 
 
@@ -141,7 +140,7 @@ def _located(path: Path) -> tuple[Overlay, float | None]:
     ending = path.suffix.lower().lstrip(".")
     if ending not in ENDINGS:
         known = ", ".join(ENDINGS)
-        raise Error(f"`{path.name}` is not an overlay by its ending; expected one of: {known}")
+        raise Error(f"`{path.name}`: unknown extension of an overlay; expected one of: {known}")
     data = read_bytes(path)
     try:
         with within_limits():

@@ -60,7 +60,7 @@ def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
         Its bytes.
     """
     if b"<!ENTITY" in data:
-        raise FileError("not an SVG file to be read: it declares entities of its own")
+        raise FileError("unsupported SVG file: it declares entities")
     try:
         root = ElementTree.fromstring(data)
     except ElementTree.ParseError as error:
@@ -104,7 +104,7 @@ def _tag(element: ElementTree.Element) -> str:
 
 
 def _unit(root: ElementTree.Element) -> float | None:
-    """The metres of a user unit: of the width, and of the box that fills it."""
+    """Size of a user unit in metres, from the width and the view box."""
     size = re.fullmatch(rf"\s*({_NUMBER})\s*(mm|cm|in|pt|pc|px|Q)\s*", root.get("width", ""))
     if size is None:
         return None
@@ -144,7 +144,7 @@ def _transform(text: str) -> Floats:
 
 
 def _placed(piece: Floats, place: Floats) -> Floats:
-    """A piece moved: points are multiplied by weights, so the weight moves along."""
+    """A transformed piece; points are homogeneous, so the weight is transformed as well."""
     moved: Floats = piece.copy()
     flat = piece[:, [0, 1, 3]]
     moved[:, :2] = flat @ place[:2].T
@@ -162,7 +162,7 @@ def _length(element: ElementTree.Element, key: str, default: float = 0.0) -> flo
 
 
 def _shape(tag: str, element: ElementTree.Element) -> list[list[Floats]] | None:
-    """The pieces of each part of a shape; None for what is none."""
+    """The pieces of each part of an element; None if the element is not a shape."""
     if tag == "path":
         return _path(element.get("d", ""), element.get("id") or "path")
     if tag == "line":
@@ -277,7 +277,7 @@ def _path(text: str, label: str) -> list[list[Floats]]:
 
 
 def _tokens(text: str, label: str) -> list[str | float]:
-    """Commands and numbers; flags of arcs may be written without a gap."""
+    """Commands and numbers; flags of arcs may follow each other without separators."""
     found: list[str | float] = []
     command, count, k = "", 0, 0
     while k < len(text):

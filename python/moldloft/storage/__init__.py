@@ -1,4 +1,4 @@
-"""All writing of the package: whole or not at all, with owners, and nothing left behind.
+"""All writing of the package: atomic, with locks, and without leftovers.
 
 ``system < reading < locks < replacing < sets``, folders, and journals beside them.
 """

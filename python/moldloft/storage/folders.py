@@ -12,7 +12,7 @@ __all__ = ["make_folders"]
 
 
 def make_folders(folder: Path) -> list[Path]:
-    """Make a folder and those around it that are not there, synced.
+    """Make a folder with its missing parents, synced.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The journal of a sketch prompt: a killed process loses nothing, every change is on disk at once.
+"""The journal of a sketch prompt, which stores every change on disk at once.
 
 A journal is a text file of commands, one per line, after a header line. Each line begins with a
 checksum over the journal's own number, the line's number and the command: zeros, partial lines and
@@ -54,12 +54,12 @@ def beside(path: Path) -> Path:
 
 
 def lock(journal: Path) -> Lock:
-    """The lock of whoever keeps a journal.
+    """The lock of a journal.
 
     Raises
     ------
     BusyError
-        When somebody does.
+        If somebody does.
     """
     return Lock(journal.with_name(f".{journal.name}.lock"), journal.name)
 
@@ -71,11 +71,11 @@ class Left:
     path: Path
     commands: list[str]
     stale: bool = False
-    """True if another program has changed the file beside it since."""
+    """True if another program has changed its file since."""
     damaged: int = 0
     """Complete lines that are not readable."""
     when: str = field(default="")
-    """When it was last written."""
+    """Time of the last write."""
 
 
 def _checked(seed: str, number: int, command: str) -> str:
@@ -84,19 +84,19 @@ def _checked(seed: str, number: int, command: str) -> str:
 
 
 def read(path: Path, present: str | None = None) -> Left | None:
-    """A journal's complete commands; ``None`` when it is none.
+    """The complete commands of a journal; ``None`` if the file is not a journal.
 
     Parameters
     ----------
     path
         The journal.
     present
-        The digest of the file beside it: commands that it contains already are left out.
+        Digest of the file that it belongs to: commands already in that file are omitted.
 
     Raises
     ------
     FileError
-        When it is that of a later version.
+        If a later version wrote it.
     """
     try:
         text = read_bytes(path).decode("utf-8", errors="replace")
@@ -134,7 +134,7 @@ def read(path: Path, present: str | None = None) -> Left | None:
 def left_behind(
     paths: Sequence[Path], present: str | None = None, held: Lock | None = None
 ) -> list[Left]:
-    """Journals with commands that no living process keeps, the newest first.
+    """Journals with commands but without a running owner, the newest first.
 
     ``present`` is as for :func:`read`; ``held`` is the lock of the only one, when that is held.
     """
@@ -171,14 +171,14 @@ class Journal:
     begin
         Commands that are in it from the start.
     base
-        The digest of the file beside it.
+        Digest of the file that it belongs to.
     held
         Its lock, when that is held already; it is taken otherwise.
 
     Raises
     ------
     BusyError
-        When somebody else keeps it.
+        If somebody else keeps it.
     """
 
     def __init__(
@@ -198,7 +198,7 @@ class Journal:
 
     @classmethod
     def in_state_folder(cls, begin: Sequence[str] = ()) -> Journal:
-        """A journal of its own name in the state folder."""
+        """A journal with a unique name in the state folder."""
         stamp = time.strftime("%Y%m%d-%H%M%S")
         name = f"{stamp}-{os.getpid()}-{secrets.token_hex(2)}{ENDING}"
         return cls(state_folder() / name, begin)
@@ -249,15 +249,15 @@ class Journal:
 
     @property
     def beside_file(self) -> bool:
-        """True if it is beside the edited file, not in the state folder."""
+        """True if it is in the folder of the edited file, not in the state folder."""
         return self._base is not None
 
     def saving(self, digest: str) -> None:
-        """The file beside it is about to be written, with everything so far in it."""
+        """Record that the file is about to be written with all commands so far."""
         self.append([_IN_FILE + digest])
 
     def saved(self, digest: str) -> None:
-        """The file beside it is complete: the journal restarts."""
+        """Restart the journal: the file is complete."""
         self._begin([_IN_FILE + digest])
 
     def close(self, *, keep: bool) -> None:

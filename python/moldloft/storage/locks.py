@@ -1,4 +1,4 @@
-"""Who has a file: a lock beside it, whose file says whose it is."""
+"""Locks: a file beside the locked one that identifies the owner."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _FLAGS = os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
 
 @dataclass(frozen=True)
 class Owner:
-    """Who has a lock, for people: numbers of processes recur, so nothing is decided by them."""
+    """Owner of a lock, for messages only: process numbers recur, so no decision depends on them."""
 
     pid: int
     host: str
@@ -57,7 +57,7 @@ class BusyError(FileError):
     Attributes
     ----------
     owner : Owner or None
-        Who; ``None`` when the lock does not say.
+        The owner; ``None`` if the lock does not identify it.
     """
 
     owner: Owner | None
@@ -68,7 +68,7 @@ class BusyError(FileError):
 
 
 class Lock:
-    """A lock that its holder keeps until it is released, or its process ends.
+    """A lock that is held until it is released or its process ends.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ class Lock:
     Raises
     ------
     BusyError
-        When somebody has it for longer than that.
+        If somebody has it for longer than that.
     OSError
-        When the lock's file cannot be made.
+        If the lock's file cannot be made.
     """
 
     def __init__(self, path: Path, what: str, *, wait: float = 0.0) -> None:
@@ -140,7 +140,7 @@ class Lock:
             return False
 
     def release(self) -> None:
-        """Release; may be called twice."""
+        """Release the lock; may be called twice."""
         file, self._file = self._file, -1
         if file < 0:
             return

@@ -37,7 +37,7 @@ def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
     Raises
     ------
     FileError
-        When there is none, it cannot be read, is a folder, a pipe or a device, or is too large.
+        If it does not exist, cannot be read, is a folder, a pipe or a device, or is too large.
     """
     try:
         # Opening a pipe without a writer would wait for one.
@@ -85,7 +85,7 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
 
 
 def utf8_path(path: str | os.PathLike[str]) -> str:
-    r"""The path as text that is UTF-8, as models, sketches and the workbench name files.
+    r"""The path as UTF-8 text, as required by models, sketches and the workbench.
 
     A name from elsewhere may hold other bytes: such a file is read by what takes it as points,
     drawing or table, and refused as a model.
@@ -93,7 +93,7 @@ def utf8_path(path: str | os.PathLike[str]) -> str:
     Raises
     ------
     FileError
-        When it is not UTF-8.
+        If it is not UTF-8.
 
     Examples
     --------
@@ -125,7 +125,7 @@ def digest_of(path: str | os.PathLike[str]) -> str | None:
     Raises
     ------
     FileError
-        When there is one that cannot be read.
+        If there is one that cannot be read.
     """
     try:
         return digest(read_bytes(path))
@@ -137,7 +137,7 @@ def digest_of(path: str | os.PathLike[str]) -> str | None:
 
 
 def _similar(path: str | os.PathLike[str]) -> str:
-    """The hint about a file that is not there: the one beside it with nearly the same name."""
+    """Hint about a missing file: one in the same folder with a similar name."""
     from moldloft.spelling import nearest
 
     place = Path(os.fsdecode(path))

@@ -1,4 +1,4 @@
-"""Writing one file whole or not at all."""
+"""Atomic writing of one file."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LONGEST_NAME = 220
 
 
 class ChangedError(FileError):
-    """A file is not what it was when it was read: somebody else wrote it meanwhile."""
+    """Another program has changed a file since it was read."""
 
 
 def beside(target: Path, token: str, ending: str) -> Path:
@@ -44,7 +44,7 @@ class Target:
     Raises
     ------
     FileError
-        When something is there that is not a file, or that may not be written.
+        If something is there that is not a file, or that may not be written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -76,7 +76,7 @@ class Target:
 
 
 class Draft:
-    """The new content of a file under a hidden name, on the disk; its own until it is placed.
+    """The new content of a file, on disk under a hidden name until it replaces the file.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Draft:
     data
         The content.
     token
-        A part of its name; a new one when it is not given.
+        A part of its name; random by default.
     private
         True if a new file is private to its owner.
     """
@@ -139,7 +139,7 @@ class Draft:
 
 
 def put(path: Path, data: bytes, *, expected: str | None = None, private: bool = False) -> None:
-    """Write a file whole or not at all, synced, with its mode, owner and links.
+    """Write a file atomically, synced, with its mode, owner and links.
 
     Parameters
     ----------
@@ -148,16 +148,16 @@ def put(path: Path, data: bytes, *, expected: str | None = None, private: bool =
     data
         Its content.
     expected
-        The digest of what is there: the write is refused when the file holds something else.
+        Expected digest of the file: the write fails if its content differs.
     private
         True if a new file is private to its owner.
 
     Raises
     ------
     ChangedError
-        When the file is not what was expected.
+        If the file is not what was expected.
     FileError
-        When it cannot be written; then nothing has changed.
+        If it cannot be written; the file is then unchanged.
     """
     try:
         target = Target(path)

@@ -1,4 +1,4 @@
-"""Sets of files that are replaced together, and what a killed process left.
+"""Sets of files that are replaced together, and recovery after a killed process.
 
 A set is first written as drafts. The old files then get second names, and a record in the folder
 lists the operation; the drafts take the files' names; finally the record is removed, which is the
@@ -56,9 +56,9 @@ class _Entry:
 
 
 def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> list[Path]:
-    """Write all files or none: as drafts first, synced, then renamed.
+    """Write all files or no file: first synced drafts, then renames.
 
-    Who reads them by :func:`read_set` meanwhile sees all old or all new ones. Mode, owner and links
+    Concurrent readers by :func:`read_set` get all old or all new files. Mode, owner and links
     of old files are kept.
 
     Parameters
@@ -73,7 +73,7 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
     Raises
     ------
     FileError
-        When a file may not be written, or the folder or the disk refuses; then nothing has changed.
+        If a file may not be written, or the folder or the disk refuses; then nothing has changed.
     """
     if not outputs:
         return []
@@ -238,7 +238,7 @@ def recover(folder: Path) -> None:
     """Put back and remove what killed processes left in a folder.
 
     A half-written set is undone at once. Each process looks for drafts once. Files of living
-    processes are left alone.
+    processes are not touched.
     """
     try:
         status = folder.stat()
@@ -280,7 +280,7 @@ def _sweep(path: Path) -> None:
 
 
 def read_set(folder: Path, names: Sequence[str]) -> dict[str, bytes | None]:
-    """Files of a folder as one set: all as they were before a write, or all as after it.
+    """Files of a folder as one consistent set: all before a concurrent write, or all after it.
 
     Parameters
     ----------
@@ -297,7 +297,7 @@ def read_set(folder: Path, names: Sequence[str]) -> dict[str, bytes | None]:
     Raises
     ------
     FileError
-        When one cannot be read, or the folder is being written all the time.
+        If one cannot be read, or the folder is being written all the time.
     """
     folder = Path(folder)
     end = time.monotonic() + _WAIT

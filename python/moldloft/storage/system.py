@@ -1,4 +1,4 @@
-"""The calls of the operating system that writing is made of.
+"""The operating system calls used for writing.
 
 Nothing else in the package creates, replaces or removes files: tests make the n-th of these calls
 fail, for every n, and look at what is left.
@@ -42,7 +42,7 @@ _WINDOWS_PATIENCE = 2.5
 
 
 def open_new(path: Path, mode: int) -> int:
-    """A descriptor of a file that was not there; the umask applies to the mode."""
+    """A descriptor of a new file; the umask applies to the mode."""
     return os.open(path, _NEW | _SAFE, mode)
 
 
@@ -106,7 +106,7 @@ def link(old: Path, new: Path) -> None:
 
 
 def remove(path: Path, *, there: bool = False) -> None:
-    """Remove a name; one that is not there is no fault, unless it must be ``there``."""
+    """Remove a name; a missing one is an error only if ``there`` is true."""
     try:
         os.unlink(path)
     except FileNotFoundError:
@@ -115,7 +115,7 @@ def remove(path: Path, *, there: bool = False) -> None:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder in one that is there."""
+    """Make a folder in an existing one."""
     os.mkdir(path)
 
 
@@ -125,7 +125,7 @@ def remove_folder(path: Path) -> None:
 
 
 def keep_attributes(file: int, old: Path, was: os.stat_result) -> None:
-    """Give an open draft the owner, the mode and the extended attributes of what it replaces."""
+    """Give an open draft the owner, mode and extended attributes of the file that it replaces."""
     if not hasattr(os, "fchown"):
         return
     now = os.fstat(file)
@@ -151,7 +151,7 @@ def keep_attributes(file: int, old: Path, was: os.stat_result) -> None:
 
 
 def lock(file: int) -> bool:
-    """Take the lock of an open file; false when somebody has it, in this process or another."""
+    """Lock an open file; false if it is already locked, in this process or another."""
     try:
         import fcntl
     except ImportError:
@@ -182,5 +182,5 @@ def unlock(file: int) -> None:
 
 
 def reason(error: OSError) -> str:
-    """Why the system refused, in lower case."""
+    """The system's error message, in lower case."""
     return (error.strerror or str(error)).lower()

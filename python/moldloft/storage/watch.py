@@ -1,4 +1,4 @@
-"""Noticing that files change, by what is in them."""
+"""Detection of changed files by their content."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Watch:
         self._known = {path: self._content(path) for path in self._known}
 
     def end(self, paths: Iterable[str]) -> None:
-        """The work has ended, and has read these files."""
+        """End of the work, with the files that it read."""
         before, self._known = self._known, {}
         for path in paths:
             self._known[path] = before.get(path) or self._content(path)
@@ -74,7 +74,7 @@ class Watch:
         return max(status.st_mtime_ns, status.st_ctime_ns)
 
     def _content(self, path: str) -> str:
-        """The digest of a file, empty when it is not there."""
+        """The digest of a file; empty if it does not exist."""
         try:
             status = Path(path).stat()
             stamp = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

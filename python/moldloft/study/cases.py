@@ -141,7 +141,7 @@ class OpenError(Error):
 
 
 class ConstraintError(Error):
-    """A constraint of the study does not hold."""
+    """A constraint of the study is violated."""
 
 
 def _value(model: Model, name: str, text: str) -> float:
@@ -164,7 +164,7 @@ def number(value: object, text: str) -> float:
     Raises
     ------
     NumberError
-        When it is none.
+        If it is not a number.
     """
     try:
         numbers = np.asarray(value, dtype=np.float64)
@@ -184,7 +184,7 @@ class NumberError(Error):
 
 
 REASONS: dict[type[Error], str] = {ConstraintError: "constraint", OpenError: "not-closed"}
-"""Ids of refusals that are no diagnostic of the model."""
+"""Ids of errors that are not diagnostics of the model."""
 
 
 def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) -> dict[str, float]:
@@ -233,7 +233,7 @@ def _function(place: str, name: str) -> Any:
     if place not in _modules:
         spec = util.spec_from_file_location(f"_study_{len(_modules)}", place)
         if spec is None or spec.loader is None or not Path(place).is_file():
-            raise SolverError(f"`{place}` is no Python file")
+            raise SolverError(f"`{place}` is not a Python file")
         module = util.module_from_spec(spec)
         sys.path.insert(0, str(Path(place).parent))
         try:
@@ -285,7 +285,7 @@ def _of_command(
 
 def _fill(template: Path, place: Path, words: Mapping[str, float]) -> None:
     if not template.is_dir():
-        raise SolverError(f"the template `{template}` is no folder")
+        raise SolverError(f"the template `{template}` is not a folder")
     for source in sorted(template.rglob("*")):
         target = place / source.relative_to(template)
         if source.is_dir():
@@ -334,7 +334,7 @@ def _run(command: list[str], place: Path, seconds: float) -> None:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ends a command and what it started."""
+    """Ends a command and its child processes."""
     if hasattr(os, "killpg"):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

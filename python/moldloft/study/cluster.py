@@ -30,7 +30,7 @@ class ClusterExecutor(Executor):
     def submit(  # type: ignore[override]
         self, function: Callable[..., Any], request: Mapping[str, Any]
     ) -> Future[Any]:
-        """Hand out one case; before the first one the model's files are sent."""
+        """Submit one case; the model's files are sent before the first one."""
         digest = request["digest"]
         if digest not in self._sent:
             self._send(digest, request["model"], request["root"])
@@ -49,7 +49,7 @@ class ClusterExecutor(Executor):
         main = str(Path(model).relative_to(root))
 
         def setup(plugin: Any, worker: Any) -> None:
-            """Writes the files on each worker, those that join later too."""
+            """Writes the files on each worker, including those that join later."""
             install(digest, files, main)
 
         members = {"name": f"moldloft-{digest[:16]}", "setup": setup}

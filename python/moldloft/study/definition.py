@@ -38,7 +38,7 @@ DEFAULT_MEMORY = "4G"
 METHODS = {
     "grid": "all combinations of `levels` values of each input",
     "table": "the rows of a CSV file",
-    "one-at-a-time": "each input alone over `levels` values, the others as in the model",
+    "one-at-a-time": "each input over `levels` values, the others as in the model",
     "latin-hypercube": "`count` points, one in each of `count` slices of each input",
     "sobol": "`count` points of the scrambled Sobol sequence",
     "saltelli": "count (inputs + 2) points for Sobol indices",
@@ -64,7 +64,7 @@ FOR_SEVERAL = ("nsga2", "tpe")
 
 
 class StudyError(Error):
-    """A study's definition is wrong; the message says where and what was expected."""
+    """An invalid definition of a study; the message gives the position and the expected value."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Input:
     values: tuple[float, ...] = ()
     """The values of a grid; by default `levels` equally spaced ones."""
     tolerance: float = 0.0
-    """Of manufacture; the report derives spreads and worst cases of the outputs from it."""
+    """Manufacturing tolerance, from which the report derives spreads and worst cases of outputs."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Bound:
 
     @property
     def equal(self) -> bool:
-        """Whether both limits are the same value."""
+        """True if both limits are the same value."""
         return self.low == self.high
 
 
@@ -144,7 +144,7 @@ class Analysis:
 
 @dataclass(frozen=True)
 class Plan:
-    """Which points are evaluated."""
+    """Plan of the points to evaluate."""
 
     method: str = "latin-hypercube"
     count: int = 100
@@ -156,7 +156,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Objective:
-    """An output that is to be small or great."""
+    """An output to minimise or maximise."""
 
     output: str
     maximise: bool = False
@@ -172,14 +172,14 @@ class Goal:
     evaluations: int = 200
     """The greatest number of points."""
     tolerance: float = 1e-8
-    """Of the objective relative to its size at the start, for methods that converge."""
+    """Convergence tolerance, relative to the objective at the start."""
     seed: int = 0
     population: int = 0
     """Points of a generation; by default 15 for each input, 40 with several objectives."""
     start: Mapping[str, float] = field(default_factory=dict)
     """The start; by default the model's values."""
     warm: bool = False
-    """Whether the best points of the store take the place of the start."""
+    """True to start from the best points of the store."""
 
     def __post_init__(self) -> None:
         if self.method not in OPTIMISERS:
@@ -193,7 +193,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Study:
-    """A study: which numbers of a model depend how on which others.
+    """A study: inputs and outputs of a model, with plan, analyses and goal.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ class Study:
     analyses
         Further calculations of each case.
     derivatives
-        Whether the exact derivatives of the outputs by the inputs are stored.
+        True if the exact derivatives of the outputs by the inputs are stored.
     seconds, memory
         Limits of one case.
     """
@@ -230,7 +230,7 @@ class Study:
     memory: str = DEFAULT_MEMORY
     library: tuple[str, ...] = ()
     closed: bool = False
-    """Whether a case whose mesh has an open edge is refused; images in planes of symmetry close."""
+    """True if a case whose mesh has an open edge is refused; images in planes of symmetry close."""
     folder: Path = Path()
     """The folder that relative names of analyses start from."""
 
@@ -256,10 +256,12 @@ class Study:
         for objective in self.goal.objectives if self.goal else ():
             if objective.output not in self.names:
                 known = ", ".join(self.names)
-                raise StudyError(f"`optimize`: `{objective.output}` is no output; outputs: {known}")
+                raise StudyError(
+                    f"`optimize`: unknown output `{objective.output}`; outputs: {known}"
+                )
         for name in self.goal.start if self.goal else ():
             if name not in {i.name for i in self.inputs}:
-                raise StudyError(f"`optimize.start.{name}` is no input")
+                raise StudyError(f"`optimize.start.{name}` is not an input")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -283,9 +285,9 @@ def read(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     StudyError
-        With the key that is wrong, and what was expected.
+        With the invalid key and the expected value.
     FileError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     place = Path(path)
     data = _parsed(place)
@@ -300,7 +302,7 @@ def _parsed(place: Path) -> dict[str, Any]:
         found: dict[str, Any] = tomllib.loads(read_text(place))
         return found
     except tomllib.TOMLDecodeError as error:
-        raise StudyError(f"{place}: it is not TOML: {error}") from None
+        raise StudyError(f"{place}: not valid TOML: {error}") from None
 
 
 class Table:
@@ -337,7 +339,7 @@ class Table:
         return Table(self.data.pop(key, {}), self.at(key))
 
     def end(self) -> None:
-        """Refuses the keys that nobody took."""
+        """Rejects unknown keys."""
         for key in self.data:
             near = nearest(key, self._known)
             hint = f"; did you mean `{near}`?" if near else f"; known: {', '.join(self._known)}"
@@ -459,7 +461,7 @@ def _bound(name: str, table: Table) -> Bound:
     table.end()
     if equal is not None:
         if low is not None or high is not None:
-            raise StudyError(f"`{table.where}` has `equal` beside `low` or `high`")
+            raise StudyError(f"`{table.where}`: `equal` excludes `low` and `high`")
         return Bound(name, value, equal, equal)
     if low is None and high is None:
         raise StudyError(f"`{table.where}` needs `low`, `high` or `equal`")
@@ -491,7 +493,7 @@ def _goal(table: Table) -> Goal:
     if not objectives:
         raise StudyError("`optimize` needs `minimize` or `maximize`, names of outputs")
     if len({o.output for o in objectives}) < len(objectives):
-        raise StudyError("`optimize` has an objective twice")
+        raise StudyError("`optimize` has the same objective twice")
     several = len(objectives) > 1
     default = FOR_SEVERAL[0] if several else "slsqp"
     method = _choice(table.take("method", "text", default), tuple(OPTIMISERS), table.at("method"))

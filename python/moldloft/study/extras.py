@@ -1,4 +1,4 @@
-"""Packages that studies use when they are installed."""
+"""Optional packages of studies."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def needed(module: str, extra: str, purpose: str) -> Any:
     extra
         The extra of Moldloft that brings it.
     purpose
-        What needs it, for the message.
+        The feature that needs it, for the message.
 
     Raises
     ------
     MissingPackageError
-        When it is not installed.
+        If it is not installed.
     """
     try:
         return import_module(module)

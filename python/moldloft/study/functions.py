@@ -82,7 +82,7 @@ class Function:
         return np.concatenate([self._value(name) for name in self.outputs])
 
     def jacobian(self, x: ArrayLike) -> Floats:
-        """The exact derivatives of the outputs by the inputs, ``(outputs, inputs)``.
+        """The exact derivatives of the outputs with respect to the inputs, ``(outputs, inputs)``.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ def function(
     Raises
     ------
     Error
-        For inputs that cannot be set and outputs that are no numbers.
+        For inputs that cannot be set and outputs that are not numbers.
     """
     named = dict(outputs) if isinstance(outputs, Mapping) else {text: text for text in outputs}
     return Function(model, inputs, named)

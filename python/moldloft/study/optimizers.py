@@ -221,4 +221,4 @@ METHODS: dict[str, Callable[[], Method]] = {
         ("tpe", _tpe, "optuna", "optimizers"),
     )
 }
-"""The optimisers by name: each, called, finds its package and returns the method."""
+"""The optimisers by name: functions that import their package and return the method."""

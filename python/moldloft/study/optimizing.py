@@ -41,9 +41,9 @@ class Optimum:
     inputs: dict[str, float]
     outputs: dict[str, float]
     converged: bool
-    """Whether the optimiser ended by its own criterion, not by a failure or a limit."""
+    """True if the optimiser ended by its own criterion, not by a failure or a limit."""
     feasible: bool
-    """Whether all constraints hold to 1e-6 of their limits."""
+    """True if all constraints hold to 1e-6 of their limits."""
     message: str
     evaluations: int
     """The number of points evaluated, derivatives included."""
@@ -57,7 +57,7 @@ class NoNumbersError(Exception):
 
 
 class LimitError(Exception):
-    """As many points as the study allows have been evaluated."""
+    """The limit of evaluations of the study is reached."""
 
 
 class Points:
@@ -74,7 +74,7 @@ class Points:
         self.low = box[:, 0]
         self.scale = np.where(box[:, 1] > box[:, 0], box[:, 1] - box[:, 0], 1.0)
         self.most = (box[:, 1] > box[:, 0]).astype(float)
-        """The greatest coordinates in the unit cube: 0 for an input without room."""
+        """Upper bounds in the unit cube: 0 for an input with an empty range."""
         self.evaluated = 0
         self.seen: Callable[[Outcome], None] = lambda _: None
         self._limit = limit
@@ -126,7 +126,7 @@ class Points:
         Raises
         ------
         NoNumbersError
-            Where the model fails.
+            If the model fails.
         """
         (found,) = self.batch(np.asarray(unit, dtype=np.float64)[None])
         if found.state != DONE:
@@ -134,7 +134,7 @@ class Points:
         return found
 
     def slope(self, name: str, unit: Floats) -> Floats:
-        """The derivatives of an output by the coordinates of the unit cube."""
+        """The derivatives of an output with respect to the coordinates of the unit cube."""
         outputs = self.at(unit).outputs
         found: Floats = np.array([outputs[f"d {name} / d {by}"] for by in self.cases.names])
         return found * self.scale
@@ -160,7 +160,7 @@ def _prepared(study: Study) -> tuple[Study, list[Bound]]:
         others = [name for name in OPTIMISERS if name not in BY_GRADIENTS]
         raise StudyError(
             f"`optimize.method`: `{study.goal.method}` needs derivatives, and `{word}` of an "
-            f"analysis has none; by values alone: {', '.join(others)}"
+            f"analysis has none; without derivatives: {', '.join(others)}"
         )
     return replace(study, outputs=own, constraints=(), derivatives=derivatives), bounds
 
@@ -172,7 +172,7 @@ def optimize(
     processes: int = 2,
     progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
-    """Find the inputs with the least or greatest objectives within the constraints.
+    """Minimise or maximise objectives over the inputs within the constraints.
 
     Parameters
     ----------
@@ -188,17 +188,17 @@ def optimize(
     Returns
     -------
     Optimum
-        The best feasible point evaluated (of the first objective); where there is none, the one
+        The best feasible evaluated point (of the first objective); if there is none, the one
         that violates the constraints least.
 
     Raises
     ------
     StudyError
-        When the study has no goal, or a method needs derivatives that an analysis has not.
+        If the study has no goal, or a method needs derivatives that an analysis has not.
     MissingPackageError
-        When the optimiser's package is not installed.
+        If the optimiser's package is not installed.
     Error
-        When the model has no numbers at the start.
+        If the model has no numbers at the start.
     """
     from moldloft.study.optimizers import METHODS
 
@@ -367,7 +367,7 @@ class Search:
     def values(self, units: Floats) -> tuple[Floats, Floats]:
         """Objectives, all to be small, and constraints: ``(points, ...)`` each.
 
-        Where the model fails all are 1e10.
+        All are 1e10 where the model fails.
         """
         objectives = np.full((len(units), len(self.names)), FAILED)
         constraints = np.full((len(units), len(self.bounds)), FAILED)
@@ -380,7 +380,7 @@ class Search:
         return objectives, constraints
 
     def violations(self, constraints: Floats) -> Floats:
-        """By how much constraints exceed their limits, ``(points, constraints)``; else 0."""
+        """Excess of constraints over their limits, ``(points, constraints)``; else 0."""
         found: Floats = np.maximum(np.maximum(self.low - constraints, constraints - self.high), 0)
         return found
 

@@ -41,7 +41,7 @@ def ranges(study: Study, model: Model) -> Floats:
     Raises
     ------
     StudyError
-        When an input has no range, or a range beyond the model's.
+        If an input has no range, or a range beyond the model's.
     """
     known = model.params
     rows = []

@@ -208,7 +208,7 @@ def _sensitivity_parts(results: Results, saltelli: int) -> list[str]:
 
 
 def _drawn(results: Results, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The rows that plots show; those of a front are among them."""
+    """The rows shown in plots, including those of a front."""
     rows = np.flatnonzero(chosen)
     if rows.size > MAX_DRAWN:
         few = rows[np.linspace(0, rows.size - 1, MAX_DRAWN).astype(int)]

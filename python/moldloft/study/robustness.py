@@ -31,10 +31,10 @@ def by_value(results: Results) -> dict[str, Floats]:
 
 @dataclass(frozen=True)
 class Validity:
-    """How many shapes of a plan are valid."""
+    """Number of valid shapes of a plan."""
 
     cases: int
-    """Cases whose shape is known to be valid or not: neither pending, nor crashed or late."""
+    """Cases with a valid or invalid shape, without pending, crashed and timed-out ones."""
     valid: int
     """Cases that the model does not refuse; those whose solver failed are among them."""
     low: float
@@ -49,7 +49,7 @@ class Validity:
 
 
 def validity(results: Results) -> Validity | None:
-    """Which fraction of a plan has valid shapes.
+    """Fraction of valid shapes of a plan.
 
     With ``closed`` in the definition open shapes are invalid.
 
@@ -79,7 +79,7 @@ def _terms(results: Results, tolerances: Mapping[str, float]) -> dict[str, list[
         if not tolerance >= 0 or not math.isfinite(tolerance):
             raise Error(f"the tolerance of `{name}` is at least 0, found {tolerance}")
         if name not in results.inputs:
-            raise Error(f"`{name}` is no input; inputs: {', '.join(results.inputs)}")
+            raise Error(f"unknown input `{name}`; inputs: {', '.join(results.inputs)}")
     found = {}
     for output in by_value(results):
         slopes = {n: f"d {output} / d {n}" for n, t in tolerances.items() if t > 0}
@@ -110,7 +110,7 @@ def spreads(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floa
     Raises
     ------
     Error
-        For a tolerance below 0, and one of no input.
+        For a negative tolerance, or a name that is not an input.
     """
     return {
         name: np.sqrt(np.sum(np.square(terms), axis=0))
@@ -119,14 +119,14 @@ def spreads(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floa
 
 
 def worst_cases(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floats]:
-    """Greatest deviations of the outputs when each input deviates by its tolerance at most.
+    """Maximum deviations of the outputs for deviations of each input within its tolerance.
 
     Parameters
     ----------
     results
         A table with derivatives.
     tolerances
-        Greatest deviations by input.
+        Maximum deviations by input.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def worst_cases(results: Results, tolerances: Mapping[str, float]) -> dict[str, 
     Raises
     ------
     Error
-        For a tolerance below 0, and one of no input.
+        For a negative tolerance, or a name that is not an input.
     """
     return {n: np.sum(terms, axis=0) for n, terms in _terms(results, tolerances).items()}
 

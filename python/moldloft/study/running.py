@@ -1,4 +1,4 @@
-"""Running a study: cases to an executor, results into the store, in any order of their ending."""
+"""Running of a study: cases go to an executor, results to the store in order of completion."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class Cases:
     Raises
     ------
     StudyError
-        When an input or output is unknown to the model.
+        If an input or output is unknown to the model.
     ModelError
-        When the model has an error.
+        If the model has an error.
     """
 
     def __init__(self, study: Study) -> None:
@@ -76,7 +76,7 @@ class Cases:
         self._fixed = self._common()
 
     def _check(self) -> None:
-        """What no case could evaluate is an error now, with the name of the table."""
+        """Check expressions before the first case; an error names the table."""
         for each in self.study.inputs:
             try:
                 self.model.set({each.name: float(self.model.eval(each.name))})
@@ -138,7 +138,7 @@ class Cases:
         return hashlib.sha256(text.encode()).hexdigest()[:40]
 
     def request(self, key: str, point: Sequence[float] | Floats) -> dict[str, Any]:
-        """What a worker is sent for a case."""
+        """The request to a worker for a case."""
         study = self.study
         return {
             **self._fixed,
@@ -247,11 +247,11 @@ def sweep(
     StudyError
         For a definition that the model does not fit.
     BusyError
-        When another process runs the study.
+        If another process runs the study.
 
     Notes
     -----
-    A case depends on its inputs alone, so the table is the same bit for bit whatever evaluates it.
+    A case depends on its inputs only, so the table is bit-identical for every executor.
     """
     with Cases(study) as cases, Store(store, writing=True) as kept:
         if retry:
@@ -297,7 +297,7 @@ def _evaluate(
 def _answers(
     executor: Executor, requests: Iterator[dict[str, Any]], processes: int
 ) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """The answers to requests as they come; few are under way at a time."""
+    """The answers to requests in order of completion; the number in progress is limited."""
     workers = getattr(executor, "_max_workers", None) or processes
     window = max(workers, processes) * (1 + QUEUED_PER_WORKER)
     under_way: dict[Future[dict[str, Any]], tuple[dict[str, Any], int]] = {}

@@ -1,7 +1,7 @@
 """The results of a study in one SQLite file: the plan in order, and a row for each evaluated case.
 
 A case is known by the digest of everything that decides its numbers, so that a study that was
-stopped goes on where it was, and equal points of several plans are evaluated once.
+stopped continues, and equal points of several plans are evaluated once.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ PENDING = "pending"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one case."""
+    """Result of one case."""
 
     key: str
     state: str
@@ -63,16 +63,16 @@ class Store:
     Parameters
     ----------
     path
-        The SQLite file; it is made when it is not there.
+        The SQLite file; created if missing.
     writing
-        Whether results are added: one process at a time may.
+        True if results are added: one process at a time may.
 
     Raises
     ------
     BusyError
-        When another process runs the study.
+        If another process runs the study.
     FileError
-        When the file is no store of this version, is damaged, or cannot be made.
+        If the file is not a store of this version, is damaged, or cannot be made.
     """
 
     def __init__(self, path: str | os.PathLike[str], *, writing: bool = False) -> None:
@@ -127,7 +127,7 @@ class Store:
 
     @contextlib.contextmanager
     def _at_once(self) -> Iterator[None]:
-        """Everything within is written together, or nothing."""
+        """A transaction: all writes within are stored, or no write."""
         with self._named():
             self._db.execute("BEGIN")
             try:
@@ -182,7 +182,7 @@ class Store:
             )
 
     def add(self, outcome: Outcome) -> None:
-        """Record the outcome of a case; the end of this process does not lose it.
+        """Record the outcome of a case durably.
 
         Parameters
         ----------
@@ -405,7 +405,7 @@ class Results:
     objectives: dict[str, float] = field(default_factory=dict)
     """The objectives of an optimisation by name: 1 where small is good, -1 where great is."""
     feasible: NDArray[np.bool_] | None = None
-    """The points of an optimisation that hold its constraints, ``(cases,)``."""
+    """Mask of the points that satisfy the constraints of an optimisation, ``(cases,)``."""
     front: NDArray[np.bool_] | None = None
     """The points of the Pareto front of several objectives, ``(cases,)``."""
 
@@ -420,7 +420,7 @@ class Results:
 
     @property
     def done(self) -> NDArray[np.bool_]:
-        """Which cases are done, ``(cases,)``."""
+        """Mask of the completed cases, ``(cases,)``."""
         found: NDArray[np.bool_] = self.state == "done"
         return found
 

@@ -1,4 +1,4 @@
-"""Processes that evaluate cases: bounded in time and memory, ended and begun again alone.
+"""Processes that evaluate cases, bounded in time and memory, each restarted on its own.
 
 An executor runs :func:`evaluate_apart` in its threads, processes or machines; each call uses a
 process of :mod:`moldloft.study.worker` beside it, so that a case that ends its process costs that
@@ -88,7 +88,7 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        As there; ``state`` may also be ``"timed out"`` or ``"crashed"``.
+        As for that function; ``state`` may also be ``"timed out"`` or ``"crashed"``.
     """
     global _owner
     if request["digest"] in _installed:

@@ -1,4 +1,4 @@
-"""The workbench: a model under a person's hands in a browser page.
+"""The workbench: interactive editing of a model in a browser.
 
 ``page <-> Server <-> Hub <-> Engine (a process of its own)``
 

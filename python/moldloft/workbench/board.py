@@ -1,4 +1,4 @@
-"""The drawing board: what a hand does to a sketch, as commands in its text.
+"""The drawing board: edits of a sketch with the pointer, written as commands to its text.
 
 It runs in a process of its own, which :class:`~moldloft.workbench.engine.Engine` starts, and speaks
 frames of JSON. The text is the only truth: a session runs it, what a hand does becomes an edit
@@ -43,7 +43,7 @@ Places = list[tuple[int, int, str]]
 
 
 class RefusedError(Exception):
-    """What a hand wants is no sketch; says why and what would be."""
+    """An edit that would make the sketch invalid; the message gives reason and remedy."""
 
 
 class Board:
@@ -72,7 +72,7 @@ class Board:
     # -- the text ----------------------------------------------------------------------------
 
     def sync(self, text: str) -> None:
-        """Have that text run; of one that only goes on, the new lines alone."""
+        """Run a text; if it only appends to the previous one, run the new lines only."""
         if text == self._text:
             return
         old, new = self._text.split("\n"), text.split("\n")
@@ -110,12 +110,12 @@ class Board:
         Parameters
         ----------
         changes
-            Each with ``do``: ``run``, ``move``, ``value``, ``type`` or ``axes``, and what it needs.
+            Each with ``do``: ``run``, ``move``, ``value``, ``type`` or ``axes``, and its arguments.
 
         Returns
         -------
         list of dict
-            Places in the text before, in UTF-16 units, and what is there now.
+            Spans of the old text, in UTF-16 units, and their new content.
         """
         every = statements(self._text)
         own = block(every, self._object) if self._object else []
@@ -177,7 +177,7 @@ class Board:
 
     @staticmethod
     def _point(own: Sequence[Statement], point: int) -> tuple[Statement, int] | None:
-        """The last statement that draws a point, and the place of its numbers in it."""
+        """The last statement that draws a point, and the span of its numbers."""
         found = None
         for s in own:
             if s.verb("POINT") and s.word(1) == str(point):
@@ -258,7 +258,7 @@ class Board:
     # -- facts -------------------------------------------------------------------------------
 
     def choose(self, name: str | None) -> None:
-        """Show that object; the active one when there is none of that name."""
+        """Show an object; the active one if there is no object of this name."""
         names = {n.upper(): n for n in self._session.names()}
         self._object = names.get((name or "").upper()) or self._session.active()
 
@@ -342,7 +342,7 @@ class Board:
         }
 
     def check(self) -> list[dict[str, Any]]:
-        """What is doubtful or contradictory, with what would mend it."""
+        """Doubtful and contradictory parts, with remedies."""
         found: list[dict[str, Any]] = []
         if self._object is None or self._session.asks():
             return found
@@ -374,7 +374,7 @@ class Board:
         return found
 
     def solid(self) -> dict[str, Any]:
-        """The body that the picture and the dimensions suggest; exact when none is missing."""
+        """The body from drawing and dimensions; exact if no dimension is missing."""
         out: dict[str, Any] = {"exact": False, "made": False, "why": None}
         name = self._object
         if name is None or self._session.asks():
@@ -407,7 +407,7 @@ class Board:
         return out
 
     def pointer(self, request: dict[str, Any]) -> dict[str, Any]:
-        """What the pointer means there: a snap, and the type of the line that would end there.
+        """Meaning of a pointer position: a snap, and the type of a line that ends there.
 
         Parameters
         ----------
@@ -435,7 +435,7 @@ class Board:
         return out
 
     def _guess(self, start: Sequence[float], end: Sequence[float]) -> dict[str, Any]:
-        """The type of a line by its slope, as the command LINE would say."""
+        """The type of a line by its slope, as inferred by the command LINE."""
         head = [
             line
             for line in self._session.text(self._object).splitlines()
@@ -509,12 +509,12 @@ def _number(x: Any) -> str:
     """A coordinate of the page, to a thousandth."""
     value = round(float(x), 3)
     if not math.isfinite(value):
-        raise RefusedError(f"{x} is no place on the page")
+        raise RefusedError(f"{x} is not a position on the page")
     return f"{value + 0.0:g}" if value == int(value) and abs(value) < 1e6 else repr(value)
 
 
 def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
-    """The answer to a request, or why there is none."""
+    """The answer to a request, or an error."""
     try:
         reply = {"kind": "board", **board.answer(request)}
     except (RefusedError, Error) as error:
@@ -525,6 +525,6 @@ def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def serve(memory: int, folder: str | None) -> None:
-    """Answer the parent until it goes."""
+    """Answer the parent until its end."""
     board = Board(str(Path(folder)) if folder else None)
     answer_frames(memory, board.sync, lambda request: answered(board, request))

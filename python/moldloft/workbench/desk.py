@@ -99,7 +99,7 @@ class DeskRoom:
         return desk
 
     def _asked(self, request: dict[str, Any]) -> Desk | None:
-        """The desk of a request; none where its source has to be sent."""
+        """The desk of a request; None if the page has to send its source."""
         log = [str(command) for command in request["log"]]
         if "source" in request:
             return self._kept(request, log)
@@ -227,7 +227,7 @@ def _ends(result: DeskResult) -> list[int]:
 
 
 def _shape_ends(result: DeskResult, line: int, text: str) -> list[int] | None:
-    """The points between which a line has a shape; none where it is about the whole line."""
+    """The points between which a shape condition of a line applies; None for the whole line."""
     span = text.partition("=")[2].partition(":")[0]
     first, dash, last = span.partition("-")
     if not dash or not (first + last).isdigit():
@@ -242,7 +242,7 @@ def _per_span(curve: Any) -> int:
 
 
 def _rounded(values: Floats) -> list[Any]:
-    """Numbers for a picture: eight digits, null for what is none."""
+    """Numbers for a picture: eight digits, null for NaN and infinity."""
     out = np.where(np.isfinite(values), values, np.nan)
     size = float(np.nanmax(np.abs(out), initial=0.0))
     digits = 8 - math.ceil(math.log10(size)) if size > 0 else 8
@@ -268,7 +268,7 @@ def _axes(points: Floats) -> tuple[int, int]:
 
 
 def _seen(curve: Any, axes: tuple[int, int]) -> dict[str, Any]:
-    """A curve as a picture has it: places, share of the length, curvature with its sign."""
+    """A curve for a picture: points, fraction of the length, signed curvature."""
     samples = curve.samples(_per_span(curve))
     ij = list(axes)
     first, second = samples.first[:, ij], samples.second[:, ij]
@@ -283,13 +283,13 @@ def _seen(curve: Any, axes: tuple[int, int]) -> dict[str, Any]:
 
 
 def _knots(curve: Any, count: int) -> list[float]:
-    """Where knots are along the curve, from 0 to 1."""
+    """Positions of knots along the curve, from 0 to 1."""
     at = np.asarray(curve.jumps()[0])
     return [float(t) for t in (at if len(at) == count else np.linspace(0, 1, count))]
 
 
 def _detail(desk: Desk, result: DeskResult, k: int) -> dict[str, Any]:
-    """A line in full."""
+    """All details of a line."""
     curve = result.curves[k]
     state = result.state
     given = np.array([state.points[p] for p in curve.points])
@@ -326,7 +326,7 @@ def _polyline_in(curve: DeskCurve, axes: tuple[int, int]) -> list[Any]:
 
 
 def _certificate(curve: DeskCurve) -> dict[str, Any]:
-    """The badge: what is proved of a line."""
+    """The badge with the proved property of a line."""
     if curve.draft:
         return {"state": "draft", "words": "draft: bends are counted when the hand rests"}
     if not curve.kept:
@@ -353,7 +353,7 @@ def _cut(desk: Desk, made: Fairing) -> dict[str, Any]:
 
 
 def answered(room: DeskRoom, request: dict[str, Any]) -> dict[str, Any]:
-    """The answer to a request, or why there is none."""
+    """The answer to a request, or an error."""
     try:
         reply = {"kind": "desk", **room.answer(request)}
     except Error as error:
@@ -364,6 +364,6 @@ def answered(room: DeskRoom, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def serve(memory: int, name: str, folder: str | None) -> None:
-    """Answer the parent until it goes."""
+    """Answer the parent until its end."""
     room = DeskRoom(str(Path(folder)) if folder else None, name)
     answer_frames(memory, room.sync, lambda request: answered(room, request))

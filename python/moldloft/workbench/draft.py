@@ -27,7 +27,7 @@ class Draft:
     Raises
     ------
     Error
-        When another workbench has the model.
+        If another workbench has the model.
     """
 
     def __init__(self, model: Path) -> None:
@@ -55,12 +55,12 @@ class Draft:
         recover(path.parent)
 
     def left(self) -> dict[str, str] | None:
-        """What an earlier server left: ``text``, and the ``digest`` of the file it was made of.
+        """The draft of an earlier server: ``text``, and the ``digest`` of the file it is based on.
 
         Raises
         ------
         Error
-            When a later version of Moldloft wrote it.
+            If a later version of Moldloft wrote it.
         """
         with contextlib.suppress(ValueError, FileError):
             found = json.loads(read_bytes(self.path))
@@ -84,7 +84,7 @@ class Draft:
         remove(self.path)
 
     def close(self, keep: bool) -> None:
-        """End of the server; a draft of nothing goes."""
+        """Release the draft at the end of the server; one without changes is deleted."""
         if not keep:
             with contextlib.suppress(OSError):
                 self.drop()

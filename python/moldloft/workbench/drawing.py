@@ -1,4 +1,4 @@
-"""The processes of the drawing board and the fairing desk, and what waits for them.
+"""The processes of the drawing board and the fairing desk, and their queues of requests.
 
 Each is started by the first request, so that models without a sketch or a desk have none. It is
 asked one thing at a time, the newest of its kind: a pointer that has moved on is not answered.
@@ -21,23 +21,23 @@ _MOST_WAITING = 64
 
 @dataclass(frozen=True)
 class Room:
-    """What a process beside the engine is for."""
+    """Kinds of processes in addition to the engine."""
 
     work: str
     """As for :class:`~moldloft.workbench.engine.Engine`."""
     title: str
-    """What messages call it."""
+    """Its name in messages."""
     newest: frozenset[str]
     """Requests of which only the newest of a page counts."""
     others: frozenset[str]
-    """What else a page may ask."""
+    """Further requests of a page."""
     last: frozenset[str]
-    """What waits while there is anything else."""
+    """Requests of low priority."""
     stop: str = ""
-    """The request that ends the work under way."""
+    """The request that cancels the current one."""
 
     def takes(self, kind: Any) -> bool:
-        """Whether a request is one of this room's."""
+        """True if a request is for this room."""
         return isinstance(kind, str) and kind in self.newest | self.others | {self.stop} - {""}
 
 

@@ -1,4 +1,4 @@
-"""The engine process from outside: started with a text, asked, stopped, ended."""
+"""Control of the engine process: start with a text, requests, stop, end."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BUFFER = 1 << 20
 
 
 def _widen(process: asyncio.subprocess.Process) -> None:
-    """Gives the pipe of answers room for a frame, where the system lets one."""
+    """Enlarges the buffer of the pipe of answers to a frame, if the system permits."""
     if sys.platform == "linux":
         transport = getattr(process, "_transport", None)
         answers = transport.get_pipe_transport(1) if transport else None
@@ -43,7 +43,7 @@ class Engine:
     Parameters
     ----------
     name
-        The model's name; its ending says what it is.
+        Name of the model; its extension gives the format.
     folder
         The folder that the model may read.
     library
@@ -53,7 +53,7 @@ class Engine:
     budget
         Seconds for one request; then the work is stopped, and a little later the process ended.
     work
-        What the process does: ``"model"``, ``"board"`` for the drawing board of a sketch, or
+        Task of the process: ``"model"``, ``"board"`` for the drawing board of a sketch, or
         ``"desk"`` for the fairing desk.
     """
 
@@ -105,7 +105,7 @@ class Engine:
         Raises
         ------
         EngineLostError
-            When there is none.
+            If there is no answer.
         """
         await self._send(request)
         try:

@@ -55,7 +55,7 @@ def exported_page(
     Raises
     ------
     Error
-        When a value cannot be set, or the page was not built.
+        If a value cannot be set, or the page was not built.
     """
     folder = path.resolve().parent
     return page_of(
@@ -78,20 +78,20 @@ def page_of(
     Parameters
     ----------
     name
-        What it is called; the ending says what it is.
+        Name of the model; the extension gives the format.
     text
         The text.
     folder
-        The folder that it may read; none without one.
+        The folder that it may read; ``None`` permits no reading.
     values, library, living
         As for :func:`exported_page`.
     cell
-        Whether the page is shown by a notebook's cell, which follows its text.
+        True if the page is shown by a notebook's cell, which follows its text.
 
     Raises
     ------
     Error
-        When a value cannot be set, or the page was not built.
+        If a value cannot be set, or the page was not built.
     """
     session = _core.Session(name, text, None if folder is None else str(folder), list(library))
     asked = partial(_asked, session)
@@ -149,7 +149,7 @@ def with_values(session: _core.Session, text: str, values: Mapping[str, float]) 
     Raises
     ------
     Error
-        When a value cannot be set, or no number of the text is what it would change.
+        If a value cannot be set, or the text has no number for it.
     """
     _asked(session, kind="set", values=dict(values))
     reply = head_of(_asked(session, kind="commit"))
@@ -163,7 +163,7 @@ def with_values(session: _core.Session, text: str, values: Mapping[str, float]) 
 
 
 def _edited(text: str, edits: Sequence[Mapping[str, Any]]) -> str:
-    """The text after edits that do not overlap, whose places count UTF-16 units."""
+    """The text after disjoint edits with positions in UTF-16 units."""
     length = len(text.encode("utf-16-le", "surrogatepass")) // 2
     steps: list[Any] = []
     at = 0
@@ -177,7 +177,7 @@ def _edited(text: str, edits: Sequence[Mapping[str, Any]]) -> str:
 def _carried(
     files: Sequence[tuple[str, str | None, str, bytes]], folder: Path | None
 ) -> list[dict[str, str | None]]:
-    """The files that the model read, under names that say nothing of this machine."""
+    """The files that the model read, under names without paths of this machine."""
 
     def public(name: str | None) -> str | None:
         if name is None:
@@ -199,7 +199,7 @@ def _carried(
 
 
 def _assembled(name: str, data: str, engine: bytes | None) -> str:
-    """One file of the built page's parts. What a model says is data, and never ends its element."""
+    """The built page as one file. Text of a model is escaped data that cannot end its element."""
     files = page_files()
     index = files["/index.html"].decode()
     (script,) = [text.decode() for path, text in files.items() if path.endswith(".js")]

@@ -1,4 +1,4 @@
-"""The hub: who has the text, what waits for the engine, what each tab is sent.
+"""The hub: owner of the text, queue of requests to the engine, and messages to each tab.
 
 The text is here, not in the engine and not in a page: a page's change counts once the hub has it,
 and it is on disk before the page hears so. The engine is asked one thing at a time; what has become
@@ -205,7 +205,7 @@ class Hub:
         self._queue(_Job("close", tab.number, {"kind": "close", "tab": tab.number}))
 
     def hello(self, tab: Tab) -> dict[str, Any]:
-        """What a page needs first."""
+        """First message to a page."""
         tab.known = self.version
         return {
             "kind": "hello",
@@ -399,7 +399,7 @@ class Hub:
                 stamp = None
 
     async def _revert(self, tab: Tab, number: int) -> None:
-        """The file's text for a page, which takes it as a step of its own history."""
+        """The file's text for a page, which applies it as a step of its own history."""
         try:
             now = read(self.path)
             self.stored, self._noted = now, now.digest
@@ -412,7 +412,7 @@ class Hub:
         self._to(tab, reply)
 
     async def _outside(self, now: Stored) -> None:
-        """The file's text takes the place of ours."""
+        """Replace our text with that of the file."""
         self.stored = now
         if now.text != self.text:
             update = {"changes": change_set(self.text, now.text), "clientID": "disk"}
@@ -460,7 +460,7 @@ class Hub:
     def _next(self) -> _Job | None:
         """The first job of a page other than the last one's, else the first.
 
-        Those of a page that is behind wait, so that it is sent the newest state and nothing older.
+        Requests of a page that is behind wait, so that it receives only the newest state.
         """
         ready = [
             (job.tab == self._served, k)
@@ -517,7 +517,7 @@ class Hub:
                     self._queue(_Job("sync", number, {"kind": "sync", "tab": number, "id": 0}))
 
     async def _lost(self, job: _Job, why: str) -> None:
-        """The engine has gone: a new one starts with the text, and every tab is sent all anew."""
+        """Start a new engine after a loss, and send every tab the complete state."""
         await self.engine.end()
         version, count = self._failed
         count = count + 1 if version == self.version else 1
@@ -538,12 +538,12 @@ def _message(kind: str, state: Callable[[Tab], dict[str, Any]], tab: Tab) -> str
 
 
 def _data(request: dict[str, Any]) -> bytes:
-    """A request as the engine reads it; ValueError for numbers and texts that are none in JSON."""
+    """A request for the engine; ValueError for numbers and texts that JSON cannot represent."""
     return json.dumps(request, allow_nan=False, ensure_ascii=False).encode()
 
 
 def _unread(frame: bytes) -> str:
-    """The fault of a request that the engine could not read, and so did not know by its id."""
+    """The error of a request that the engine could not parse, and so not answer by its id."""
     if len(frame) > LONGEST_FAULT:
         return ""
     head = head_of(frame)

@@ -1,4 +1,4 @@
-"""What waits to be sent to a page: the server goes on, whether the page reads or not."""
+"""Queue of messages to a page, so that the server never waits for a page that does not read."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class _Message:
 class Outbox:
     """Messages to one page, sent one after the other by a task of their own.
 
-    Of messages with a key only the newest is sent, and it is made when its turn comes. A page that
-    takes nothing for :data:`PATIENCE` seconds, or has more than :data:`MOST_BYTES` waiting, is
+    Of messages with the same key only the newest is sent, and it is built when it is sent. A page
+    that takes nothing for :data:`PATIENCE` seconds, or has more than :data:`MOST_BYTES` waiting, is
     dropped: what waited is forgotten, and the page begins anew when it is back.
 
     Parameters

@@ -18,7 +18,7 @@ _LONGEST = 40
 def outlines(
     lines: Iterable[tuple[int, int]], places: Mapping[int, Sequence[float]]
 ) -> list[list[int]]:
-    """The shortest way round from each line that lies in a plane, each once.
+    """The shortest closed outlines through each line in a plane, without duplicates.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def outlines(
 
 
 def _ways(near: Mapping[int, Sequence[int]], p: int, q: int) -> Iterable[list[int]]:
-    """The shortest ways from p to q without their line, one by each neighbour of p."""
+    """The shortest paths from p to q without their line, one through each neighbour of p."""
     for first in near[p]:
         if first == q:
             continue

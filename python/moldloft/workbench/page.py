@@ -29,7 +29,7 @@ def page_files() -> dict[str, bytes]:
     Raises
     ------
     Error
-        When the page was not built.
+        If the page was not built.
     """
     root = _FOLDER / "page"
     index = root / "index.html"

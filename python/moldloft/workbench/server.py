@@ -47,12 +47,12 @@ _POLICY = (
 
 
 class Guard:
-    """Refuses what does not come from this server's own page.
+    """Rejects requests that do not come from the page of this server.
 
     Parameters
     ----------
     app
-        What is behind it.
+        The protected application.
     port
         The port that Host and Origin must name.
     """
@@ -132,7 +132,7 @@ class Server:
 
     @property
     def url(self) -> str:
-        """Where the page is; the token is behind the #, which no log sees."""
+        """Address of the page; the token follows the #, which no log records."""
         return f"http://127.0.0.1:{self.port}/#t={self._token}"
 
     def app(self) -> Any:
@@ -226,7 +226,7 @@ class Server:
         return response
 
     def _known(self, cookies: Mapping[str, str]) -> bool:
-        """Whether a browser has exchanged a token."""
+        """True if the browser has a session."""
         given = cookies.get(self._cookie, "")
         return hmac.compare_digest(given.encode(), self._session.encode())
 
@@ -259,7 +259,7 @@ class Server:
             self.hub.leave(tab)
 
     async def _listen(self, socket: WebSocket, tab: Tab) -> None:
-        """Takes what a page says until it goes."""
+        """Receives messages of a page until it disconnects."""
         tab.outbox.put(json.dumps(self.hub.hello(tab)))
         while (received := await socket.receive())["type"] != "websocket.disconnect":
             try:

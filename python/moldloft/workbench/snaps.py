@@ -1,4 +1,4 @@
-"""What a pointer on the drawing board snaps to."""
+"""Snapping of the pointer on the drawing board."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Axes:
-    """How the axes are drawn.
+    """Directions of the axes on the page.
 
     Attributes
     ----------
     letters
-        Those that the drawing has.
+        The axes of the drawing.
     angles
-        Of each from the right, degrees.
+        Direction of each, counter-clockwise from the right, degrees.
     scale
         Of each.
     """
@@ -56,7 +56,7 @@ def snapped(
     start: Place | None,
     woken: Sequence[int],
 ) -> dict[str, Any]:
-    """The place that a pointer means: the nearest of the strongest kind within reach.
+    """The snap for a pointer position: the nearest of the strongest kind within reach.
 
     In this order: a point; the crossing of an axis through the start with one through any other
     point, or of two through woken ones; the middle of a line; a line; an axis through the start

@@ -1,4 +1,4 @@
-"""Statements of a sketch file with their places, and where new ones are written.
+"""Statements of a sketch file with their positions, and insertion of new ones.
 
 What is drawn on the board is written as commands: beside those that it continues, or over the one
 that it changes. Places are counted in code points here, in UTF-16 units for the page.
@@ -28,7 +28,7 @@ class Token:
     """As written, without quotes."""
     start: int
     end: int
-    """Its place, quotes included."""
+    """Its span, quotes included."""
 
     @property
     def upper(self) -> str:
@@ -42,25 +42,25 @@ class Statement:
 
     tokens: tuple[Token, ...]
     last: bool
-    """Whether it is the last one of its line."""
+    """True if it is the last one of its line."""
 
     @property
     def start(self) -> int:
-        """Where it begins."""
+        """Start offset."""
         return self.tokens[0].start
 
     @property
     def end(self) -> int:
-        """Where it ends."""
+        """End offset."""
         return self.tokens[-1].end
 
     def verb(self, *names: str) -> bool:
-        """Whether it is one of these commands, abbreviated to three letters or more."""
+        """True for one of these commands, in full or abbreviated to three letters or more."""
         word = self.tokens[0].upper
         return any(name == word or (len(word) >= 3 and name.startswith(word)) for name in names)
 
     def word(self, k: int) -> str:
-        """The word at a place, empty beyond the end."""
+        """The word with an index; empty beyond the end."""
         return self.tokens[k].upper if k < len(self.tokens) else ""
 
 
@@ -143,7 +143,7 @@ def place(own: Sequence[Statement]) -> Statement | None:
 
 
 def replaced(text: str, edits: Sequence[tuple[int, int, str]]) -> str:
-    """The text after edits: from, to and what is there then, all places in the text before.
+    """The text after edits: start, end and replacement, with positions in the old text.
 
     >>> replaced("abcd", [(0, 1, "x"), (3, 4, "")])
     'xbc'
@@ -156,7 +156,7 @@ def replaced(text: str, edits: Sequence[tuple[int, int, str]]) -> str:
 
 
 def units(text: str, at: int) -> int:
-    r"""A place in UTF-16 units.
+    r"""A position in UTF-16 units.
 
     >>> units("a\N{GRINNING FACE}b", 2)
     3

@@ -67,7 +67,7 @@ def change_set(old: str, new: str) -> list[Any]:
 
 @dataclass(frozen=True)
 class Stored:
-    """A file's text with what writing it back needs."""
+    """The text of a file, with the data to write it back."""
 
     text: str
     """The text, its lines ended by line feeds."""
@@ -76,7 +76,7 @@ class Stored:
     crlf: bool
     """True when lines end in carriage return and line feed."""
     encoding: str
-    """How the bytes are read."""
+    """Encoding of the file."""
 
 
 def read(path: Path) -> Stored:
@@ -85,7 +85,7 @@ def read(path: Path) -> Stored:
     Raises
     ------
     FileError
-        When there is none that can be read.
+        If there is no readable file.
     """
     return decoded(read_bytes(path, LARGEST))
 

@@ -1,4 +1,4 @@
-//! What may stand at a place: names, members, the words of text arguments.
+//! Completion at a position: names, members, the words of text arguments.
 
 use super::mentions::mentions;
 use super::{row_signature, signature};
@@ -12,12 +12,12 @@ use moldloft_registry::FieldSpec;
 use moldloft_syntax::sdl::{self, OpenCall, RoutineId};
 use std::sync::Arc;
 
-/// What may stand at a place of the text.
+/// A completion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Completion {
     /// The word.
     pub word: String,
-    /// What kind of thing it is.
+    /// Its kind.
     pub kind: CompletionKind,
     /// Its signature, type or shape.
     pub detail: String,
@@ -36,22 +36,22 @@ pub enum CompletionKind {
     Kind,
     /// A reserved word.
     Keyword,
-    /// A member of what stands before the dot.
+    /// A member of the expression before the dot.
     Member,
-    /// The name of an argument of the call around the place.
+    /// The name of an argument of the enclosing call.
     Argument,
-    /// A word that a text argument may be.
+    /// A permitted value of a text argument.
     Word,
 }
 
 impl Document {
-    /// What may stand at the end of a line that follows the text, as at a prompt.
+    /// Completions at the end of a line that follows the text, as at a prompt.
     pub fn completions_of(&mut self, line: &str) -> Vec<Completion> {
         self.completions_after(line, u32::MAX)
     }
 
-    /// What may stand at a place of the main file: members after a dot, else all names that mean
-    /// something there.
+    /// Completions at an offset of the main file: members after a dot, otherwise all names in
+    /// scope.
     pub fn completions(&mut self, offset: u32) -> Vec<Completion> {
         let Some(m) = self.main_module() else { return Vec::new() };
         let text = m.program.text().clone();
@@ -146,7 +146,8 @@ impl Document {
         found
     }
 
-    /// True inside of a text that names a file: of `load`, of a component, of what reads and writes files.
+    /// True inside a string that names a file: of `load`, of a component, or of a function that
+    /// reads or writes files.
     pub fn names_file(&self, text: &str, offset: u32) -> bool {
         let Some(before) = text.get(..offset as usize) else { return false };
         if sdl::text_around(before, offset).is_none() {
@@ -162,7 +163,7 @@ impl Document {
         self.field(&call).is_some_and(|field| field.help.to_lowercase().contains("file"))
     }
 
-    /// The words that the documentation of a text argument names.
+    /// The permitted words that the documentation of a text argument lists.
     fn quoted_words(&self, call: Option<&OpenCall>, prefix: &str) -> Vec<Completion> {
         let builtin =
             call.and_then(|call| Some((BUILTINS.iter().find(|b| b.name == call.callee)?, call)));
@@ -179,7 +180,7 @@ impl Document {
         }
         let help = call.and_then(|call| self.field(call)).map_or("", |f| f.help);
         let mut found: Vec<Completion> = Vec::new();
-        // Every second part of a text that is divided at its quotation marks is quoted.
+        // Of a text split at quotation marks, every second part is quoted.
         for word in help.split('"').skip(1).step_by(2) {
             let new = !word.is_empty() && !found.iter().any(|c| c.word == word);
             if new && word.starts_with(prefix) {

@@ -1,6 +1,5 @@
-//! The names of a text: where each is mentioned, what declares it, and to which routine it is local.
-//!
-//! Invariant: sees syntax only; a text that was never run has the same mentions.
+//! The names of a text: the positions of each, its declaration, and the routine it is local to.
+//! Invariant: uses syntax only, so mentions do not depend on a run.
 
 use moldloft_diag::Span;
 use moldloft_syntax::sdl::{
@@ -22,13 +21,13 @@ pub(crate) struct Mention {
 /// A member: `base.name`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MemberMention {
-    /// The name before the dot, when it is nothing but a name.
+    /// The expression before the dot, if it is a plain name.
     pub base: Option<Symbol>,
     pub name: Symbol,
     pub span: Span,
 }
 
-/// A call or an object: who is called, with what.
+/// A call or an object: the callee and the arguments.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CallMention {
     pub callee: Symbol,
@@ -37,13 +36,13 @@ pub(crate) struct CallMention {
     pub args: NodeList<Arg>,
 }
 
-/// All that a text mentions, in its order.
+/// All mentions of a text, in order.
 #[derive(Debug, Default)]
 pub(crate) struct Mentions {
     pub names: Vec<Mention>,
     pub members: Vec<MemberMention>,
     pub calls: Vec<CallMention>,
-    /// The files that it loads, and the statements that do.
+    /// The files that it loads, with the `load` statements.
     pub loads: Vec<(TextId, Span)>,
 }
 
@@ -134,7 +133,7 @@ impl Walk<'_> {
             StmtKind::Routine(at) => self.routine(at),
             StmtKind::Record { name, members } => {
                 self.ident(name, true);
-                // Its members are no names of the file.
+                // Its members are not names of the file.
                 for &stmt in &m[members] {
                     let StmtKind::Declare { items, .. } = m[stmt].kind else { continue };
                     m[items].iter().for_each(|item| self.declarator(item));
@@ -209,7 +208,7 @@ impl Walk<'_> {
         item.value.into_iter().for_each(|e| self.expr(e));
     }
 
-    /// The name of a record where a type stands.
+    /// The name of a record used as a type.
     fn type_word(&mut self, (ty, span): (Type, Span)) {
         if let Type::Other(symbol) | Type::List(ItemType::Other(symbol)) = ty {
             self.name(symbol, span, false);
@@ -237,7 +236,7 @@ impl Walk<'_> {
     }
 }
 
-/// The names that the statements of a routine declare for themselves.
+/// The local names that the statements of a routine declare.
 struct Locals<'m> {
     m: &'m Program,
     found: HashSet<Symbol>,
@@ -275,7 +274,7 @@ impl Locals<'_> {
     }
 }
 
-/// All that a program mentions.
+/// All mentions of a program.
 pub(crate) fn mentions(m: &Program) -> Mentions {
     let mut walk = Walk { m, found: Mentions::default(), locals: HashSet::new(), routine: None };
     walk.stmts(m.body());

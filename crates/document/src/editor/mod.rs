@@ -1,5 +1,4 @@
-//! What an editor asks of a text: what a name means, where it is declared and used, what could stand
-//! at a place.
+//! Editor queries about a text: meaning, declaration and uses of a name, and completion.
 
 mod completion;
 mod mentions;
@@ -33,11 +32,11 @@ impl Document {
     fn mention_at(&self, offset: u32) -> Option<Mention> {
         let mut found = mentions(&self.main_module()?.program).names;
         found.retain(|mention| mention.span.touches(offset));
-        // The later of two that touch begins at the place.
+        // Of two adjacent names, the second begins at the offset.
         found.into_iter().max_by_key(|mention| mention.span.start)
     }
 
-    /// The names of the main file alone.
+    /// The names of the main file only.
     fn own_names(&self) -> Option<(Workspace, FileId)> {
         let m = self.main_module()?;
         let mut alone = Workspace::default();
@@ -45,7 +44,8 @@ impl Document {
         Some((alone, m.program.file()))
     }
 
-    /// Where the name at a place of the main file is declared; in a library, a place in its file.
+    /// The declaration of the name at an offset of the main file; for a library, in the library's
+    /// file.
     pub fn definition(&self, offset: u32) -> Option<Span> {
         let (own, file) = self.own_names()?;
         if let Some((_, start, end)) = own.definition("", offset) {
@@ -61,31 +61,31 @@ impl Document {
         bound.span.is_known().then_some(bound.span)
     }
 
-    /// All places of the main file where the name at a place stands for the same thing.
+    /// All positions in the main file at which the name at an offset has the same meaning.
     pub fn references(&self, offset: u32) -> Vec<Span> {
         let Some((own, file)) = self.own_names() else { return Vec::new() };
         let places = own.references("", offset).into_iter();
         places.map(|(_, start, end)| Span::new(file, start, end)).collect()
     }
 
-    /// The places to change when the name at a place becomes `new`.
+    /// The positions to change when the name at an offset becomes `new`.
     ///
     /// # Errors
-    /// Why it cannot: nothing to rename there, declared elsewhere, no name, or taken.
+    /// If there is no name to rename, it is declared elsewhere, or `new` is not a name or is taken.
     pub fn renamed(&self, offset: u32, new: &str) -> Result<Vec<Span>, String> {
         let (own, file) = self.own_names().ok_or("no program")?;
         let places = own.renamed("", offset, new, |name| self.is_reserved(name))?;
         Ok(places.into_iter().map(|(_, start, end)| Span::new(file, start, end)).collect())
     }
 
-    /// Whether a kind, a function or a statement has the name.
+    /// True for the name of a kind, a function or a statement.
     pub fn is_reserved(&self, name: &str) -> bool {
         self.registry().get(name).is_some()
             || BUILTINS.iter().any(|b| b.name == name)
             || INSERTED_FILES.iter().any(|row| row.name == name)
     }
 
-    /// What the name at a place is: a text in Markdown, and the name's place.
+    /// Description of the name at an offset, in Markdown, and the span of the name.
     pub fn hover(&mut self, offset: u32) -> Option<(String, Span)> {
         let mention = self.mention_at(offset)?;
         let m = self.main_module()?;
@@ -152,8 +152,8 @@ impl Document {
         Some((text, mention.span))
     }
 
-    /// The routines, objects, parameters and variables that the main file declares: name, what it
-    /// is, and the name's place.
+    /// The routines, objects, parameters and variables declared in the main file: name, kind, and
+    /// span of the name.
     pub fn symbols(&self) -> Vec<(String, CompletionKind, Span)> {
         let Some(m) = self.main_module() else { return Vec::new() };
         let routine = |symbol: Symbol| m.program.routines().iter().any(|r| r.name.symbol == symbol);
@@ -184,7 +184,7 @@ fn signature(m: &Module, routine: &Routine) -> String {
     head.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The comment lines that end right above a place.
+/// The comment lines directly above a position.
 fn comment_above(text: &str, start: usize) -> String {
     let mut lines: Vec<&str> = Vec::new();
     for line in text[..start].lines().rev() {
@@ -212,7 +212,7 @@ fn row_signature(row: &Row) -> String {
     format!("{}({fields}){arrow}{result}", row.name)
 }
 
-/// A value in at most a few numbers.
+/// A value, abbreviated to a few numbers.
 fn shown(value: &Value<f64>) -> String {
     const MOST: usize = 6;
     let number =

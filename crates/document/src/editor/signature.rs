@@ -1,4 +1,5 @@
-//! What a call takes: shown while its arguments are written, and beside those without a name.
+//! Signatures of calls, shown while arguments are typed, and names of positional arguments, shown
+//! beside them.
 
 use super::mentions::mentions;
 use super::{row_signature, signature};
@@ -8,30 +9,30 @@ use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::RoutineAt;
 use moldloft_syntax::sdl::{self, ExprKind};
 
-/// What a call takes.
+/// Signature of a call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CallSignature {
-    /// The whole head.
+    /// The complete signature.
     pub label: String,
-    /// What it does.
+    /// Its documentation.
     pub doc: String,
-    /// The arguments: where each is in `label`, in bytes, and its help.
+    /// The arguments: byte range of each in `label`, and its help.
     pub arguments: Vec<(u32, u32, String)>,
-    /// The argument that is being written.
+    /// Index of the argument at the cursor.
     pub active: Option<usize>,
 }
 
-/// The name of an argument that is given without one.
+/// The name of a positional argument.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArgumentHint {
-    /// The byte before which it belongs.
+    /// Byte offset before which the name is shown.
     pub offset: u32,
     /// The argument's name.
     pub name: String,
 }
 
 impl Document {
-    /// What the call around a place of `text` takes; the text may be newer than the last run.
+    /// Signature of the call around an offset of `text`, which may be newer than the last run.
     pub fn call_signature(&self, text: &str, offset: u32) -> Option<CallSignature> {
         let call = sdl::call_around(text, offset)?;
         let (label, doc, arguments) = self.described(&call.callee)?;
@@ -39,10 +40,10 @@ impl Document {
         let active = match &call.name {
             Some(name) => given(name),
             None if call.argument < arguments.len() => Some(call.argument),
-            // The last of a function that takes any number.
+            // The last argument of a function with any number of arguments.
             None => label.contains("...").then(|| arguments.len().saturating_sub(1)),
         };
-        // Arguments follow each other in the head; each is sought behind the last.
+        // Arguments are in order in the signature; each is searched for after the previous one.
         let mut from = label.find('(')? + 1;
         let mut places = Vec::with_capacity(arguments.len());
         for (name, help) in arguments {
@@ -53,7 +54,7 @@ impl Document {
         Some(CallSignature { label, doc, arguments: places, active })
     }
 
-    /// The head of a callable, what it does, its arguments with their help.
+    /// Signature and documentation of a callable, and its arguments with their help.
     fn described(&self, callee: &str) -> Option<(String, String, Vec<(String, String)>)> {
         if let Some(row) = self.registry().get(callee) {
             let arguments = row.fields.iter().map(|f| (f.name.into(), f.help.into())).collect();
@@ -90,7 +91,8 @@ impl Document {
         Some((builtin.signature.into(), builtin.doc.into(), arguments))
     }
 
-    /// Names of arguments that are given by place between two bytes, where the value alone does not say what it is.
+    /// Names of positional arguments between two byte offsets, where the value does not explain
+    /// itself.
     pub fn argument_hints(&self, from: u32, to: u32) -> Vec<ArgumentHint> {
         let Some(module) = self.main_module() else { return Vec::new() };
         let program = &module.program;
@@ -111,7 +113,7 @@ impl Document {
                     program[value].kind,
                     ExprKind::Number(_) | ExprKind::Text(_) | ExprKind::Unary { .. }
                 );
-                // One letter says no more than its place: x, y, z, t, u, v.
+                // One-letter names such as x, y, z, t, u, v add nothing to the position.
                 if arg.name.is_none() && plain && name.len() > 1 && inside(arg) {
                     let offset = program[arg.value].span.start;
                     hints.push(ArgumentHint { offset, name: name.clone() });
@@ -123,7 +125,7 @@ impl Document {
     }
 }
 
-/// Where a word begins as a whole word, at or behind a byte.
+/// Byte offset of the first occurrence of `word` as a whole word at or after `from`.
 fn word_at(text: &str, word: &str, from: usize) -> Option<usize> {
     let part = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut at = from;

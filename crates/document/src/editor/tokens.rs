@@ -1,4 +1,4 @@
-//! What each name of a text is, for colours.
+//! Roles of the names of a text, for syntax colouring.
 
 use super::mentions::mentions;
 use crate::document::Document;
@@ -7,7 +7,7 @@ use moldloft_lang::{BUILTINS, run::inserted::INSERTED_FILES};
 use moldloft_syntax::sdl::Symbol;
 use std::collections::HashMap;
 
-/// What a name is.
+/// Role of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameRole {
     /// A kind of object.
@@ -31,18 +31,18 @@ pub enum NameRole {
 /// A name of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NameToken {
-    /// First byte and end.
+    /// Offset of the first byte.
     pub start: u32,
     /// One past the last byte.
     pub end: u32,
-    /// What it is.
+    /// Its role.
     pub role: NameRole,
-    /// Whether it is declared here.
+    /// True where the name is declared.
     pub declares: bool,
 }
 
 impl Document {
-    /// The names of the main file that mean something, in their order.
+    /// The names of the main file that have a role, in order.
     pub fn name_tokens(&self) -> Vec<NameToken> {
         let Some(m) = self.main_module() else { return Vec::new() };
         let found = mentions(&m.program);

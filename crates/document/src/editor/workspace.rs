@@ -1,9 +1,7 @@
-//! Names over several files: who mentions what a file declares, and what changes when it is renamed.
-//!
-//! A file and those that it loads share one set of names; what a `Component` inserts has names of its own, which are
-//! members of the component and labels of its arguments outside.
-//!
-//! Invariant: sees texts only, so that it answers while nothing can be run; opens no file.
+//! Names across several files: uses of a declaration in other files, and the edits of a rename.
+//! A file and the files that it loads share one namespace. A file inserted by a `Component` has its
+//! own: outside, its names are members of the component and labels of its arguments.
+//! Invariant: uses texts only, so it works on programs that cannot run; opens no file.
 
 use super::mentions::{Mentions, mentions};
 use moldloft_diag::{FileId, Span};
@@ -11,7 +9,7 @@ use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_syntax::sdl::{self, ExprKind, Program, TextId};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// The files of a workspace by name, as far as their names go.
+/// The names in the files of a workspace.
 #[derive(Debug, Default)]
 pub struct Workspace {
     files: BTreeMap<String, WorkspaceFile>,
@@ -21,9 +19,9 @@ pub struct Workspace {
 #[derive(Debug)]
 struct WorkspaceFile {
     uses: Vec<Use>,
-    /// The uses of each name, by their numbers.
+    /// Indices of the uses of each name.
     by_name: HashMap<Box<str>, Vec<u32>>,
-    /// The files that it loads, each with the statement that does.
+    /// The files that it loads, each with the `load` statement.
     loads: Vec<WorkspacePlace>,
     /// The files that its components insert.
     inserts: Vec<String>,
@@ -39,14 +37,14 @@ struct Use {
     owner: Owner,
 }
 
-/// Whose a name is.
+/// Scope of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Owner {
     /// All files of the program.
     Program,
-    /// A routine of this file, by its number.
+    /// A routine of this file, by its index.
     Routine(u32),
-    /// The label of an argument: of the routine of that name, if there is one.
+    /// The label of an argument, of the routine with this name if there is one.
     Label(Box<str>),
     /// The file that a component inserts.
     Component(String),
@@ -56,7 +54,7 @@ enum Owner {
 pub type WorkspacePlace = (String, u32, u32);
 
 impl Workspace {
-    /// Whether the file is known.
+    /// True when the workspace has the file.
     pub fn contains(&self, file: &str) -> bool {
         self.files.contains_key(file)
     }
@@ -81,7 +79,7 @@ impl Workspace {
         self.set_program(file, &program, resolve);
     }
 
-    /// As [`Self::set`], of a program that is parsed.
+    /// As [`Self::set`], for a parsed program.
     pub fn set_program(
         &mut self,
         file: &str,
@@ -122,13 +120,14 @@ impl Workspace {
         self.files.remove(file);
     }
 
-    /// All places where the name at a place means the same, by file and place; empty when no name is there.
+    /// All positions at which the name at an offset has the same meaning, by file and position;
+    /// empty without a name there.
     pub fn references(&self, file: &str, offset: u32) -> Vec<WorkspacePlace> {
         let Some((file, used)) = self.used_at(file, offset) else { return Vec::new() };
         self.places(&file, &used).into_iter().map(|(file, u)| (file, u.start, u.end)).collect()
     }
 
-    /// The place that declares the name at a place; the beginning of the file that a `load` there names.
+    /// The declaration of the name at an offset; for a `load`, the beginning of the loaded file.
     pub fn definition(&self, file: &str, offset: u32) -> Option<WorkspacePlace> {
         let mut loads = self.files.get(file).into_iter().flat_map(|names| &names.loads);
         if let Some((loaded, ..)) = loads.find(|(_, start, end)| (*start..*end).contains(&offset)) {
@@ -137,15 +136,16 @@ impl Workspace {
         let (file, used) = self.used_at(file, offset)?;
         let all = self.places(&file, &used);
         let first = all.iter().filter(|(_, u)| u.declares);
-        // The own file's declaration before those of others.
+        // A declaration in the same file takes precedence.
         let first = first.min_by_key(|(name, u)| (*name != file, name.clone(), u.start));
         first.map(|(file, u)| (file.clone(), u.start, u.end))
     }
 
-    /// The places to change when the name at a place becomes `new`; `reserved` knows the names of kinds and functions.
+    /// The positions to change when the name at an offset becomes `new`; `reserved` is true for the
+    /// names of kinds and functions.
     ///
     /// # Errors
-    /// Why it cannot: nothing to rename there, declared elsewhere, no name, or taken.
+    /// If there is no name to rename, it is declared elsewhere, or `new` is not a name or is taken.
     pub fn renamed(
         &self,
         file: &str,
@@ -167,7 +167,7 @@ impl Workspace {
             let several = if self.files.len() > 1 { "these files" } else { "this file" };
             return Err(format!("`{}` is not declared in {several}", used.name));
         }
-        // What carries the new name already, where it would be seen.
+        // Files in scope that already use the new name.
         let seen: BTreeSet<&str> = all
             .iter()
             .filter(|(_, u)| matches!(u.owner, Owner::Program | Owner::Routine(_)))
@@ -188,7 +188,7 @@ impl Workspace {
         Ok(all.into_iter().map(|(file, u)| (file, u.start, u.end)).collect())
     }
 
-    /// What is declared for a whole program under a name that contains `query`, letters' case aside.
+    /// Program-wide declarations whose name contains `query`, ignoring case.
     pub fn symbols(&self, query: &str) -> Vec<(String, WorkspacePlace)> {
         let query = query.to_ascii_lowercase();
         let mut found = Vec::new();
@@ -206,11 +206,11 @@ impl Workspace {
         found
     }
 
-    /// The name at a place, and the file whose name it is.
+    /// The name at an offset, and the file that it belongs to.
     fn used_at(&self, file: &str, offset: u32) -> Option<(String, Use)> {
         let names = self.files.get(file)?;
         let touching = names.uses.iter().filter(|u| u.start <= offset && offset <= u.end);
-        // The later of two that touch begins at the place.
+        // Of two adjacent names, the second begins at the offset.
         let used = touching.max_by_key(|u| u.start)?;
         match &used.owner {
             Owner::Component(inserted) => {
@@ -225,7 +225,7 @@ impl Workspace {
         }
     }
 
-    /// The formal argument of a routine that a program declares.
+    /// A formal argument of a routine of the program.
     fn formal(&self, file: &str, routine: &str, name: &str) -> Option<(String, Use)> {
         for home in self.program_of(file) {
             let inside = self.routine_numbers(&home, routine);
@@ -239,7 +239,7 @@ impl Workspace {
         None
     }
 
-    /// The numbers of the routines of a name: the local names that follow its declaration are theirs.
+    /// Indices of the routines with this name: they own the local names after the declaration.
     fn routine_numbers(&self, file: &str, routine: &str) -> BTreeSet<u32> {
         let Some(names) = self.files.get(file) else { return BTreeSet::new() };
         let declared =
@@ -262,7 +262,7 @@ impl Workspace {
         all.into_iter().flat_map(|(names, all)| all.iter().map(|&k| &names.uses[k as usize]))
     }
 
-    /// The files that share their names with a file: what loads it, and all that those load.
+    /// The files in the namespace of `file`: those that load it, and all that these load.
     fn program_of(&self, file: &str) -> BTreeSet<String> {
         let mut roots = BTreeSet::from([file.to_string()]);
         loop {
@@ -287,7 +287,7 @@ impl Workspace {
         all
     }
 
-    /// All uses of what `used` in `file` means, by file and place.
+    /// All uses with the meaning of `used` in `file`, by file and position.
     fn places(&self, file: &str, used: &Use) -> Vec<(String, Use)> {
         let mut found: Vec<(String, Use)> = Vec::new();
         let mut homes = BTreeSet::new();
@@ -337,7 +337,7 @@ fn one(name: &str, span: Span, declares: bool, owner: Owner) -> Use {
     Use { name: name.into(), start: span.start, end: span.end, declares, owner }
 }
 
-/// Names behind dots and before `=` in arguments, as far as they are names of this program or of an inserted file.
+/// Names after dots and before `=` in arguments that belong to this program or to an inserted file.
 fn members_and_labels(
     program: &Program,
     found: &Mentions,

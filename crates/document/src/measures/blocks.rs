@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The blocks of a model with their positions.
 #[derive(Debug)]
 pub struct Blocked {
-    /// Who computes which vertex.
+    /// The objects that compute each vertex.
     pub blocking: Blocking,
     /// The volume mesh.
     pub blocks: Blocks,
@@ -20,7 +20,7 @@ pub struct Blocked {
 }
 
 impl Blocked {
-    /// What is wrong with the mesh: folded cells, and joins that do not hold.
+    /// Errors of the mesh: folded cells, and blocks that do not match at joins.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let folded = self.report.blocks.iter().filter(|b| b.folded > 0).map(|b| {
             let ([i, j, k], [u, v, w], [x, y, z]) = (b.worst.cell, b.worst.parameters, b.worst.at);
@@ -50,12 +50,12 @@ impl Blocked {
 }
 
 impl Document {
-    /// The volume mesh of all shown solids, remembered until something changes.
+    /// The volume mesh of all shown solids, cached until the model changes.
     ///
     /// # Errors
-    /// When there are no solids, divisions contradict each other, or there would be too many cells.
+    /// If there are no solids, divisions contradict each other, or the cells exceed the limit.
     pub fn blocked(&mut self) -> Result<Arc<Blocked>, Diagnostic> {
-        // The blocks of a part would look like those of the whole.
+        // The blocks of an incomplete model look like those of a complete one.
         self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some((at, blocked)) = &self.blocked
@@ -82,7 +82,7 @@ impl Document {
     /// Derivatives of all vertices of the volume mesh: `[by][vertex]`.
     ///
     /// # Errors
-    /// What is wrong with a name or the mesh.
+    /// Errors in a name or in the mesh.
     pub fn block_jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {

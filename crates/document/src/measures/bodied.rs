@@ -1,4 +1,4 @@
-//! What is remembered of the whole model: its skin, its body at an accuracy, its numbers.
+//! Cached results of the whole model: its skin, its body at an accuracy, its numbers.
 
 use moldloft_hydro::Body;
 use moldloft_panel::Skin;
@@ -7,7 +7,7 @@ use moldloft_registry::Value;
 /// The skin of a model, and its body at an accuracy.
 #[derive(Debug)]
 pub(crate) struct Bodied {
-    /// When it was made.
+    /// Clock value at its creation.
     pub clock: u64,
     pub accuracy: f64,
     pub skin: Skin,
@@ -19,9 +19,9 @@ pub(crate) type Numbers = Vec<(&'static str, Value<f64>)>;
 
 /// The numbers of `mesh` or `hydrostatics`.
 pub(crate) struct Whole {
-    /// When they were found.
+    /// Clock value at their computation.
     pub clock: u64,
-    /// The planes that mirrored it.
+    /// The symmetry planes used.
     pub symmetry: String,
     /// The numbers.
     pub numbers: Numbers,

@@ -1,4 +1,4 @@
-//! The sections that a model asks for: stations, waterlines, buttocks, cylinders, meridians.
+//! The sections declared in a model: stations, waterlines, buttocks, cylinders, meridians.
 
 use crate::Document;
 use moldloft_lang::value::contours::listed_shapes;
@@ -17,7 +17,7 @@ pub struct ContourSection {
     pub axis: usize,
     /// The plane's coordinate, the distance, the radius, or the angle in radians.
     pub value: f64,
-    /// The lines on each surface or body that it cuts, with its name.
+    /// The name of each surface or body that it cuts, with the lines on it.
     pub lines: Vec<(String, Vec<Contour>)>,
 }
 
@@ -25,8 +25,8 @@ pub struct ContourSection {
 type Cutters<'g> = HashMap<Key, ContourCutter<'g, f64>>;
 
 impl Document {
-    /// The sections by all shown contours of the surfaces and bodies that they name, or of all that are shown; sections
-    /// without lines left out.
+    /// The sections of all shown contours objects, through the surfaces and bodies that these name
+    /// or else all shown ones; sections without lines are omitted.
     pub fn sections(&self) -> Vec<ContourSection> {
         let mut cutters = Cutters::new();
         let shown = self.graph().objects().filter(|o| o.head.shown());
@@ -36,7 +36,7 @@ impl Document {
         sections
     }
 
-    /// All sections of one contours object, in the order of its values; empty when it is none.
+    /// All sections of one contours object, in the order of its values; empty for another object.
     pub fn sections_of(&self, name: &str) -> Vec<ContourSection> {
         let object = self.graph().objects().find(|o| &*o.name == name);
         object.map_or_else(Vec::new, |object| self.cut(object, &mut Cutters::new()))

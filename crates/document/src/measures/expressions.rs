@@ -1,4 +1,4 @@
-//! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
+//! Values of expressions, panels and hydrostatics of a model, and their derivatives.
 
 use crate::document::{Document, ObjectSource};
 use crate::measures::bodied::{Numbers, Whole};
@@ -17,11 +17,11 @@ use moldloft_registry::{CallError, Scalar, Value};
 use std::collections::{HashMap, HashSet};
 
 impl Document {
-    /// The value of an expression in the model's names. Besides these it knows `mesh.area`,
-    /// `mesh.volume` and the numbers of the hydrostatics, such as `hydrostatics.volume`.
+    /// The value of an expression in the names of the model, `mesh.area`, `mesh.volume` and the
+    /// numbers of the hydrostatics, such as `hydrostatics.volume`.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The errors of the expression.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
         self.complete()?;
         self.expression_remarks.clear();
@@ -35,14 +35,14 @@ impl Document {
         value
     }
 
-    /// What is remarkable about the value that [`Document::eval`] gave last, such as a volume that is not known as well
-    /// as asked.
+    /// Warnings about the last value of [`Document::eval`], such as a volume that misses its
+    /// accuracy.
     pub fn expression_remarks(&self) -> &[Diagnostic] {
         &self.expression_remarks
     }
 
-    /// The numbers of `mesh` or `hydrostatics`, found once and remembered until something changes: who watches one
-    /// of them usually watches several.
+    /// The numbers of `mesh` or `hydrostatics`, cached until the model changes: most callers read
+    /// several.
     fn whole_numbers(&mut self, group: &'static str) -> Result<Numbers, Diagnostic> {
         let clock = self.plain.graph.last_change();
         let symmetry = self.symmetry();
@@ -87,7 +87,7 @@ impl Document {
         };
         let (value, remarks) = program.eval(evaluation, inputs, text)?;
         self.expression_remarks = remarks;
-        // Infinity goes on inside array statements, as in programs of 1992; as an answer it is none.
+        // Array statements may compute with infinity, as in programs of 1992; it is not a result.
         let finite = match &value {
             Value::Number(x) => x.is_finite(),
             Value::Vector(v) => v.is_finite(),
@@ -111,8 +111,8 @@ impl Document {
         Ok(value)
     }
 
-    /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;
-    /// unless the model has an object of that name.
+    /// Group and member of a name such as `mesh.area` (joined panels) or `hydrostatics.volume`
+    /// (surfaces); `None` if the model has an object `mesh` or `hydrostatics`.
     pub(crate) fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -124,7 +124,7 @@ impl Document {
     /// each of the expression's own shape.
     ///
     /// # Errors
-    /// What is wrong with an expression or a name.
+    /// Errors in an expression or a name.
     pub fn derivatives(
         &mut self,
         expressions: &[String],
@@ -182,7 +182,7 @@ impl Document {
     /// Derivatives of all mesh vertices: `[by][vertex]`.
     ///
     /// # Errors
-    /// What is wrong with a name or the mesh.
+    /// Errors in a name or in the mesh.
     pub fn jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {
@@ -234,8 +234,8 @@ impl Document {
         Ok(seeds)
     }
 
-    /// Runs the model with seeded numbers, four directions a pass, and hands each pass on with
-    /// the number of directions in use.
+    /// Runs the model with seeded numbers, four directions per pass, and calls the consumer with
+    /// each pass and the number of its directions.
     pub(crate) fn passes(
         &mut self,
         by: &[String],

@@ -18,15 +18,15 @@ use moldloft_registry::{CallError, Role, Scalar};
 /// A hydrostatics request; heel and trim in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatRequest {
-    /// What is given of the immersion.
+    /// Specification of the immersion.
     pub immersion: Immersion,
-    /// The trim, or where its search begins.
+    /// The trim, or its initial value if it is free.
     pub trim: f64,
-    /// The heel, or where its search begins.
+    /// The heel, or its initial value if it is free.
     pub heel: f64,
 }
 
-/// What is given of the immersion.
+/// Specification of the immersion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Immersion {
     /// Height of the water over the origin, at the given trim and heel.
@@ -34,18 +34,18 @@ pub enum Immersion {
     /// Depth of the lowest point of the upright body below the water, on the centre line in the
     /// middle of its length.
     Draft(f64),
-    /// The mass that floats; trim and heel are sought where they are free.
+    /// The floating mass; free trim and heel are solved for.
     Mass {
         /// The mass.
         mass: f64,
-        /// Whether the trim is sought.
+        /// True to solve for the trim.
         free_trim: bool,
-        /// Whether the heel is sought.
+        /// True to solve for the heel.
         free_heel: bool,
     },
 }
 
-/// What all requests have in common.
+/// Options common to all requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlotationOptions {
     /// Mass per volume of the water.
@@ -56,23 +56,23 @@ pub struct FlotationOptions {
     pub centimetre: f64,
     /// Centre of gravity in the body's axes.
     pub centre: Option<[f64; 3]>,
-    /// Only the modelled side of y = 0 counts.
+    /// True to count only the modelled side of y = 0.
     pub one_side: bool,
-    /// The mass that floats and the centre of gravity are those of the model's weights.
+    /// True to take mass and centre of gravity from the weights of the model.
     pub of_weights: bool,
-    /// Attitudes in which the skin is open below the water are answered, marked by
-    /// [`FloatAnswer::open_edges`], where they are errors otherwise.
+    /// True to accept attitudes with open edges below the water, marked by
+    /// [`FloatAnswer::open_edges`]; otherwise they are errors.
     pub flooded: bool,
     /// The relative accuracy of the figures.
     pub accuracy: f64,
 }
 
-/// One answer: figures by name, and how they came about.
+/// One answer: figures by name, and the state of the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatAnswer {
-    /// The figures by name, those without meaning left out.
+    /// The figures by name; undefined ones are omitted.
     pub figures: Vec<(&'static str, f64)>,
-    /// For each figure its derivatives by the asked parameters.
+    /// Derivatives of each figure with respect to the requested parameters.
     pub derivatives: Vec<Vec<f64>>,
     /// Bounds of the errors of the main figures, by name.
     pub bounds: Vec<(&'static str, f64)>,
@@ -80,11 +80,12 @@ pub struct FloatAnswer {
     pub status: &'static str,
     /// Newton steps.
     pub iterations: usize,
-    /// What is left of the equations of rest.
+    /// Residual of the equilibrium equations.
     pub residual: f64,
-    /// Whether all small turns are righted; `None` without a centre of gravity.
+    /// True for positive stiffness in heel and trim; `None` without a centre of gravity.
     pub stable: Option<bool>,
-    /// Whether this is the attitude that a body finds which is unstable where the search began.
+    /// True for an angle of loll: the initial attitude was an unstable equilibrium, and this is the
+    /// stable one beside it.
     pub lolls: bool,
     /// Open edges below the water.
     pub open_edges: usize,
@@ -99,11 +100,11 @@ pub struct FloatAnswer {
 }
 
 impl Document {
-    /// Hydrostatics, one answer per request, with derivatives by the parameters or literals
-    /// `by`.
+    /// Hydrostatics, one answer per request, with derivatives with respect to the parameters or
+    /// literals `by`.
     ///
     /// # Errors
-    /// What cannot float so, and unknown names.
+    /// Requests without an equilibrium, and unknown names.
     pub fn floating(
         &mut self,
         requests: &[FloatRequest],
@@ -152,7 +153,7 @@ impl Document {
 pub struct WeightItem {
     /// Its name.
     pub name: String,
-    /// The group it is listed in, empty for none.
+    /// The group it is listed in; may be empty.
     pub group: String,
     /// Mass, with its margin.
     pub mass: f64,
@@ -160,7 +161,7 @@ pub struct WeightItem {
     pub margin: f64,
     /// Its centre.
     pub centre: [f64; 3],
-    /// How the mass is known.
+    /// Origin of the mass: estimated, calculated, weighed and so on, as the model states it.
     pub status: String,
 }
 
@@ -189,7 +190,7 @@ impl Document {
         objects.filter_map(item).collect()
     }
 
-    /// The mass and the centre of all weights, where these float.
+    /// Mass and centre of all weights, if these define the floating condition.
     fn carried<T: Scalar>(
         &self,
         graph: &Graph<T>,
@@ -235,7 +236,7 @@ fn cannot_float(error: FloatError) -> Vec<Diagnostic> {
 
 type Answered<T> = Result<(Equilibrium<T>, bool, &'static str), FloatError>;
 
-/// The answers of all requests, each from canonical data: none starts from another's.
+/// The answers of all requests; none starts from the solution of another.
 fn answers<T: Real>(
     body: &Body<T>,
     symmetry: &str,
@@ -250,7 +251,7 @@ fn answers<T: Real>(
     let heels = |r: &FloatRequest| {
         r.heel != 0.0 || matches!(r.immersion, Immersion::Mass { free_heel: true, .. })
     };
-    // A heeled body is no longer symmetric in the water: it is shown whole.
+    // The immersed part of a heeled body is not symmetric: use the whole skin.
     let whole = (half && !options.one_side && requests.iter().any(heels))
         .then(|| body.with_mirror_image(1));
     let one = |request: &FloatRequest| -> Answered<T> {
@@ -324,11 +325,11 @@ fn answer((solved, sought, sides): &(Equilibrium<f64>, bool, &'static str)) -> F
 }
 
 impl Document {
-    /// The immersed area of sections below upright levels: `[station][level]`, with the moment of each area about
-    /// z = 0; both sides of a mirrored model.
+    /// Immersed areas of sections at upright levels, `[station][level]`, with their moments about z
+    /// = 0; both halves of a mirrored model.
     ///
     /// # Errors
-    /// When there is no skin.
+    /// If there is no skin.
     pub fn section_areas(
         &mut self,
         stations: &[f64],
@@ -345,7 +346,7 @@ impl Document {
                 let [area, moment] = section_area(body, x, z);
                 let sign = if area < 0.0 { -sides } else { sides };
                 let area = area * sign;
-                // About the level it is negative below; about z = 0 the level is added.
+                // The moment about the level is negative; shift it to z = 0.
                 [area, z * area - moment.abs() * sides]
             };
             levels.iter().map(at).collect()
@@ -353,11 +354,11 @@ impl Document {
         Ok(stations.par_iter().map(one).collect())
     }
 
-    /// What the panels displace below an upright level: volume, wetted area, waterplane area; of both sides of a
-    /// mirrored model.
+    /// Volume, wetted area and waterplane area of the panels below an upright level; both halves of
+    /// a mirrored model.
     ///
     /// # Errors
-    /// When there are no panels.
+    /// If there are no panels.
     pub fn panel_figures(&mut self, level: f64) -> Result<[f64; 3], Diagnostic> {
         let panelled = self.entire_panels()?;
         let symmetry = self.symmetry();

@@ -9,12 +9,12 @@ use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
 use moldloft_panel::Skin;
 use std::sync::Arc;
 
-/// How the model floats.
+/// Floating condition of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HydrostaticsOptions {
     /// Height z of the water.
     pub level: f64,
-    /// True when the mesh is one side of y = 0 and both are meant.
+    /// True for a mesh of one side of y = 0 that stands for both.
     pub mirrored: bool,
     /// Mass per volume of the water.
     pub density: f64,
@@ -36,7 +36,7 @@ impl Document {
     /// The hydrostatics of the model.
     ///
     /// # Errors
-    /// When there is no skin, or it is open below the water and a part is not allowed.
+    /// If there is no skin, or it is open below the water and an incomplete model is not allowed.
     pub fn hydrostatics(
         &mut self,
         options: &HydrostaticsOptions,
@@ -68,12 +68,12 @@ impl Document {
         Ok(Some(fault))
     }
 
-    /// The skin of all shown surfaces and bodies, remembered until something changes.
+    /// The skin of all shown surfaces and bodies, cached until the model changes.
     ///
     /// # Errors
-    /// When there are too many panels, or a surface is not finite.
+    /// If the panels exceed the limit, or a surface is not finite.
     pub(crate) fn bodied(&mut self, accuracy: f64) -> Result<Arc<Bodied>, Diagnostic> {
-        // The skin of a part would look like that of the whole.
+        // The skin of an incomplete model looks like that of a complete one.
         self.entire().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some(known) = &self.bodied
@@ -93,10 +93,11 @@ impl Document {
         Ok(bodied)
     }
 
-    /// Plates of the skin inside a body, and bodies that overlap: warnings, since they count where the body is.
+    /// Warnings about plates of the skin inside a body, and about bodies that overlap and whose
+    /// common volume counts twice.
     ///
     /// # Errors
-    /// When there would be too many panels.
+    /// If the panels exceed the limit.
     pub fn inner_skins(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
         let panelled = self.panelled()?;
         let mesh = &panelled.mesh;
@@ -128,7 +129,8 @@ impl Document {
         Ok(inner_skins(mesh, &self.mirrors()).iter().map(report).collect())
     }
 
-    /// Refuses a mirrored model that shows both sides of the plane: what lies on both would count twice.
+    /// Rejects a mirrored model with shapes on both sides of the symmetry plane: these would count
+    /// twice.
     fn one_side_alone(&self, mesh: &Mesh) -> Result<(), Diagnostic> {
         let size = mesh.bounds().diagonal();
         for axis in self.mirrors() {
@@ -171,7 +173,7 @@ impl Document {
         Ok(())
     }
 
-    /// The axes whose plane through zero mirrors the model.
+    /// The normal axes of the symmetry planes of the model.
     fn mirrors(&self) -> Vec<u8> {
         let letters = self.symmetry();
         (0..3u8).filter(|&k| letters.contains(['x', 'y', 'z'][usize::from(k)])).collect()

@@ -1,4 +1,4 @@
-//! How the surfaces of a document look at the vertices of its mesh.
+//! Curvature, reflection and normal fields of surfaces at the vertices of the mesh.
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
@@ -15,7 +15,7 @@ pub struct PatchAnalysis {
     pub fields: Vec<PointField>,
 }
 
-/// A patch is plane when no point is farther from its plane than this share of its extent.
+/// Maximum distance of a point of a plane patch from its plane, relative to its extent.
 const PLANE: f64 = 1e-12;
 
 impl Document {
