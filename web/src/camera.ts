@@ -1,6 +1,6 @@
 // The camera: turntable about z, orthographic or perspective; the eye is far enough never to be inside.
 
-import { Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
+import { type Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
 
 export type Standard = 'iso' | 'profile' | 'starboard' | 'plan' | 'bottom' | 'body' | 'stern'
 
@@ -98,7 +98,12 @@ export class Camera {
       camera.matrix.makeBasis(right, up, towards)
       camera.quaternion.setFromRotationMatrix(camera.matrix)
     }
-    Object.assign(this.ortho, { left: -this.reach * aspect, right: this.reach * aspect, top: this.reach, bottom: -this.reach })
+    Object.assign(this.ortho, {
+      left: -this.reach * aspect,
+      right: this.reach * aspect,
+      top: this.reach,
+      bottom: -this.reach,
+    })
     Object.assign(this.ortho, { near: distance - 1.5 * far, far: distance + 1.5 * far })
     Object.assign(this.persp, { aspect, near: Math.max(distance - far, distance * 1e-3), far: distance + far })
     this.three.updateProjectionMatrix()

@@ -1,31 +1,31 @@
 // The workbench: one page in which a model lives.
 
 import './style.css'
-import { Editor } from './editor'
-import { BlockPlanes } from './blocks'
 import { Analysis } from './analysis'
+import { BlockPlanes } from './blocks'
 import { Board } from './board'
+import type { Standard } from './camera'
 import { Desk } from './desk'
 import { h, shown, store, stored } from './dom'
+import { Editor } from './editor'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
-import { historyButtons, type Held } from './history'
+import { type Held, historyButtons } from './history'
 import { door, Host } from './host'
-import { Cell } from './notebook'
-import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
+import { type Link, Newest, Refused, SocketLink, StillLink } from './link'
 import { LivingLink, WorkerEngine } from './living'
-import { help, palette, type Command } from './palette'
 import { Making } from './making'
+import { Cell } from './notebook'
 import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
-import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
-import { Sheets, type SheetName } from './sheets'
+import { type Command, help, palette } from './palette'
+import { type Actions, inspectorPanel, messagesPanel, parametersPanel, strip, treePanel } from './panels'
+import { type SheetName, Sheets } from './sheets'
 import { startPage } from './start'
 import { changed, model, on } from './state'
 import { typed } from './typed'
-import { View, type Paint, type Style } from './view'
-import type { Standard } from './camera'
+import { type Paint, type Style, View } from './view'
 
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
 /** The editor that the page is inside of, if any: the text is there. */
@@ -51,14 +51,18 @@ function linked(): Link & { start(): Promise<void> } {
     return host.link
   }
   const bytes = (text: string) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer as ArrayBuffer
-  const first: Record<string, ArrayBuffer> = Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)]))
+  const first: Record<string, ArrayBuffer> = Object.fromEntries(
+    Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)]),
+  )
   const part = (id: string) => document.getElementById(id)?.textContent ?? ''
   if (!document.getElementById('moldloft-worker')) return new StillLink(hello, first)
   // A file may start a worker of a blob only.
-  const make = () => new Worker(URL.createObjectURL(new Blob([JSON.parse(part('moldloft-worker'))], { type: 'text/javascript' })))
+  const make = () =>
+    new Worker(URL.createObjectURL(new Blob([JSON.parse(part('moldloft-worker'))], { type: 'text/javascript' })))
   const beginning = async () => {
     // The engine comes last in the file: what is seen does not wait for it.
-    if (document.readyState === 'loading') await new Promise((r) => document.addEventListener('DOMContentLoaded', r, { once: true }))
+    if (document.readyState === 'loading')
+      await new Promise((r) => document.addEventListener('DOMContentLoaded', r, { once: true }))
     return { packed: part('moldloft-engine'), name: hello.name, files }
   }
   const living = new LivingLink(hello, first.open ?? null, new WorkerEngine(make, beginning), !inCell)
@@ -76,14 +80,18 @@ let dirty = false
 let online = false
 let fitted = false
 let theirs: string | null = null
-let contours = stored('contours', true)
+const contours = stored('contours', true)
 let instance = ''
 /** For tests: when frames came, how long they took. */
 const stamps: { kind: string; from: number; to: number }[] = []
 
 // The frame of the page.
 
-const $ = <K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, unknown> = {}, ...children: any[]) => h(tag, attributes, ...children)
+const $ = <K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, unknown> = {},
+  ...children: any[]
+) => h(tag, attributes, ...children)
 const title = $('h1', {}, 'Moldloft')
 const file = $('span', { class: 'file' })
 const saved = $('span', { class: 'saved', role: 'status' })
@@ -94,7 +102,20 @@ const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands'
 const exportButton = $('button', { title: 'Picture, meshes, curves, panels' }, 'Export')
 const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
 const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
-const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, exportButton, link.still ? '' : saveButton, themeButton, helpButton)
+const header = $(
+  'header',
+  { class: 'top' },
+  title,
+  file,
+  saved,
+  $('span', { class: 'history-place' }),
+  $('span', { class: 'grow' }),
+  paletteButton,
+  exportButton,
+  link.still ? '' : saveButton,
+  themeButton,
+  helpButton,
+)
 const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
 const editorHost = $('div', { class: 'editor' })
 const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
@@ -110,10 +131,53 @@ const params = $('section', { class: 'card', 'aria-label': 'parameters' })
 const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
 const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
 const footer = $('footer', { class: 'strip' })
-const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
-const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
-const right = $('div', { class: 'right' }, ...[['Parameters', params], ['Objects', tree], ['Inspector', inspector]].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)))
-const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
+const left = $(
+  'div',
+  { class: 'left' },
+  editorHost,
+  $('div', {
+    class: 'grip row',
+    'data-size': 'messages',
+    role: 'separator',
+    'aria-orientation': 'horizontal',
+    tabindex: 0,
+    'aria-label': 'height of messages',
+  }),
+  messagesHost,
+)
+const middle = $(
+  'main',
+  { class: 'middle' },
+  tabs,
+  $(
+    'div',
+    { class: 'stage' },
+    viewHost,
+    toolbar,
+    legend,
+    $('div', { class: 'sections' }, section, planesHost),
+    sheetHost,
+  ),
+  status,
+)
+const right = $(
+  'div',
+  { class: 'right' },
+  ...[
+    ['Parameters', params],
+    ['Objects', tree],
+    ['Inspector', inspector],
+  ].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)),
+)
+const grip = (side: string) =>
+  $('div', {
+    class: 'grip',
+    'data-size': side,
+    role: 'separator',
+    'aria-orientation': 'vertical',
+    tabindex: 0,
+    'aria-label': `width of ${side}`,
+  })
 const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
 document.getElementById('app')!.append(header, banner, body, footer)
 
@@ -147,7 +211,8 @@ for (const g of document.querySelectorAll<HTMLElement>('.grip')) {
   g.addEventListener('pointerdown', (e) => {
     g.setPointerCapture(e.pointerId)
     const [from, size] = [name === 'messages' ? e.clientY : e.clientX, sizes[name]]
-    const move = (m: PointerEvent) => put(size + (name === 'messages' ? from - m.clientY : (name === 'right' ? -1 : 1) * (m.clientX - from)))
+    const move = (m: PointerEvent) =>
+      put(size + (name === 'messages' ? from - m.clientY : (name === 'right' ? -1 : 1) * (m.clientX - from)))
     g.addEventListener('pointermove', move)
     g.addEventListener('pointerup', () => g.removeEventListener('pointermove', move), { once: true })
   })
@@ -179,7 +244,11 @@ themeButton.addEventListener('click', () => {
   applyTheme()
 })
 
-const orientation = new Orientation(view.camera, (name) => look(name), () => view.height)
+const orientation = new Orientation(
+  view.camera,
+  (name) => look(name),
+  () => view.height,
+)
 viewHost.parentElement!.append(orientation.element)
 canvas.addEventListener('pointermove', (e) => orientation.hover(e))
 view.onFrame = () => {
@@ -217,11 +286,18 @@ async function written(kind: string, fields: Record<string, unknown>, name: stri
     await editor.synced()
     await setting.settled()
     const { head } = await link.ask(kind, fields)
-    const now = (head.kept ?? []).map((n: string) => ({ name: n, from: held.get(n) ?? null, to: model.params.find((p) => p.name === n)?.value ?? null }))
+    const now = (head.kept ?? []).map((n: string) => ({
+      name: n,
+      from: held.get(n) ?? null,
+      to: model.params.find((p) => p.name === n)?.value ?? null,
+    }))
     const news = now.filter((one: Held) => one.from !== one.to)
     for (const one of news) if (one.to !== null) held.set(one.name, one.to)
     editor.apply(head.edits ?? [], head.version, name, news)
-    if (news.length) say(`${news.map((one: Held) => one.name).join(', ')} follows from an expression: the value holds for this session and is not in the text`)
+    if (news.length)
+      say(
+        `${news.map((one: Held) => one.name).join(', ')} follows from an expression: the value holds for this session and is not in the text`,
+      )
   } catch (error) {
     say((error as Error).message)
   }
@@ -260,7 +336,11 @@ function turn(count: number): void {
     const back = count > 0
     const step = (back ? editor.steps.done : editor.steps.undone).at(-1)
     const gone = editor.steps.go(editor.view, count)
-    say(!gone ? `Nothing to ${back ? 'undo' : 'redo'}` : `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`)
+    say(
+      !gone
+        ? `Nothing to ${back ? 'undo' : 'redo'}`
+        : `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`,
+    )
   })
 }
 
@@ -352,11 +432,18 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
 /** The control polygons of the selected curve, or of those that the selected point is in. */
 function polygons(): void {
   const points = new Map([...view.items.values()].filter((i) => i.kind === 'point').map((i) => [i.object, i]))
-  const near = model.objects.filter((o) => (o.class === 'curve' || o.class === 'snake') && o.parents.length > 2 && (o.name === selected || o.parents.includes(selected)))
-  const runs = near.map((o) => o.parents.flatMap((p) => {
-    const item = points.get(p)
-    return item && view.seen(item) ? view.place(item).toArray() : []
-  }))
+  const near = model.objects.filter(
+    (o) =>
+      (o.class === 'curve' || o.class === 'snake') &&
+      o.parents.length > 2 &&
+      (o.name === selected || o.parents.includes(selected)),
+  )
+  const runs = near.map((o) =>
+    o.parents.flatMap((p) => {
+      const item = points.get(p)
+      return item && view.seen(item) ? view.place(item).toArray() : []
+    }),
+  )
   view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
 }
 on(['selection', 'rev'], polygons)
@@ -390,11 +477,13 @@ editor.steps.onHeld = ({ name, to }) => {
   if (to === null) held.delete(name)
   else held.set(name, to)
   // The engine gives up all that the text does not state, and takes again what is still held.
-  writing = writing.then(async () => {
-    await editor.synced()
-    if (to === null) await link.ask('reset')
-    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
-  }).catch((error) => say(error.message))
+  writing = writing
+    .then(async () => {
+      await editor.synced()
+      if (to === null) await link.ask('reset')
+      if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+    })
+    .catch((error) => say(error.message))
 }
 header.querySelector('.history-place')!.replaceWith(link.still ? '' : historyButtons(editor.steps, turn, !host))
 editor.onTrouble = (words) => say(words)
@@ -422,7 +511,10 @@ const hands = new Hands(view, link, viewHost, {
   corner: (e) => orientation.click(e),
 })
 const making = new Making(right, link, {
-  say, select: (name) => actions.select(name, 'text'), apply: (list, version, name) => editor.apply(list, version, name), synced: () => editor.synced(),
+  say,
+  select: (name) => actions.select(name, 'text'),
+  apply: (list, version, name) => editor.apply(list, version, name),
+  synced: () => editor.synced(),
 })
 const start = startPage({
   begin: (text, name, reach) => {
@@ -444,13 +536,20 @@ parametersPanel(params, actions)
 treePanel(tree, actions)
 inspectorPanel(inspector, actions)
 messagesPanel(messagesHost, actions)
-strip(footer, actions, (host) => new GivenNumbers(host, link, {
-  say, write: actions.write, typed: actions.typed,
-  reset: async () => {
-    await link.ask('reset')
-    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
-  },
-}))
+strip(
+  footer,
+  actions,
+  (host) =>
+    new GivenNumbers(host, link, {
+      say,
+      write: actions.write,
+      typed: actions.typed,
+      reset: async () => {
+        await link.ask('reset')
+        if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+      },
+    }),
+)
 
 function showSaved(): void {
   const waits = editor.pending
@@ -460,11 +559,27 @@ function showSaved(): void {
   }
   if (link.local && !link.still) {
     const running = document.body.dataset.engine === 'ready'
-    saved.textContent = !running ? 'the engine starts…' : !dirty ? 'as it was' : keeps() ? 'changed, kept in this browser' : 'changed, not saved'
+    saved.textContent = !running
+      ? 'the engine starts…'
+      : !dirty
+        ? 'as it was'
+        : keeps()
+          ? 'changed, kept in this browser'
+          : 'changed, not saved'
     saved.dataset.state = dirty ? 'dirty' : 'saved'
     return
   }
-  saved.textContent = link.still ? 'as it was' : !online ? (waits ? 'not connected: what you type is kept in this page' : 'not connected') : waits ? 'sending…' : dirty ? 'draft kept, not in the file' : 'saved'
+  saved.textContent = link.still
+    ? 'as it was'
+    : !online
+      ? waits
+        ? 'not connected: what you type is kept in this page'
+        : 'not connected'
+      : waits
+        ? 'sending…'
+        : dirty
+          ? 'draft kept, not in the file'
+          : 'saved'
   saved.dataset.state = !online ? 'off' : dirty || waits ? 'dirty' : 'saved'
 }
 
@@ -496,14 +611,24 @@ async function save(force = false): Promise<void> {
 function conflict(text: string): void {
   theirs = text
   const lines = (t: string) => t.split('\n').length
-  warn(`The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
+  warn(
+    `The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
     $('button', { onclick: () => void save(true).then(() => warn('')) }, 'Keep mine, write the file'),
     $('button', { onclick: revert }, 'Take theirs'),
-    $('button', { onclick: () => compare() }, 'Show both'))
+    $('button', { onclick: () => compare() }, 'Show both'),
+  )
 }
 
 function compare(): void {
-  const dialog = $('dialog', { class: 'compare', 'aria-label': 'both texts' }, $('h3', {}, 'The file'), $('pre', {}, theirs ?? ''), $('h3', {}, 'Here'), $('pre', {}, editor.text), $('button', { onclick: () => dialog.close() }, 'Close'))
+  const dialog = $(
+    'dialog',
+    { class: 'compare', 'aria-label': 'both texts' },
+    $('h3', {}, 'The file'),
+    $('pre', {}, theirs ?? ''),
+    $('h3', {}, 'Here'),
+    $('pre', {}, editor.text),
+    $('button', { onclick: () => dialog.close() }, 'Close'),
+  )
   document.body.append(dialog)
   dialog.addEventListener('close', () => dialog.remove())
   dialog.showModal()
@@ -514,7 +639,11 @@ function compare(): void {
 function take(frame: Frame): void {
   const { head } = frame
   const facts: [string, keyof typeof model, Parameters<typeof changed>[0]][] = [
-    ['params', 'params', 'params'], ['objects', 'objects', 'objects'], ['diagnostics', 'faults', 'faults'], ['printed', 'printed', 'printed'], ['watched', 'watched', 'watched'],
+    ['params', 'params', 'params'],
+    ['objects', 'objects', 'objects'],
+    ['diagnostics', 'faults', 'faults'],
+    ['printed', 'printed', 'printed'],
+    ['watched', 'watched', 'watched'],
   ]
   if (head.unit !== undefined) model.unit = head.unit
   if (head.program !== undefined) model.program = head.program
@@ -594,7 +723,8 @@ link.onMessage = (message) => {
       else {
         warn('')
         if (held.size) void link.ask('write', { values: Object.fromEntries(held) }).catch(() => undefined)
-        if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
+        if (!link.local)
+          void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
         void foreign.again()
       }
       break
@@ -625,7 +755,10 @@ async function begin(hello: any): Promise<void> {
     tabs.append(tab('board', 'Drawing board'))
     if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
   }
-  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.')
+  if (hello.recovered)
+    say(
+      'Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.',
+    )
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
   showSaved()
   try {
@@ -635,7 +768,11 @@ async function begin(hello: any): Promise<void> {
     if (!link.local) await link.ask('open')
     // A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing.
     const floats = view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
-    const usual = ![...view.items.values()].some((i) => i.kind === 'patch') ? [] : floats ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt'] : ['mesh.area', 'mesh.volume']
+    const usual = ![...view.items.values()].some((i) => i.kind === 'patch')
+      ? []
+      : floats
+        ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt']
+        : ['mesh.area', 'mesh.volume']
     const watched = stored<string[]>(`watch.${model.name}`, usual)
     if (!link.still) await link.ask('watch', { expressions: watched })
     if (!again && !link.still) formats = (await link.ask('formats')).head.formats
@@ -650,7 +787,10 @@ const foreign = new Foreign(view, link, { say, legend: () => analysis.legend() }
 const analysis = new Analysis(view, link, legend, section, {
   say,
   painted: () => buildToolbar(),
-  other: () => (foreign.scale ? { scale: foreign.scale, name: `deviation, ${model.unit}` } : planes.scale && { scale: planes.scale, name: 'scaled Jacobian' }),
+  other: () =>
+    foreign.scale
+      ? { scale: foreign.scale, name: `deviation, ${model.unit}` }
+      : planes.scale && { scale: planes.scale, name: 'scaled Jacobian' },
 })
 viewHost.addEventListener('dragover', (e) => e.preventDefault())
 viewHost.addEventListener('drop', (e) => {
@@ -662,12 +802,33 @@ viewHost.addEventListener('drop', (e) => {
 
 /** The formats of the engine: names, and what they hold. */
 let formats: [string, string][] = []
-const openPalette = (words = '') => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))], words)
+const openPalette = (words = '') =>
+  palette(
+    [
+      ...commands(),
+      ...model.objects
+        .slice(0, 2000)
+        .map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') })),
+    ],
+    words,
+  )
 
 const looks: [Standard, string, string][] = [
-  ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
+  ['iso', 'Isometric', '1'],
+  ['profile', 'Profile', '2'],
+  ['plan', 'Plan', '3'],
+  ['body', 'Body plan from the bow', '4'],
+  ['stern', 'From the stern', '5'],
+  ['starboard', 'Profile from the other side', '6'],
+  ['bottom', 'From below', '7'],
 ]
-const styles: [Style, string, string][] = [['shaded', 'Shaded with panels', 'S'], ['panels', 'Panels', 'P'], ['smooth', 'Smooth', 'A'], ['wire', 'Wireframe', 'W'], ['xray', 'X-ray', 'R']]
+const styles: [Style, string, string][] = [
+  ['shaded', 'Shaded with panels', 'S'],
+  ['panels', 'Panels', 'P'],
+  ['smooth', 'Smooth', 'A'],
+  ['wire', 'Wireframe', 'W'],
+  ['xray', 'X-ray', 'R'],
+]
 const look = (name: Standard) => {
   view.camera.look(name)
   view.fit()
@@ -692,7 +853,8 @@ async function download(kind: string): Promise<void> {
       return
     }
     const frame = await link.ask('export', { format: kind, stem })
-    for (const part of frame.head.files) give(new Blob([frame.bytes(part).slice()]), String(part.name).split(/[/\\]/).pop() ?? 'model')
+    for (const part of frame.head.files)
+      give(new Blob([frame.bytes(part).slice()]), String(part.name).split(/[/\\]/).pop() ?? 'model')
   } catch (error) {
     say((error as Error).message)
   }
@@ -705,30 +867,49 @@ function give(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(a.href), 10_000)
 }
 
-const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['areas', 'Section areas'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
+const SHEETS: [SheetName, string][] = [
+  ['model', 'Model'],
+  ['lines', 'Lines plan'],
+  ['hydrostatics', 'Hydrostatics'],
+  ['areas', 'Section areas'],
+  ['mesh', 'Mesh'],
+  ['graph', 'Dependencies'],
+  ['curvature', 'Curvature'],
+]
 function sheet(name: SheetName | 'board' | 'desk'): void {
   sheets.show(name === 'board' || name === 'desk' ? 'model' : name)
   board.show(name === 'board')
   desk.show(name === 'desk')
   toolbar.hidden = name !== 'model'
-  for (const t of tabs.querySelectorAll('[role=tab]')) t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
+  for (const t of tabs.querySelectorAll('[role=tab]'))
+    t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
 }
 
 function commands(): Command[] {
   return [
     { name: link.local ? 'Download the text' : 'Save', keys: 'Ctrl+S', run: () => void save() },
-    ...(link.still ? [] : [
-      { name: 'Undo', keys: 'Ctrl+Z', run: () => turn(1) },
-      { name: 'Redo', keys: 'Ctrl+Shift+Z', run: () => turn(-1) },
-      { name: link.local ? 'Revert to the text as it came' : 'Revert to the saved file', run: revert },
-    ]),
+    ...(link.still
+      ? []
+      : [
+          { name: 'Undo', keys: 'Ctrl+Z', run: () => turn(1) },
+          { name: 'Redo', keys: 'Ctrl+Shift+Z', run: () => turn(-1) },
+          { name: link.local ? 'Revert to the text as it came' : 'Revert to the saved file', run: revert },
+        ]),
     { name: 'Fit the model', keys: 'F', run: () => view.fit() },
     ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
-    { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
+    {
+      name: 'Perspective or orthographic',
+      keys: 'O',
+      run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()),
+    },
     ...styles.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(n) })),
     { name: 'Colour: patches apart', run: () => analysis.paint('patches') },
     { name: 'Colour: of the model', run: () => analysis.paint('model') },
-    { name: 'Colour: zebra stripes', keys: 'Z', run: () => analysis.paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
+    {
+      name: 'Colour: zebra stripes',
+      keys: 'Z',
+      run: () => analysis.paint(view.paint === 'zebra' ? 'patches' : 'zebra'),
+    },
     { name: 'Colour: reflection lines', run: () => analysis.paint('reflection') },
     { name: 'Colour: isophotes', run: () => analysis.paint('isophotes') },
     { name: 'Colour: highlight lines', run: () => analysis.paint('highlight') },
@@ -736,37 +917,83 @@ function commands(): Command[] {
     { name: 'Colour: mean curvature', run: () => analysis.paint('field', 'mean_curvature') },
     { name: 'Colour: largest curvature', run: () => analysis.paint('field', 'largest_curvature') },
     { name: 'Colour: smallest curvature', run: () => analysis.paint('field', 'smallest_curvature') },
-    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => analysis.paint('field', m) })),
-    ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => analysis.paint('field', 'derivative', p.name) })),
-    ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
+    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({
+      name: `Colour: panel ${m}`,
+      run: () => analysis.paint('field', m),
+    })),
+    ...model.params.map((p) => ({
+      name: `Colour: motion by ${p.name}`,
+      run: () => analysis.paint('field', 'derivative', p.name),
+    })),
+    ...[
+      ['point', 'points', '.'],
+      ['curve', 'curves', ','],
+      ['contour', 'contours', 'C'],
+      ['patch', 'surfaces', ''],
+      ['grid', 'grids', ''],
+    ].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
     { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
-    ...(link.still || !model.program ? [] : [
-      { name: 'Add an object', keys: 'Shift+A', run: () => void making.open() },
-      { name: 'Delete the selected object', keys: 'Delete', run: () => selected && void actions.rewrite('delete', { name: selected }, `Delete ${selected}`) },
-      { name: 'Duplicate the selected object', keys: 'Ctrl+D', run: () => selected && void actions.rewrite('duplicate', { name: selected }, `Duplicate ${selected}`) },
-      { name: 'Rename the selected object', keys: 'Shift+R', run: () => inspector.querySelector<HTMLInputElement>('input.title')?.select() },
-    ]),
+    ...(link.still || !model.program
+      ? []
+      : [
+          { name: 'Add an object', keys: 'Shift+A', run: () => void making.open() },
+          {
+            name: 'Delete the selected object',
+            keys: 'Delete',
+            run: () => selected && void actions.rewrite('delete', { name: selected }, `Delete ${selected}`),
+          },
+          {
+            name: 'Duplicate the selected object',
+            keys: 'Ctrl+D',
+            run: () => selected && void actions.rewrite('duplicate', { name: selected }, `Duplicate ${selected}`),
+          },
+          {
+            name: 'Rename the selected object',
+            keys: 'Shift+R',
+            run: () => inspector.querySelector<HTMLInputElement>('input.title')?.select(),
+          },
+        ]),
     { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
     { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
     { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
     { name: 'Move the selected point by keys', keys: 'G', run: () => hands.take(selected) },
-    { name: 'Measure between places', keys: 'D', run: () => {
-      hands.measuring = !hands.measuring
-      say(hands.measuring ? 'Measure: click two or three places; D or Esc ends' : '')
-      if (!hands.measuring) view.overlay('measure', null)
-      buildToolbar()
-    } },
+    {
+      name: 'Measure between places',
+      keys: 'D',
+      run: () => {
+        hands.measuring = !hands.measuring
+        say(hands.measuring ? 'Measure: click two or three places; D or Esc ends' : '')
+        if (!hands.measuring) view.overlay('measure', null)
+        buildToolbar()
+      },
+    },
     { name: 'Lay a mesh or offsets over the model (STL, OBJ, PLY, OFF, GDF, table)', run: () => foreign.choose() },
     { name: 'Remove what lies over the model', run: () => void foreign.remove().catch((e) => say(e.message)) },
     { name: 'Curvature comb of the selected curve', keys: 'K', run: () => analysis.toggleComb(selected) },
-    ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => analysis.cut(view.clip?.axis === k ? null : k) })),
+    ...[0, 1, 2].map((k) => ({
+      name: `Section across ${'xyz'[k]}`,
+      keys: `Shift+${'XYZ'[k]}`,
+      run: () => analysis.cut(view.clip?.axis === k ? null : k),
+    })),
     { name: 'Plane of a volume block, folded cells', keys: 'B', run: () => planes.toggle() },
-    ...(link.local ? [] : [{ name: 'Fairing desk', run: () => sheet('desk') }, { name: 'Fair the selected curve or surface', run: () => (sheet('desk'), selected && void desk.open({ object: selected })) }]),
+    ...(link.local
+      ? []
+      : [
+          { name: 'Fairing desk', run: () => sheet('desk') },
+          {
+            name: 'Fair the selected curve or surface',
+            run: () => (sheet('desk'), selected && void desk.open({ object: selected })),
+          },
+        ]),
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
     { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
     { name: 'Go to the model', keys: 'Ctrl+2', run: () => canvas.focus() },
     { name: 'Go to parameters', keys: 'Ctrl+3', run: () => params.querySelector('input')?.focus() },
-    { name: 'Go to objects', keys: 'Ctrl+4', run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus() },
+    {
+      name: 'Go to objects',
+      keys: 'Ctrl+4',
+      run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus(),
+    },
     { name: 'Format the program', keys: 'Shift+Alt+F', run: () => void editor.format() },
     { name: 'Rename the name at the cursor', keys: 'F2', run: () => void editor.rename() },
     { name: 'Export: picture (PNG)', run: () => void download('png') },
@@ -778,9 +1005,14 @@ function commands(): Command[] {
 
 function buildToolbar(): void {
   const focus = (document.activeElement as HTMLElement | null)?.getAttribute('aria-label')
-  const button = (label: string, words: string, run: () => void, on = false) => $('button', { 'aria-label': words, 'aria-pressed': on, title: words, class: on ? 'on' : '', onclick: run }, label)
+  const button = (label: string, words: string, run: () => void, on = false) =>
+    $('button', { 'aria-label': words, 'aria-pressed': on, title: words, class: on ? 'on' : '', onclick: run }, label)
   const choice = (name: string, value: string, options: [string, string][], run: (v: string) => void) => {
-    const s = $('select', { 'aria-label': name, title: name }, ...options.map(([v, words]) => $('option', { value: v, selected: v === value }, words)))
+    const s = $(
+      'select',
+      { 'aria-label': name, title: name },
+      ...options.map(([v, words]) => $('option', { value: v, selected: v === value }, words)),
+    )
     s.addEventListener('change', () => run(s.value))
     return s
   }
@@ -793,25 +1025,80 @@ function buildToolbar(): void {
       if (v) look(v as Standard)
       buildToolbar()
     }),
-    button(view.camera.perspective ? '◭' : '▱', 'Perspective or orthographic (O)', () => {
-      view.camera.perspective = !view.camera.perspective
-      view.fit()
-      buildToolbar()
-    }, view.camera.perspective),
-    choice('style', view.style, styles.map(([n, w]) => [n, w]), (v) => setStyle(v as Style)),
-    choice('colour', value, [
-      ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['reflection', 'Reflection lines'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
-      ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
-    ], (v) => (['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v) ? analysis.paint(v as Paint) : v.startsWith('d:') ? analysis.paint('field', 'derivative', v.slice(2)) : analysis.paint('field', v))),
+    button(
+      view.camera.perspective ? '◭' : '▱',
+      'Perspective or orthographic (O)',
+      () => {
+        view.camera.perspective = !view.camera.perspective
+        view.fit()
+        buildToolbar()
+      },
+      view.camera.perspective,
+    ),
+    choice(
+      'style',
+      view.style,
+      styles.map(([n, w]) => [n, w]),
+      (v) => setStyle(v as Style),
+    ),
+    choice(
+      'colour',
+      value,
+      [
+        ['patches', 'Patches apart'],
+        ['model', 'Colours of the model'],
+        ['zebra', 'Zebra'],
+        ['reflection', 'Reflection lines'],
+        ['isophotes', 'Isophotes'],
+        ['highlight', 'Highlight lines'],
+        ...(link.still
+          ? []
+          : ([
+              ['gaussian_curvature', 'Gaussian curvature'],
+              ['mean_curvature', 'Mean curvature'],
+              ['largest_curvature', 'Largest curvature'],
+              ['smallest_curvature', 'Smallest curvature'],
+              ['aspect', 'Panel aspect'],
+              ['skew', 'Panel skewness'],
+              ['warp', 'Panel warp'],
+              ['jump', 'Jump of panel area'],
+              ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`]),
+            ] as [string, string][])),
+      ],
+      (v) =>
+        ['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v)
+          ? analysis.paint(v as Paint)
+          : v.startsWith('d:')
+            ? analysis.paint('field', 'derivative', v.slice(2))
+            : analysis.paint('field', v),
+    ),
     button('•', 'Points (.)', () => layer('point'), view.layers.point),
     button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),
     button('≋', 'Contours (C)', () => layer('contour'), view.layers.contour),
-    button('⇔', 'Measure (D)', () => commands().find((c) => c.keys === 'D')!.run(), hands.measuring),
+    button(
+      '⇔',
+      'Measure (D)',
+      () =>
+        commands()
+          .find((c) => c.keys === 'D')!
+          .run(),
+      hands.measuring,
+    ),
   )
   if (focus) toolbar.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focus)}"]`)?.focus()
 }
 function tab(name: SheetName | 'board' | 'desk', words: string): HTMLElement {
-  return $('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words)
+  return $(
+    'button',
+    {
+      role: 'tab',
+      'aria-selected': name === 'model',
+      'data-sheet': name,
+      onclick: () => sheet(name),
+      disabled: link.still && name !== 'model' && name !== 'graph',
+    },
+    words,
+  )
 }
 for (const [name, words] of SHEETS) tabs.append(tab(name, words))
 
@@ -838,7 +1125,8 @@ addEventListener('keydown', (e) => {
   if (name in turns) {
     // A field with something typed in it takes that back first.
     const field = target.closest('input')
-    if (e.defaultPrevented || target.closest('dialog') || (field && (came.get(field) ?? field.value) !== field.value)) return
+    if (e.defaultPrevented || target.closest('dialog') || (field && (came.get(field) ?? field.value) !== field.value))
+      return
     e.preventDefault()
     return turn(turns[name])
   }
@@ -846,7 +1134,10 @@ addEventListener('keydown', (e) => {
   if (e.key === 'Escape' && !typing) {
     if (hands.busy) hands.cancel()
     else if (making.isOpen) making.close()
-    else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
+    else if (hands.measuring)
+      commands()
+        .find((c) => c.keys === 'D')!
+        .run()
     else if (view.clip) analysis.cut(null)
     else if (planes.shown) planes.close()
     else actions.select('', 'view')
@@ -888,8 +1179,17 @@ Object.assign(window, {
       const [x, y] = view.project(view.place(item))
       return [box.left + x, box.top + y]
     },
-    items: () => [...view.items.values()].map((i) => ({ name: i.name, object: i.object, kind: i.kind, stale: i.stale, vertices: i.position.length / 3, seen: view.seen(i) })),
-    positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
+    items: () =>
+      [...view.items.values()].map((i) => ({
+        name: i.name,
+        object: i.object,
+        kind: i.kind,
+        stale: i.stale,
+        vertices: i.position.length / 3,
+        seen: view.seen(i),
+      })),
+    positions: (object: string) =>
+      [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
     board,
     desk,

@@ -1,16 +1,34 @@
 // The picture of the model: what the engine sends, and nothing computed from it but colours.
 
 import {
-  BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points, PointsMaterial,
-  type Ray, Matrix4, Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  Plane,
+  Points,
+  PointsMaterial,
+  type Ray,
+  Raycaster,
+  Scene,
+  ShaderMaterial,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from 'three'
-import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js'
 import { Camera } from './camera'
-import { coloured, hex, HUES, scale, type Scale } from './colour'
+import { coloured, HUES, hex, type Scale, scale } from './colour'
 import type { Frame, Part } from './frame'
-import { hit, type Hit } from './pick'
+import { type Hit, hit } from './pick'
 
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
 export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
@@ -102,7 +120,15 @@ export class View {
   paint: Paint = 'patches'
   fieldScale: Scale | null = null
   mirror = true
-  layers: Record<string, boolean> = { patch: true, curve: true, point: true, wire: true, contour: true, grid: true, frame: true }
+  layers: Record<string, boolean> = {
+    patch: true,
+    curve: true,
+    point: true,
+    wire: true,
+    contour: true,
+    grid: true,
+    frame: true,
+  }
   hidden = new Set<string>()
   selected = ''
   hovered = ''
@@ -120,8 +146,14 @@ export class View {
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
   private readonly uniforms = {
-    mode: { value: 0 }, towards: { value: new Vector3() }, upward: { value: new Vector3() }, right: { value: new Vector3() },
-    lit: { value: 1 }, centre: { value: new Vector3() }, size: { value: 1 }, stripes: { value: 16 },
+    mode: { value: 0 },
+    towards: { value: new Vector3() },
+    upward: { value: new Vector3() },
+    right: { value: new Vector3() },
+    lit: { value: 1 },
+    centre: { value: new Vector3() },
+    size: { value: 1 },
+    stripes: { value: 16 },
   }
   private readonly materials = new Map<string, ShaderMaterial>()
   private readonly lineMaterials = new Map<string, LineMaterial | LineBasicMaterial>()
@@ -185,9 +217,26 @@ export class View {
     let item = this.items.get(key)
     if (!item) {
       item = {
-        key, name: head.name, object: head.object, kind: head.kind, stale: '', colour: [], hue: 0, origin: new Vector3(),
-        position: new Float32Array(), normal: null, triangle: new Uint32Array(), edge: new Uint32Array(), rim: new Uint32Array(),
-        field: null, components: 1, group: new Group(), geometry: new BufferGeometry(), mesh: null, lines: { edge: null, rim: null, curve: null }, box: new Box3(),
+        key,
+        name: head.name,
+        object: head.object,
+        kind: head.kind,
+        stale: '',
+        colour: [],
+        hue: 0,
+        origin: new Vector3(),
+        position: new Float32Array(),
+        normal: null,
+        triangle: new Uint32Array(),
+        edge: new Uint32Array(),
+        rim: new Uint32Array(),
+        field: null,
+        components: 1,
+        group: new Group(),
+        geometry: new BufferGeometry(),
+        mesh: null,
+        lines: { edge: null, rim: null, curve: null },
+        box: new Box3(),
       }
       this.items.set(key, item)
     }
@@ -291,9 +340,22 @@ export class View {
     let found = this.materials.get(key)
     if (!found) {
       found = new ShaderMaterial({
-        uniforms: { ...this.uniforms, colour: { value: new Color(...hex(colour)) }, tinted: { value: tint }, grey: { value: grey }, opacity: { value: opacity } },
-        vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, clipping: true,
-        transparent: opacity < 1, depthWrite: opacity >= 1, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+        uniforms: {
+          ...this.uniforms,
+          colour: { value: new Color(...hex(colour)) },
+          tinted: { value: tint },
+          grey: { value: grey },
+          opacity: { value: opacity },
+        },
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        side: DoubleSide,
+        clipping: true,
+        transparent: opacity < 1,
+        depthWrite: opacity >= 1,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
       })
       this.materials.set(key, found)
     }
@@ -303,8 +365,21 @@ export class View {
   private line(kind: string): LineMaterial | LineBasicMaterial {
     let found = this.lineMaterials.get(kind)
     if (!found) {
-      const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2, foreign: 0.8 }
-      if (kind === 'edge' || kind === 'ghost') found = new LineBasicMaterial({ transparent: true, opacity: kind === 'edge' ? 0.22 : 0.5 })
+      const widths: Record<string, number> = {
+        rim: 1.4,
+        curve: 1.6,
+        wire: 2.4,
+        contour: 1.4,
+        grid: 1,
+        frame: 1.6,
+        chosen: 3,
+        hover: 2.6,
+        extra: 1.4,
+        stale: 1.2,
+        foreign: 0.8,
+      }
+      if (kind === 'edge' || kind === 'ghost')
+        found = new LineBasicMaterial({ transparent: true, opacity: kind === 'edge' ? 0.22 : 0.5 })
       else found = new LineMaterial({ linewidth: widths[kind] ?? 1.4 })
       if (found instanceof LineMaterial) found.resolution.copy(this.resolution)
       this.lineMaterials.set(kind, found)
@@ -317,8 +392,19 @@ export class View {
   private ink(): void {
     const d = this.dark
     const inks: Record<string, number> = {
-      edge: d ? 0xdfe6ee : 0x1b2530, rim: d ? 0xc9d3de : 0x2b3541, curve: d ? 0x7fb0e6 : 0x2a5d9c, wire: d ? 0xe6edf5 : 0x1b2533, contour: d ? 0xe2b66b : 0x8a5a12,
-      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6, foreign: d ? 0x9aa7b4 : 0x4a5560, ghost: d ? 0xaab4be : 0x6d7883,
+      edge: d ? 0xdfe6ee : 0x1b2530,
+      rim: d ? 0xc9d3de : 0x2b3541,
+      curve: d ? 0x7fb0e6 : 0x2a5d9c,
+      wire: d ? 0xe6edf5 : 0x1b2533,
+      contour: d ? 0xe2b66b : 0x8a5a12,
+      grid: d ? 0x8a97a5 : 0x7a8794,
+      frame: d ? 0xa0acb8 : 0x5c6875,
+      chosen: 0xe8711a,
+      hover: 0xf09a52,
+      extra: 0xc2412d,
+      stale: d ? 0x727d89 : 0xa3acb6,
+      foreign: d ? 0x9aa7b4 : 0x4a5560,
+      ghost: d ? 0xaab4be : 0x6d7883,
     }
     for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
   }
@@ -350,14 +436,16 @@ export class View {
         const tinted = this.paint === 'field' && item.field ? 1 : 0
         const own = (item.colour[0] << 16) | (item.colour[1] << 8) | item.colour[2]
         const colour = this.paint === 'field' ? 0xb9bfc6 : this.paint === 'model' ? own : HUES[item.hue % HUES.length]
-        if (!item.geometry.getAttribute('tint')) item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
+        if (!item.geometry.getAttribute('tint'))
+          item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
         item.mesh.material = this.material('', grey, opacity, tinted, colour)
         item.mesh.visible = this.style !== 'wire'
         item.lines.edge!.visible = this.style !== 'smooth'
         item.lines.edge!.material = this.line('edge') as LineBasicMaterial
         item.lines.rim!.visible = this.style !== 'smooth' || !!marked
         item.lines.rim!.material = this.line(marked || 'rim') as LineMaterial
-      } else if (item.lines.curve) item.lines.curve.material = this.line(marked || (item.stale ? 'stale' : item.kind)) as LineMaterial
+      } else if (item.lines.curve)
+        item.lines.curve.material = this.line(marked || (item.stale ? 'stale' : item.kind)) as LineMaterial
     }
     ;(this.line('edge') as LineBasicMaterial).opacity = this.style === 'panels' || this.style === 'wire' ? 0.6 : 0.2
     this.placeDots()
@@ -414,7 +502,7 @@ export class View {
       const twin = new Group()
       twin.position.copy(item.group.position)
       for (const child of item.group.children) {
-        if (!child.visible || (child as any).isLineSegments2 && item.kind === 'patch') continue
+        if (!child.visible || ((child as any).isLineSegments2 && item.kind === 'patch')) continue
         const copy = child.clone() as any
         twin.add(copy)
       }
@@ -437,7 +525,8 @@ export class View {
       const sizes = new Float32Array(values.length / part.components)
       for (let k = 0; k < sizes.length; k++) {
         if (part.components === 1) sizes[k] = values[k]
-        else sizes[k] = Math.hypot(...Array.from({ length: part.components }, (_, c) => values[k * part.components + c]))
+        else
+          sizes[k] = Math.hypot(...Array.from({ length: part.components }, (_, c) => values[k * part.components + c]))
       }
       sized.push({ item, sizes })
       all.push(sizes)
@@ -457,7 +546,9 @@ export class View {
     const total = fielded.reduce((n, i) => n + i.field!.length / 3, 0)
     const step = Math.max(1, Math.ceil(total / 600))
     let most = 0
-    for (const i of fielded) for (let k = 0; k + 2 < i.field!.length; k += 3) most = Math.max(most, Math.hypot(i.field![k], i.field![k + 1], i.field![k + 2]))
+    for (const i of fielded)
+      for (let k = 0; k + 2 < i.field!.length; k += 3)
+        most = Math.max(most, Math.hypot(i.field![k], i.field![k + 1], i.field![k + 2]))
     if (!(most > 0) || !Number.isFinite(most)) return []
     const factor = this.bounds.getSize(new Vector3()).length() / 8 / most
     const runs: number[][] = []
@@ -470,7 +561,11 @@ export class View {
         const tip = from.clone().add(along)
         runs.push([...from.toArray(), ...tip.toArray()])
         // Two strokes of the head, across the direction of view.
-        const across = along.clone().cross(this.camera.towards).normalize().multiplyScalar(0.12 * length)
+        const across = along
+          .clone()
+          .cross(this.camera.towards)
+          .normalize()
+          .multiplyScalar(0.12 * length)
         const back = tip.clone().addScaledVector(along, -0.25)
         runs.push([...back.clone().add(across).toArray(), ...tip.toArray(), ...back.sub(across).toArray()])
       }
@@ -479,7 +574,15 @@ export class View {
   }
 
   /** Meshes and points of other programs over the model, coloured by their distance from it. */
-  foreign(all: { name: string; position: Float32Array; triangle: Uint32Array; edge: Uint32Array; deviation: Float32Array | null }[]): Scale | null {
+  foreign(
+    all: {
+      name: string
+      position: Float32Array
+      triangle: Uint32Array
+      edge: Uint32Array
+      deviation: Float32Array | null
+    }[],
+  ): Scale | null {
     this.others.clear()
     const known = all.map((o) => o.deviation).filter((d) => d !== null)
     const span = known.length ? scale(known, true) : null
@@ -487,7 +590,8 @@ export class View {
       const g = new BufferGeometry()
       g.setAttribute('position', new BufferAttribute(one.position, 3))
       const tint = new Float32Array(one.position.length)
-      for (let k = 0; k < tint.length / 3; k++) tint.set(one.deviation && span ? coloured(one.deviation[k], span) : [0.5, 0.5, 0.5], 3 * k)
+      for (let k = 0; k < tint.length / 3; k++)
+        tint.set(one.deviation && span ? coloured(one.deviation[k], span) : [0.5, 0.5, 0.5], 3 * k)
       g.setAttribute('tint', new BufferAttribute(tint, 3))
       if (one.triangle.length) {
         g.setIndex(new BufferAttribute(one.triangle, 1))
@@ -495,7 +599,15 @@ export class View {
         this.others.add(new Mesh(g, this.material('', 0, 1, 1)))
       } else {
         g.setAttribute('color', new BufferAttribute(tint, 3))
-        const points = new Points(g, new PointsMaterial({ size: 7 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: true, depthTest: false }))
+        const points = new Points(
+          g,
+          new PointsMaterial({
+            size: 7 * this.renderer.getPixelRatio(),
+            sizeAttenuation: false,
+            vertexColors: true,
+            depthTest: false,
+          }),
+        )
         this.others.add(points)
       }
       if (one.edge.length) this.others.add(this.fat(one.edge, one.position, 'foreign'))
@@ -505,7 +617,9 @@ export class View {
   }
 
   /** Panels that lie in the model, coloured by numbers at their corners. */
-  plane(of: { position: Float32Array; triangle: Uint32Array; edge: Uint32Array; value: Float32Array } | null): Scale | null {
+  plane(
+    of: { position: Float32Array; triangle: Uint32Array; edge: Uint32Array; value: Float32Array } | null,
+  ): Scale | null {
     this.cut.clear()
     let span: Scale | null = null
     if (of) {
@@ -520,7 +634,10 @@ export class View {
       const edges = new BufferGeometry()
       edges.setAttribute('position', g.getAttribute('position'))
       edges.setIndex(new BufferAttribute(of.edge, 1))
-      this.cut.add(new Mesh(g, this.material('plane', 0, 1, 1)), new LineSegments(edges, this.line('edge') as LineBasicMaterial))
+      this.cut.add(
+        new Mesh(g, this.material('plane', 0, 1, 1)),
+        new LineSegments(edges, this.line('edge') as LineBasicMaterial),
+      )
     }
     this.draw()
     return span
@@ -535,7 +652,8 @@ export class View {
     const facing = this.camera.towards.toArray().map(Math.abs)
     // The ground, unless it is seen too flatly.
     const axis = facing[2] > 0.3 ? 2 : facing.indexOf(Math.max(...facing))
-    const level = Math.abs(this.camera.target.getComponent(axis)) < this.camera.reach ? 0 : this.camera.target.getComponent(axis)
+    const level =
+      Math.abs(this.camera.target.getComponent(axis)) < this.camera.reach ? 0 : this.camera.target.getComponent(axis)
     const along = (level - ray.origin.getComponent(axis)) / ray.direction.getComponent(axis)
     const place = ray.at(along, new Vector3())
     return place.setComponent(axis, level)
@@ -554,7 +672,10 @@ export class View {
     const [o, d] = [turned(ray.origin), turned(ray.direction)]
     const { clip } = this
     const kept = clip
-      ? (t: number) => (clip.flip ? 1 : -1) * (ray.origin.getComponent(clip.axis) + t * ray.direction.getComponent(clip.axis) - clip.value) >= 0
+      ? (t: number) =>
+          (clip.flip ? 1 : -1) *
+            (ray.origin.getComponent(clip.axis) + t * ray.direction.getComponent(clip.axis) - clip.value) >=
+          0
       : undefined
     let best = before
     for (const item of this.items.values()) {
@@ -578,7 +699,8 @@ export class View {
       const of = (i: Drawn) => (i.kind === 'patch' ? i.rim : i.edge)
       const flat = new Float32Array(3 * all.reduce((n, i) => n + of(i).length, 0))
       let at = 0
-      for (const i of all) for (const v of of(i)) for (let c = 0; c < 3; c++) flat[at++] = i.position[3 * v + c] + i.origin.getComponent(c)
+      for (const i of all)
+        for (const v of of(i)) for (let c = 0; c < 3; c++) flat[at++] = i.position[3 * v + c] + i.origin.getComponent(c)
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(flat, 3))
       const lines = new LineSegments(geometry, this.line('ghost') as LineBasicMaterial)
@@ -593,7 +715,7 @@ export class View {
   overlay(name: string, runs: number[][] | null, colour = 0xc2412d, width = 1.5): void {
     const old = this.extras.children.find((c) => c.name === name)
     if (old) this.extras.remove(old)
-    if (runs && runs.length) {
+    if (runs?.length) {
       const flat: number[] = []
       for (const run of runs) for (let k = 0; k + 5 < run.length; k += 3) flat.push(...run.slice(k, k + 6))
       if (flat.length) {
@@ -663,7 +785,10 @@ export class View {
   ray(x: number, y: number): Raycaster {
     this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
     const caster = new Raycaster()
-    caster.setFromCamera(new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2), this.camera.three)
+    caster.setFromCamera(
+      new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2),
+      this.camera.three,
+    )
     return caster
   }
 
@@ -694,7 +819,8 @@ export class View {
     let found: Met | null = null
     if (this.style !== 'wire') {
       found = this.met(ray, [1, 1, 1], null)
-      if (this.image.visible) for (const image of this.image.children) found = this.met(ray, image.scale.toArray(), found)
+      if (this.image.visible)
+        for (const image of this.image.children) found = this.met(ray, image.scale.toArray(), found)
     }
     if (line && (!found || line.depth <= found.hit.t * (1 + 1e-3) + 1e-9)) return line
     if (!found) return null
@@ -703,7 +829,9 @@ export class View {
     if (item.field && this.paint === 'field') {
       const { field, components, triangle } = item
       const { at, weights } = found.hit
-      value = Array.from({ length: components }, (_, c) => weights.reduce((sum, w, k) => sum + w * field[triangle[at + k] * components + c], 0))
+      value = Array.from({ length: components }, (_, c) =>
+        weights.reduce((sum, w, k) => sum + w * field[triangle[at + k] * components + c], 0),
+      )
     }
     return { object: item.object, kind: item.kind, point: ray.at(found.hit.t, new Vector3()), value }
   }
@@ -720,7 +848,11 @@ export class View {
       const { origin, position, edge } = item
       const flat = new Float64Array((2 * position.length) / 3)
       for (let k = 0; 3 * k < position.length; k++) {
-        const [px, py, pz] = [position[3 * k] + origin.x, position[3 * k + 1] + origin.y, position[3 * k + 2] + origin.z]
+        const [px, py, pz] = [
+          position[3 * k] + origin.x,
+          position[3 * k + 1] + origin.y,
+          position[3 * k + 2] + origin.z,
+        ]
         const scale = 1 / (m[3] * px + m[7] * py + m[11] * pz + m[15])
         flat[2 * k] = w + w * scale * (m[0] * px + m[4] * py + m[8] * pz + m[12])
         flat[2 * k + 1] = h - h * scale * (m[1] * px + m[5] * py + m[9] * pz + m[13])
