@@ -7,6 +7,7 @@ import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDe
 import { Annotation, type Extension, StateEffect, type Transaction } from '@codemirror/state'
 import type { EditorView, ViewUpdate } from '@codemirror/view'
 import { h } from './dom'
+import { icon } from './icons'
 
 /** What a step is called in the list. */
 export const called = Annotation.define<string>()
@@ -88,29 +89,10 @@ export class Steps {
   }
 }
 
-const icon = (path: string) => {
-  const box = h('span', { class: 'sign', 'aria-hidden': 'true' })
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg')
-  svg.setAttribute('viewBox', '0 0 16 16')
-  const line = document.createElementNS('http://www.w3.org/2000/svg', 'path')
-  line.setAttribute('d', path)
-  svg.append(line)
-  box.append(svg)
-  return box
-}
-
 /** Buttons and the list. `go` takes that many steps back, or does them again when it is negative. */
 export function historyButtons(steps: Steps, go: (count: number) => void, listed: boolean): HTMLElement {
-  const back = h(
-    'button',
-    { class: 'icon', 'aria-label': 'undo', onclick: () => go(1) },
-    icon('M6 3 2.5 6.5 6 10M2.5 6.5H10a3.5 3.5 0 0 1 0 7H7'),
-  )
-  const again = h(
-    'button',
-    { class: 'icon', 'aria-label': 'redo', onclick: () => go(-1) },
-    icon('M10 3l3.5 3.5L10 10M13.5 6.5H6a3.5 3.5 0 0 0 0 7h3'),
-  )
+  const back = h('button', { class: 'icon', 'aria-label': 'undo', onclick: () => go(1) }, icon('undo'))
+  const again = h('button', { class: 'icon', 'aria-label': 'redo', onclick: () => go(-1) }, icon('redo'))
   const open = h(
     'button',
     {

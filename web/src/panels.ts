@@ -47,6 +47,13 @@ export function stepped(value: number, low: number, high: number, whole: boolean
   return Number(value.toFixed(decimals))
 }
 
+/** The name of a part with its point, when all names begin with it. */
+export function commonPrefix(names: string[]): string {
+  const first = names[0] ?? ''
+  const prefix = first.slice(0, first.lastIndexOf('.') + 1)
+  return names.every((n) => n.startsWith(prefix)) ? prefix : ''
+}
+
 export function parametersPanel(host: HTMLElement, act: Actions): void {
   const rows = new Map<
     string,
@@ -69,6 +76,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   function build(): void {
     box.textContent = ''
     rows.clear()
+    const prefix = commonPrefix(model.params.map((p) => p.name))
     for (const p of model.params) {
       const { low, high, stated } = rangeOf(p)
       const slider = h('input', {
@@ -83,8 +91,12 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       })
       const field = h('input', { type: 'text', class: 'number', 'aria-label': `${p.name}, value`, disabled: act.still })
       const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
-      const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
-      const row = h('div', { class: 'param' }, name, field, reset, slider)
+      const name = h(
+        'button',
+        { class: 'link name', title: `${p.name}: show in the program` },
+        p.name.slice(prefix.length),
+      )
+      const row = h('div', { class: 'param' }, name, slider, field, reset)
       const entry = { row, slider, field, reset, p, wanted: null as number | null, from: p.value }
       /** Keys come one by one: what they do is written when they rest. */
       let keys = false

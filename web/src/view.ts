@@ -26,12 +26,17 @@ import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js'
 import { Camera } from './camera'
+import { Cap } from './cap'
 import { coloured, HUES, hex, type Scale, scale } from './colour'
+import { creases, isTriangulation } from './creases'
 import type { Frame, Part } from './frame'
 import { type Hit, hit } from './pick'
 
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
 export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
+
+/** Edges of triangulations are looked for when nothing has come for this long, in ms. */
+const CREASE_DELAY = 120
 
 const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3, reflection: 4 }
 
@@ -96,7 +101,14 @@ export interface Drawn {
   group: Group
   geometry: BufferGeometry
   mesh: Mesh | null
-  lines: { edge: LineSegments | null; rim: LineSegments2 | null; curve: LineSegments2 | null }
+  lines: {
+    edge: LineSegments | null
+    rim: LineSegments2 | null
+    crease: LineSegments2 | null
+    curve: LineSegments2 | null
+  }
+  /** True where the sides of panels are no lines of the shape. */
+  triangulated: boolean
   box: Box3
 }
 
@@ -133,6 +145,8 @@ export class View {
   selected = ''
   hovered = ''
   onFrame: () => void = () => {}
+  /** Picture points at the top that are covered. */
+  covered: () => number = () => 0
   /** The axes across which the model is mirrored. */
   mirrored = ''
   private readonly renderer: WebGLRenderer
@@ -142,7 +156,9 @@ export class View {
   private readonly extras = new Group()
   private readonly others = new Group()
   private readonly cut = new Group()
-  private readonly dots: Points
+  /** The hatched face of a section. */
+  readonly cap: Cap
+  private readonly cloud: Points
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
   private readonly uniforms = {
@@ -164,11 +180,12 @@ export class View {
   readonly silent = new URLSearchParams(location.search).has('norender')
 
   constructor(host: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true })
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true, preserveDrawingBuffer: true })
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
-    this.scene.add(this.model, this.image, this.extras, this.others, this.cut)
+    this.cap = new Cap(this.renderer.getPixelRatio())
+    this.scene.add(this.model, this.image, this.extras, this.others, this.cut, this.cap.group)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
       vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
@@ -176,9 +193,9 @@ export class View {
       fragmentShader: `varying vec3 vTint; void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
         gl_FragColor = vec4(r > 0.34 ? vec3(1.0) : vTint, 1.0); }`,
     })
-    this.dots = new Points(new BufferGeometry(), material)
-    this.dots.frustumCulled = false
-    this.scene.add(this.dots)
+    this.cloud = new Points(new BufferGeometry(), material)
+    this.cloud.frustumCulled = false
+    this.scene.add(this.cloud)
     new ResizeObserver(() => this.resize(host)).observe(host)
     this.resize(host)
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault())
@@ -209,6 +226,7 @@ export class View {
     for (const item of head.items ?? []) this.put(frame, item)
     if (!head.items && !head.all && head.mirror === undefined) return false
     this.settle()
+    this.crease()
     return true
   }
 
@@ -235,7 +253,8 @@ export class View {
         group: new Group(),
         geometry: new BufferGeometry(),
         mesh: null,
-        lines: { edge: null, rim: null, curve: null },
+        lines: { edge: null, rim: null, crease: null, curve: null },
+        triangulated: false,
         box: new Box3(),
       }
       this.items.set(key, item)
@@ -284,7 +303,9 @@ export class View {
     if (item.kind === 'patch') {
       if (resized) {
         g.setIndex(new BufferAttribute(item.triangle, 1))
-        for (const o of [item.mesh, item.lines.edge, item.lines.rim]) if (o) item.group.remove(o)
+        for (const o of [item.mesh, item.lines.edge, item.lines.rim, item.lines.crease]) if (o) item.group.remove(o)
+        item.lines.crease = null
+        item.triangulated = isTriangulation(item.triangle, item.edge, item.rim)
         item.mesh = new Mesh(g, this.material('', 0, 1))
         const edges = new BufferGeometry()
         edges.setAttribute('position', g.getAttribute('position'))
@@ -296,12 +317,31 @@ export class View {
         if (item.lines.edge) item.lines.edge.geometry.boundingSphere = null
         this.refat(item.lines.rim!, item.rim, item.position)
       }
+      if (item.triangulated) this.uncreased.add(item)
     } else if (resized || !item.lines.curve) {
       if (item.lines.curve) item.group.remove(item.lines.curve)
       item.lines.curve = this.fat(item.edge, item.position, item.kind)
       item.group.add(item.lines.curve)
     } else this.refat(item.lines.curve, item.edge, item.position)
     if (!item.group.parent) this.model.add(item.group)
+  }
+
+  /** Edges of triangulations wait until nothing moves: they are looked for among all sides. */
+  private readonly uncreased = new Set<Drawn>()
+  private creasing = 0
+  private crease(): void {
+    clearTimeout(this.creasing)
+    if (!this.uncreased.size) return
+    this.creasing = window.setTimeout(() => {
+      for (const item of this.uncreased) {
+        if (!this.items.has(item.key)) continue
+        if (item.lines.crease) item.group.remove(item.lines.crease)
+        item.lines.crease = this.fat(creases(item.position, item.triangle, item.edge), item.position, 'rim')
+        item.group.add(item.lines.crease)
+      }
+      this.uncreased.clear()
+      this.settle()
+    }, CREASE_DELAY)
   }
 
   private segments(index: Uint32Array, position: Float32Array): Float32Array {
@@ -411,6 +451,7 @@ export class View {
 
   theme(dark: boolean): void {
     this.dark = dark
+    this.cap.theme(dark)
     this.ink()
     this.settle()
   }
@@ -427,7 +468,7 @@ export class View {
       item.group.visible = seen
       if (seen) this.bounds.union(item.box)
       if (item.kind === 'point') {
-        if (seen) this.dotItems.push(item)
+        if (seen && this.kept(item)) this.dotItems.push(item)
         continue
       }
       const marked = item.object === this.selected ? 'chosen' : item.object === this.hovered ? 'hover' : ''
@@ -440,7 +481,12 @@ export class View {
           item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
         item.mesh.material = this.material('', grey, opacity, tinted, colour)
         item.mesh.visible = this.style !== 'wire'
-        item.lines.edge!.visible = this.style !== 'smooth'
+        const panels = this.style === 'panels' || this.style === 'wire'
+        item.lines.edge!.visible = panels || (this.style !== 'smooth' && !item.triangulated)
+        if (item.lines.crease) {
+          item.lines.crease.visible = this.style !== 'smooth' && !this.uncreased.has(item)
+          item.lines.crease.material = this.line(marked || 'rim') as LineMaterial
+        }
         item.lines.edge!.material = this.line('edge') as LineBasicMaterial
         item.lines.rim!.visible = this.style !== 'smooth' || !!marked
         item.lines.rim!.material = this.line(marked || 'rim') as LineMaterial
@@ -457,6 +503,21 @@ export class View {
     return (this.layers[item.kind] ?? true) && !this.hidden.has(item.object)
   }
 
+  /** Draws the points that a section keeps. */
+  dots(): void {
+    this.dotItems = [...this.items.values()].filter((i) => i.kind === 'point' && this.seen(i) && this.kept(i))
+    this.placeDots()
+    this.draw()
+  }
+
+  /** Whether a section keeps a point. */
+  private kept(item: Drawn): boolean {
+    const { clip } = this
+    if (!clip) return true
+    const x = item.position[clip.axis] + item.origin.getComponent(clip.axis)
+    return (clip.flip ? 1 : -1) * (x - clip.value) >= 0
+  }
+
   private placeDots(): void {
     const n = this.dotItems.length
     const [position, tint, big] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)]
@@ -466,7 +527,7 @@ export class View {
       tint.set(marked ? hex(0xe8711a) : item.stale ? hex(0x9aa3ad) : hex(this.dark ? 0xf0c46a : 0x7a4d0b), 3 * k)
       big[k] = marked ? 1.6 : 1
     })
-    const g = this.dots.geometry
+    const g = this.cloud.geometry
     g.dispose()
     g.setAttribute('position', new BufferAttribute(position, 3))
     g.setAttribute('tint', new BufferAttribute(tint, 3))
@@ -494,6 +555,12 @@ export class View {
       this.image.add(image)
       this.bounds.union(box)
     }
+  }
+
+  /** The signs of the coordinates of what is drawn: of the model itself, and of its mirror images. */
+  images(): [number, number, number][] {
+    const images = this.image.visible ? this.image.children : []
+    return [[1, 1, 1], ...images.map((i) => i.scale.toArray())]
   }
 
   private twins(image: Group): void {
@@ -722,6 +789,8 @@ export class View {
         const geometry = new LineSegmentsGeometry()
         geometry.setPositions(flat)
         const material = new LineMaterial({ linewidth: width, color: colour, depthTest: false, transparent: true })
+        // A section takes nothing of what is drawn over the model.
+        material.clipping = false
         material.resolution.copy(this.resolution)
         const lines = new LineSegments2(geometry, material)
         lines.name = name
@@ -736,7 +805,9 @@ export class View {
     return this.bounds
   }
 
+  /** Shows all in what the bars over the picture leave free. */
   fit(): void {
+    this.camera.inset = this.covered() / this.resolution.y
     this.camera.fit(this.bounds, this.resolution.x / this.resolution.y)
     this.draw()
   }
@@ -818,9 +889,7 @@ export class View {
     const { ray } = this.ray(x, y)
     let found: Met | null = null
     if (this.style !== 'wire') {
-      found = this.met(ray, [1, 1, 1], null)
-      if (this.image.visible)
-        for (const image of this.image.children) found = this.met(ray, image.scale.toArray(), found)
+      for (const signs of this.images()) found = this.met(ray, signs, found)
     }
     if (line && (!found || line.depth <= found.hit.t * (1 + 1e-3) + 1e-9)) return line
     if (!found) return null
