@@ -34,6 +34,7 @@ export const SHEETS: [SheetName, string][] = [
   ['mesh', 'Mesh'],
   ['graph', 'Dependencies'],
   ['curvature', 'Curvature'],
+  ['tables', 'Tables'],
 ]
 
 /** Colours that the engine computes at the vertices: name of the field, words. */

@@ -86,8 +86,8 @@ export async function openLink(app: App): Promise<void> {
   }
 }
 
-/** A file that was dropped: a program is opened, another one is laid over the model. */
-async function dropped(app: App, file: File): Promise<void> {
+/** A file that was chosen or dropped: a program is opened, another one is laid over the model. */
+export async function openFile(app: App, file: File): Promise<void> {
   if (!PROGRAM.test(file.name)) return app.foreign.lay(file)
   const ending = (name: string) => name.split('.').pop()!.toLowerCase()
   if (ending(file.name) !== ending(model.name))
@@ -107,6 +107,6 @@ export function installDrop(app: App, host: HTMLElement): void {
     e.preventDefault()
     if (app.link.still) return
     for (const file of e.dataTransfer?.files ?? [])
-      void dropped(app, file).catch((error) => app.shell.say(error.message))
+      void openFile(app, file).catch((error) => app.shell.say(error.message))
   })
 }

@@ -9,7 +9,7 @@ import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
 import { Editor } from './editor'
-import { copyLink, download, give, installDrop, openLink } from './files'
+import { copyLink, download, give, installDrop, openFile, openLink } from './files'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
@@ -21,7 +21,7 @@ import { Cell } from './notebook'
 import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
 import { help, palette } from './palette'
-import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel } from './panels'
+import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
 import { Rooms } from './rooms'
 import { Saving } from './saving'
 import { SectionPlane } from './section'
@@ -29,7 +29,9 @@ import { Sheets } from './sheets'
 import { makeShell, themes } from './shell'
 import { startPage } from './start'
 import { changed, model, on } from './state'
+import { tablesOf, tablesSheet } from './tables'
 import { buildToolbar } from './toolbar'
+import { treePanel } from './tree'
 import { typed } from './typed'
 import { View } from './view'
 
@@ -227,11 +229,12 @@ const start = startPage({
     editor.replace(text, false, false, name)
   },
   add: (kind) => void editor.synced().then(() => making.open(kind)),
+  open: (file) => void openFile(app, file).catch((error) => say((error as Error).message)),
 })
 shell.stage.append(start)
 editor.steps.onText = () => (start.hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name))
 const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name))
-const sheets = new Sheets(shell.sheet, link, actions)
+const sheets = new Sheets(shell.sheet, link, actions, () => tablesSheet(editor, actions))
 const section = new SectionPlane(view, shell.section, {
   say,
   typed: actions.typed,
@@ -330,7 +333,12 @@ const floats = () => view.mirrored.includes('y') && view.box.min.z < 0 && view.b
 
 /** Sheets that say nothing of this model have no tab; the palette still has them. */
 function fitTabs(): void {
-  const means: Record<string, boolean> = { lines: view.mirrored.includes('y'), hydrostatics: floats(), areas: floats() }
+  const means: Record<string, boolean> = {
+    lines: view.mirrored.includes('y'),
+    hydrostatics: floats(),
+    areas: floats(),
+    tables: tablesOf(editor).length > 0,
+  }
   for (const [name, on] of Object.entries(means)) {
     const t = shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)!
     t.hidden = !on && t.getAttribute('aria-selected') !== 'true'
@@ -543,6 +551,7 @@ Object.assign(window, {
     positions: (object: string) =>
       [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
+    over: (name: string) => view.drawnOver(name),
     get board() {
       return rooms.loaded.board
     },

@@ -48,9 +48,10 @@ export function palette(all: Command[], words = ''): void {
   input.addEventListener('keydown', (e) => {
     if (e.key === 'ArrowDown') at++
     else if (e.key === 'ArrowUp') at--
-    else if (e.key === 'Enter') return run(found[at])
-    else return
+    else if (e.key !== 'Enter') return
+    // The button that opened the palette has the focus again, and would be pressed by the same key.
     e.preventDefault()
+    if (e.key === 'Enter') return run(found[at])
     at = (at + found.length) % Math.max(1, found.length)
     build()
   })

@@ -5,11 +5,21 @@ import { type Link, Newest } from './link'
 import type { Actions } from './panels'
 import { model, on } from './state'
 
-export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'areas' | 'mesh' | 'graph' | 'curvature'
+export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'areas' | 'mesh' | 'graph' | 'curvature' | 'tables'
 
 export class Sheets {
   current: SheetName = 'model'
   private readonly requests = new Newest<void>(() => this.build())
+  private readonly makers: Record<SheetName, () => (Element | string)[] | Promise<(Element | string)[]>> = {
+    model: () => [],
+    lines: () => this.lines(),
+    hydrostatics: () => this.hydrostatics(),
+    areas: () => this.areas(),
+    mesh: () => this.mesh(),
+    graph: () => this.graph(),
+    curvature: () => this.curvature(),
+    tables: () => this.tables(),
+  }
   private urls: string[] = []
   private marked: Record<string, number> | null = null
   private curve: Curve | null = null
@@ -18,6 +28,7 @@ export class Sheets {
     private readonly host: HTMLElement,
     private readonly link: Link,
     private readonly act: Actions & { selected: () => string },
+    private readonly tables: () => HTMLElement[],
   ) {
     on(['rev'], () => this.refresh())
     on('selection', () => (this.current === 'graph' || this.current === 'curvature') && this.refresh())
@@ -37,20 +48,11 @@ export class Sheets {
   private async build(): Promise<void> {
     const name = this.current
     try {
-      const made = await (name === 'lines'
-        ? this.lines()
-        : name === 'hydrostatics'
-          ? this.hydrostatics()
-          : name === 'areas'
-            ? this.areas()
-            : name === 'mesh'
-              ? this.mesh()
-              : name === 'graph'
-                ? this.graph()
-                : name === 'curvature'
-                  ? this.curvature()
-                  : [])
+      const made = await this.makers[name]()
+      // The focus stays in the cell that it came to.
+      const cell = (document.activeElement as HTMLElement | null)?.dataset.cell
       if (this.current === name && name !== 'model') this.host.replaceChildren(...made)
+      if (cell) this.host.querySelector<HTMLElement>(`[data-cell="${CSS.escape(cell)}"]`)?.focus()
     } catch (error) {
       if (this.current === name && (error as Error).message !== 'superseded')
         this.host.replaceChildren(h('p', { class: 'quiet pad' }, (error as Error).message))

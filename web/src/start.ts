@@ -12,6 +12,8 @@ export interface StartActions {
   begin(text: string, name: string, reach?: number): void
   /** Opens the form of a kind, or the list of all. */
   add(kind?: string): void
+  /** Opens a program of a file. */
+  open(file: File): void
 }
 
 const TEMPLATES: [string, string, string][] = [
@@ -47,6 +49,8 @@ export function startPage(act: StartActions): HTMLElement {
   }
   const card = (title: string, words: string, run: () => void) =>
     h('button', { class: 'template', onclick: run }, h('strong', {}, title), h('span', { class: 'quiet' }, words))
+  const chosen = h('input', { type: 'file', accept: '.sdl,.ms2', 'aria-label': 'open a program', hidden: true })
+  chosen.addEventListener('change', () => chosen.files?.[0] && act.open(chosen.files[0]))
   return h(
     'section',
     { class: 'start', 'aria-label': 'start', hidden: true },
@@ -57,6 +61,8 @@ export function startPage(act: StartActions): HTMLElement {
       h('label', {}, 'in ', unit),
       h('label', {}, mirrored, ' mirrored in y = 0'),
       h('button', { class: 'primary', onclick: empty }, 'Begin with points'),
+      h('button', { onclick: () => chosen.click() }, 'Open a file…'),
+      chosen,
     ),
     h('h2', {}, 'Or from an example'),
     h(

@@ -7,6 +7,7 @@ import {
   Color,
   DoubleSide,
   Group,
+  type InterleavedBufferAttribute,
   LineBasicMaterial,
   LineSegments,
   Matrix4,
@@ -799,6 +800,15 @@ export class View {
       }
     }
     this.draw()
+  }
+
+  /** The places of what is drawn besides under a name: ends of segments, three numbers each; null where nothing is. */
+  drawnOver(name: string): number[] | null {
+    const lines = this.extras.children.find((c) => c.name === name) as LineSegments2 | LineSegments | undefined
+    if (!lines) return null
+    if (!(lines instanceof LineSegments2)) return Array.from(lines.geometry.getAttribute('position').array)
+    const ends = lines.geometry.getAttribute('instanceStart') as InterleavedBufferAttribute
+    return Array.from(ends.data.array)
   }
 
   get box(): Box3 {

@@ -201,7 +201,10 @@ def _carried(
 def _assembled(name: str, data: str, engine: bytes | None) -> str:
     """One file of the built page's parts. What a model says is data, and never ends its element."""
     index, script, styles = page_parts()
-    module, sheet = r"<script type=\"module\"[^>]*></script>", r"<link rel=\"(?:stylesheet|modulepreload)\"[^>]*>"
+    module, sheet = (
+        r"<script type=\"module\"[^>]*></script>",
+        r"<link rel=\"(?:stylesheet|modulepreload)\"[^>]*>",
+    )
     index = re.sub(rf"\s*(?:{module}|{sheet})", "", index)
     script = re.sub(r"</(script)", r"<\\/\1", script, flags=re.I).replace("<!--", "<\\!--")
     policy = _POLICY.format(engine="" if engine is None else _ENGINE_POLICY)
