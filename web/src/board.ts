@@ -3,8 +3,10 @@
 import { redo, undo } from '@codemirror/commands'
 import './board.css'
 import { BoardBox } from './board_box'
+import { duplicated, labels } from './board_edit'
 import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter } from './board_paint'
 import { BoardSolid, type SolidFacts } from './board_solid'
+import { Underlay } from './board_underlay'
 import { h, s } from './dom'
 import type { Editor } from './editor'
 import type { Facts } from './frame'
@@ -31,6 +33,8 @@ const PRESETS: [string, string][] = [
 ]
 /** Pixels: what a pointer reaches, what is a click, and how long a touch is no palm after a pen, ms. */
 const [REACH, CLICK, PALM] = [11, 5, 500]
+/** A duplicate is this far from what it was made of, in pixels. */
+const DUPLICATED = 24
 /** How long a hand rests before bodies and doubts are looked for, ms. */
 const REST = 60
 /** A number, with or without a unit; the rest is an expression, in quotes. */
@@ -62,6 +66,7 @@ export class Board {
   })
   private readonly page = new Page()
   private readonly painter = new Painter(this.svg, this.page)
+  private readonly underlay = new Underlay(this.page, () => (this.buttons(), this.paint()))
   private readonly solid = new BoardSolid()
   private readonly bar = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
   private readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
@@ -133,6 +138,7 @@ export class Board {
     private readonly editor: Editor,
     private readonly say: (words: string) => void,
   ) {
+    this.svg.prepend(this.underlay.image)
     this.box = new BoardBox(this.page, {
       commit: (mark, value) => this.dimension(mark, value),
       leave: () => this.svg.focus(),
@@ -142,7 +148,7 @@ export class Board {
     const help = h(
       'p',
       { class: 'sr', id: 'board-help' },
-      'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes. The command line takes every sketch command.',
+      'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
     )
     this.element.append(
       this.bar,
@@ -283,6 +289,7 @@ export class Board {
 
   private paint(): void {
     this.measurePage()
+    this.underlay.draw()
     this.painter.draw(this.drawn, {
       chosen: this.chosen,
       checks: this.checks,
@@ -394,6 +401,7 @@ export class Board {
         ? [button(`Accept ${this.proposed.size} proposed`, 'T', () => void this.acceptProposed())]
         : []),
       h('span', { class: 'grow' }),
+      ...this.underlay.controls(this.say),
       action,
       button('Fit', '0', () => this.fit()),
     )
@@ -865,6 +873,10 @@ export class Board {
       e.stopPropagation()
     }
     if (e.ctrlKey || e.metaKey) {
+      if (key === 'd') {
+        this.duplicate()
+        return done()
+      }
       if (key !== 'z' && key !== 'y') return
       done()
       this.endChain()
@@ -875,7 +887,7 @@ export class Board {
       return
     }
     if (e.altKey || /^F\d/.test(e.key)) return
-    const lines = [...this.chosen].filter((c) => c[0] === 'l').map((c) => Number(c.slice(1)))
+    const lines = labels(this.chosen, 'l')
     if (key in TYPES) {
       const type = TYPES[key]
       const own = this.drawn.section && type.length > 1 ? 'F' : letter(type, null)
@@ -924,7 +936,7 @@ export class Board {
   }
 
   private nudge([du, dv]: Place): void {
-    const points = [...this.chosen].filter((c) => c[0] === 'p').map((c) => Number(c.slice(1)))
+    const points = labels(this.chosen, 'p')
     if (!points.length) {
       this.page.pan(-du * 30 * this.page.scale, dv * 30 * this.page.scale)
       return this.paint()
@@ -937,9 +949,19 @@ export class Board {
     )
   }
 
+  private duplicate(): void {
+    const by = DUPLICATED / this.page.scale
+    const { commands, chosen } = duplicated(this.drawn, this.chosen, [by, -by])
+    if (!commands.length) return this.say('choose lines or points to duplicate')
+    void this.act([{ do: 'run', command: commands.join('; ') }]).then((fine) => {
+      if (!fine) return
+      this.chosen = new Set(chosen)
+      this.paint()
+    })
+  }
+
   private remove(): void {
-    const of = (kind: string) => [...this.chosen].filter((c) => c[0] === kind).map((c) => c.slice(1))
-    const [points, lines] = [of('p'), of('l')]
+    const [points, lines] = [labels(this.chosen, 'p'), labels(this.chosen, 'l')]
     this.chosen.clear()
     const commands = [
       lines.length && `DELETE LINE ${lines.join(' ')}`,

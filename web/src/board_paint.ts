@@ -301,6 +301,8 @@ export class Painter {
         mid: 'middle',
         line: 'on the line',
         axis: `along ${(aim.axes ?? []).join().toLowerCase()}`,
+        extension: `extension of ${(aim.axes ?? []).join()}`,
+        parallel: `parallel to ${(aim.axes ?? []).join()}`,
       }
       parts.push(s('circle', { class: `snap ${aim.why ?? 'free'}`, cx: at[0], cy: at[1], r: aim.why ? 6 : 3 }))
       if (aim.why && aim.why !== 'point')
