@@ -1,4 +1,4 @@
-"""The picture by hand: numbers that are given, ghost, control polygon, cube, sections, files, links."""
+"""The picture by hand: given numbers, ghost, control polygon, cube, sections, files, links."""
 
 from __future__ import annotations
 
@@ -277,7 +277,7 @@ def test_files_come_out_of_the_page(bench: Callable[..., Bench], cli: Run, tmp_p
         ("iges", "hull.igs", b""),
         ("3mf", "hull.3mf", b"PK"),
         ("glb", "hull.glb", b"glTF"),
-        ("svg", "hull.svg", b"<"),
+        ("svg", "hull.body-plan.svg", b"<"),
         ("picture as", "hull.png", b"\x89PNG"),
     ):
         found, data = exported(b, words)
@@ -289,8 +289,8 @@ def test_files_come_out_of_the_page(bench: Callable[..., Bench], cli: Run, tmp_p
     b.hand("settled()")
     _, stl = exported(b, "stl, ")
     (tmp_path / "now.sdl").write_text(b.text(), encoding="utf-8")
-    cli("export", "now.sdl", "now.stl")
-    assert stl[80:] == (tmp_path / "now.stl").read_bytes()[80:]
+    cli("build", "now.sdl", "--to", "stl", "-o", "out")
+    assert stl[80:] == (tmp_path / "out" / "now.stl").read_bytes()[80:]
     assert b.text() != HULL and not b.faults
 
 
@@ -397,7 +397,7 @@ def test_columns_of_a_program_are_a_table(bench: Callable[..., Bench]) -> None:
     cell.press("Enter")
     b.hand("settled()")
     assert b.text() == text.replace(".75", "0.75")
-    # The next cell has the focus; what is no number is refused, and the cell shows what the model has.
+    # The next cell has the focus; what is no number is refused, and the cell is as it was.
     last = b.page.get_by_label("h, row 3", exact=True)
     b.until(lambda: last.evaluate("e => e === document.activeElement"))
     last.fill("nobody")

@@ -298,8 +298,14 @@ const app: App = {
 
 // Tabs over the picture.
 
+/** The state of the model when it was last seen. */
+let seen = -1
 async function sheet(name: TabName): Promise<void> {
   const inRoom = name === 'board' || name === 'desk'
+  const { room } = document.body.dataset
+  if (inRoom) document.body.dataset.room = name
+  else delete document.body.dataset.room
+  if (inRoom && !room) seen = model.rev
   sheets.show(inRoom ? 'model' : name)
   shell.toolbar.hidden = shell.view.hidden = name !== 'model'
   shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)?.removeAttribute('hidden')
@@ -309,6 +315,8 @@ async function sheet(name: TabName): Promise<void> {
     t.tabIndex = on ? 0 : -1
   }
   await rooms.show(inRoom ? name : null)
+  // What was made in a room is seen whole.
+  if (room && !inRoom && seen !== model.rev) view.fit()
 }
 
 function tab(name: TabName, words: string): HTMLElement {

@@ -1,6 +1,7 @@
 // Parameters, objects, the inspector, messages and the strip of numbers.
 
 import { h, shown, store, stored } from './dom'
+import { FIGURES, unitOf } from './figures'
 import type { GivenNumbers } from './numbers'
 import { changed, type Fault, model, on, type Param } from './state'
 
@@ -520,22 +521,6 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   })
 }
 
-/** Numbers of the whole model: the power of the unit of length, and what they are in full. */
-const KNOWN: Record<string, [number, string]> = {
-  'mesh.area': [2, 'area of one side of all panels'],
-  'mesh.volume': [3, 'volume that the panels enclose'],
-  'hydrostatics.volume': [3, 'immersed volume, both sides'],
-  'hydrostatics.wetted_area': [2, 'wetted area, both sides'],
-  'hydrostatics.waterplane_area': [2, 'area of the waterplane, both sides'],
-  'hydrostatics.lcb': [1, 'longitudinal centre of buoyancy'],
-  'hydrostatics.vcb': [1, 'vertical centre of buoyancy'],
-  'hydrostatics.draft': [1, 'draught'],
-  'hydrostatics.kmt': [1, 'transverse metacentre above the keel'],
-  'hydrostatics.kb': [1, 'centre of buoyancy above the keel'],
-  'hydrostatics.cb': [0, 'block coefficient'],
-  'hydrostatics.cp': [0, 'prismatic coefficient'],
-}
-
 export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement) => GivenNumbers): void {
   const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
   const add = h('input', {
@@ -547,7 +532,7 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
     disabled: act.still,
   })
   const list = h('datalist', { id: 'watchable' })
-  for (const [word, [, about]] of Object.entries(KNOWN)) list.append(h('option', { value: word, label: about }))
+  for (const [word, [, about]] of Object.entries(FIGURES)) list.append(h('option', { value: word, label: about }))
   const numbers = given(host)
   const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
   host.append(box, add, list, setMark)
@@ -564,10 +549,6 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
     act.watch([...model.watched.map((w) => w.expression), add.value.trim()])
     add.value = ''
   })
-  const unit = (expression: string) => {
-    const power = KNOWN[expression]?.[0] ?? 0
-    return power && model.unit ? `${model.unit}${['', '', '²', '³'][power]}` : ''
-  }
   function build(): void {
     // A number that is dragged keeps its element.
     if (numbers.busy) return numbers.follow()
@@ -582,13 +563,13 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
           'span',
           {
             class: `number-box ${w.error ? 'bad' : ''}`,
-            title: w.error ?? (KNOWN[w.expression] ? `${w.expression}: ${KNOWN[w.expression][1]}` : w.expression),
+            title: w.error ?? (FIGURES[w.expression] ? `${w.expression}: ${FIGURES[w.expression][1]}` : w.expression),
           },
           h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')),
           value !== null && !act.still && model.params.length
             ? numbers.handle(w.expression, value)
             : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
-          value !== null && unit(w.expression) ? h('span', { class: 'unit' }, unit(w.expression)) : '',
+          value !== null && unitOf(w.expression) ? h('span', { class: 'unit' }, unitOf(w.expression)) : '',
           delta
             ? h(
                 'span',

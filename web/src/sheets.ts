@@ -1,6 +1,7 @@
 // What is shown beside the picture: lines plan, hydrostatics, mesh, digraph, curvature; all follow the model.
 
 import { h, s, shown } from './dom'
+import { FIGURES, unitOf } from './figures'
 import { type Link, Newest } from './link'
 import type { Actions } from './panels'
 import { model, on } from './state'
@@ -76,7 +77,8 @@ export class Sheets {
 
   private async hydrostatics(): Promise<HTMLElement[]> {
     const { head } = await this.link.ask('hydrostatics')
-    const figures = head.figures as [string, number | string][]
+    // No density is known to a model, so that it has a volume and no mass.
+    const figures = (head.figures as [string, number | string][]).filter(([name]) => name !== 'displacement')
     const now = Object.fromEntries(figures.filter(([, x]) => typeof x === 'number')) as Record<string, number>
     this.marked ??= now
     const marked = this.marked
@@ -85,8 +87,9 @@ export class Sheets {
       return h(
         'tr',
         {},
-        h('th', { scope: 'row' }, name.replace(/_/g, ' ')),
+        h('th', { scope: 'row', title: `hydrostatics.${name}` }, FIGURES[`hydrostatics.${name}`]?.[1] ?? name),
         h('td', { class: 'mono' }, shown(x)),
+        h('td', { class: 'quiet' }, unitOf(`hydrostatics.${name}`)),
         h(
           'td',
           { class: `mono delta ${d > 0 ? 'up' : d < 0 ? 'down' : ''}` },
@@ -100,16 +103,23 @@ export class Sheets {
         'div',
         { class: 'pad' },
         h('h3', {}, 'Hydrostatics'),
-        h(
-          'p',
-          { class: 'quiet' },
-          `At the waterplane z = 0; lengths in ${model.unit}. The third column is the change since the mark.`,
-        ),
+        h('p', { class: 'quiet' }, 'At the waterplane z = 0, both sides.'),
         again,
         h(
           'table',
           {},
-          h('thead', {}, h('tr', {}, h('th', {}, 'figure'), h('th', {}, 'value'), h('th', {}, 'change'))),
+          h(
+            'thead',
+            {},
+            h(
+              'tr',
+              {},
+              h('th', {}, 'figure'),
+              h('th', {}, 'value'),
+              h('th', {}, 'unit'),
+              h('th', {}, 'since the mark'),
+            ),
+          ),
           h('tbody', {}, ...rows),
         ),
       ),
@@ -174,7 +184,11 @@ export class Sheets {
         'div',
         { class: 'pad' },
         h('h3', {}, `${head.panels} panels, ${head.vertices} vertices, ${state}`),
-        h('p', {}, `Area of the panels ${shown(head.area)}, volume ${shown(head.volume)}.`),
+        h(
+          'p',
+          {},
+          `Area of the panels ${shown(head.area)} ${unitOf('mesh.area')}, volume ${shown(head.volume)} ${unitOf('mesh.volume')}.`,
+        ),
         leaks.length ? h('h4', {}, 'Open edges that nothing closes') : '',
         leaks.length ? h('ul', {}, ...leaks) : '',
         h(
@@ -191,7 +205,7 @@ export class Sheets {
           ),
           h('tbody', {}, ...rows),
         ),
-        h('p', { class: 'quiet' }, 'The greatest of each patch.'),
+        h('p', { class: 'quiet' }, 'Worst value per patch.'),
       ),
     ]
   }

@@ -83,10 +83,10 @@ def snapped(
         for ray in _rays(point, through, directions, at)
         if ray.off <= reach
     ]
-    along = _lines_at(session, name, places, directions, woken)
+    ways = _lines_at(session, name, places, directions, woken)
     strong = [r for r in _rays(0, start, directions, at) if r.off <= reach] if start else []
     lively = [r for r in rays if r.point in woken]
-    for point, lines in along.items():
+    for point, lines in ways.items():
         lively += [r for r in _rays(point, places[point], lines, at, "extension") if r.off <= reach]
         if start:
             strong += [r for r in _rays(0, start, lines, at, "parallel") if r.off <= reach]
