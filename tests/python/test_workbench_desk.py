@@ -344,9 +344,9 @@ def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHan
     # The station is chosen in the list, its reading in the picture, and set free.
     page.get_by_role("listbox", name="lines").get_by_text("station 10", exact=True).click()
     d.settle()
-    d.click(3)
+    d.click(38)
     d.tool("Free")
-    state = d.click(3)
+    state = d.click(38)
     assert [line["inflections"][1] for line in state["facts"]["list"]] == [0] * 18
     page.get_by_role("button", name="Apply").click()
     d.settle()

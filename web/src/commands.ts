@@ -174,10 +174,10 @@ function objectCommands(app: App): Command[] {
 
 function analysisCommands(app: App): Command[] {
   const { analysis, foreign, planes, section, shell } = app
-  const fair = async () => {
-    await app.sheet('desk')
-    const object = app.actions.selected()
-    if (object) await (await app.rooms.load('desk')).open({ object })
+  const fair = () => {
+    const name = app.actions.selected()
+    if (name) app.actions.fair?.(name)
+    else shell.say('Select an object first')
   }
   return [
     { name: 'Measure between places', keys: 'D', run: () => toggleMeasure(app) },
@@ -201,7 +201,7 @@ function analysisCommands(app: App): Command[] {
       ? []
       : [
           { name: 'Fairing desk', run: () => void app.sheet('desk') },
-          { name: 'Fair the selected curve or surface', run: () => void fair() },
+          { name: 'Fair the selected curve or surface', run: fair },
         ]),
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => void app.sheet(n) })),
   ]

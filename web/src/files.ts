@@ -8,6 +8,9 @@ import { model } from './state'
 /** Endings of programs and model files, whose text takes the place of the program. */
 const PROGRAM = /\.(sdl|skt|ms2)$/i
 
+/** Formats that hold no surfaces. */
+const FLAT = new Set(['svg', 'png', 'sdl', 'ms2'])
+
 /** Offers a file for download. */
 export function give(app: Pick<App, 'host'>, blob: Blob, name: string): void {
   if (app.host) return void app.host.give(blob, name)
@@ -34,7 +37,9 @@ export async function download(app: App, kind: string): Promise<void> {
       give(app, new Blob([frame.bytes(part).slice()]), name)
       return name
     })
-    app.shell.say(names.length ? `${names.join(', ')}: made` : `${kind}: the model has nothing to write`)
+    const { mirrored } = app.view
+    const half = mirrored && !FLAT.has(kind) ? `: the model's own side, which is mirrored in ${mirrored}` : ''
+    app.shell.say(names.length ? `${names.join(', ')} made${half}` : `${kind}: the model has nothing to write`)
   } catch (error) {
     app.shell.say((error as Error).message)
   }

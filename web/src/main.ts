@@ -120,6 +120,7 @@ const actions: App['actions'] = {
     hide()
   },
   ghost: (on) => view.ghost(on),
+  fair: link.local ? null : (name) => void fair(name),
   isolate(name) {
     hidden.clear()
     if (name) for (const o of model.objects) if (o.name !== name) hidden.add(o.name)
@@ -176,6 +177,11 @@ function hide(): void {
   changed('objects')
 }
 view.hidden = hidden
+
+async function fair(object: string): Promise<void> {
+  await sheet('desk')
+  await (await rooms.load('desk')).open({ object })
+}
 
 // The parts.
 
@@ -258,7 +264,13 @@ strip(
   shell.footer,
   actions,
   (place) =>
-    new GivenNumbers(place, link, { say, write: actions.write, typed: actions.typed, reset: () => changes.reset() }),
+    new GivenNumbers(place, link, {
+      say,
+      write: actions.write,
+      typed: actions.typed,
+      reset: () => changes.reset(),
+      ghost: actions.ghost,
+    }),
 )
 
 const app: App = {

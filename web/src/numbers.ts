@@ -17,6 +17,8 @@ export interface NumberActions {
   typed(text: string): Promise<number>
   /** Takes back what was set and not written. */
   reset(): Promise<void>
+  /** Shows what was there before, while the hand moves. */
+  ghost(on: boolean): void
 }
 
 /** A drag over this many picture points is as much as the number itself. */
@@ -77,7 +79,10 @@ export class GivenNumbers {
     })
     button.addEventListener('pointermove', (e) => {
       if (from === null || (!moved && Math.abs(e.clientX - from) < 4)) return
-      if (!moved) this.start(expression, value)
+      if (!moved) {
+        this.start(expression, value)
+        this.act.ghost(true)
+      }
       moved = true
       this.dragged = button
       this.asking.push(
@@ -86,11 +91,13 @@ export class GivenNumbers {
     })
     button.addEventListener('pointerup', () => {
       this.dragged = null
+      this.act.ghost(false)
       if (from !== null) moved ? void this.finish() : this.open(button, expression, value)
       from = null
     })
     button.addEventListener('pointercancel', () => {
       this.dragged = null
+      this.act.ghost(false)
       if (from !== null && moved) void this.cancel()
       from = null
     })

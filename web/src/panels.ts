@@ -27,6 +27,8 @@ export interface Actions {
   /** Shows what was there before, while the hand moves. */
   ghost(on: boolean): void
   inspect(name: string, by: string | null): Promise<any>
+  /** Opens an object on the fairing desk, where there is one. */
+  fair: ((name: string) => void) | null
   watch(expressions: string[]): void
   say(words: string): void
   still: boolean

@@ -8,6 +8,9 @@ import { model, on } from './state'
 
 export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'areas' | 'mesh' | 'graph' | 'curvature' | 'tables'
 
+/** Widths of the lines plan, in picture points: its text is legible at the first one. */
+const [LEAST_PLAN, FIRST_PLAN, MOST_PLAN] = [400, 1400, 6000]
+
 export class Sheets {
   current: SheetName = 'model'
   private readonly requests = new Newest<void>(() => this.build())
@@ -22,6 +25,7 @@ export class Sheets {
     tables: () => this.tables(),
   }
   private urls: string[] = []
+  private planWidth = FIRST_PLAN
   private marked: Record<string, number> | null = null
   private curve: Curve | null = null
 
@@ -65,12 +69,20 @@ export class Sheets {
     for (const url of this.urls) URL.revokeObjectURL(url)
     const url = URL.createObjectURL(new Blob([frame.bytes(frame.head.sheet).slice()], { type: 'image/svg+xml' }))
     this.urls = [url]
+    const picture = h('img', { src: url, alt: 'lines plan of the model: profile, body plan, half-breadth plan' })
+    const zoom = (factor: number) => () => {
+      this.planWidth = Math.max(LEAST_PLAN, Math.min(MOST_PLAN, this.planWidth * factor))
+      picture.style.width = `${this.planWidth}px`
+    }
+    zoom(1)()
     return [
       h(
         'figure',
         { class: 'plan' },
         h('figcaption', {}, 'Lines plan: profile, body plan, half-breadth plan'),
-        h('img', { src: url, alt: 'lines plan of the model: profile, body plan, half-breadth plan' }),
+        h('button', { 'aria-label': 'larger', onclick: zoom(1.25) }, '+'),
+        h('button', { 'aria-label': 'smaller', onclick: zoom(0.8) }, '−'),
+        h('div', { class: 'scrolled' }, picture),
       ),
     ]
   }

@@ -143,6 +143,9 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
   /** What can be done with an object. */
   function menu(name: string, x: number, y: number): void {
     const hidden = act.hidden.has(name)
+    const { fair } = act
+    const faired = ['curve', 'surface'].includes(model.objects.find((o) => o.name === name)?.class ?? '')
+    const fairing: Item[] = fair && faired ? [{ name: 'Fair on the desk', run: () => fair(name) }] : []
     const change: Item[] = changeable()
       ? [
           { name: 'Rename', keys: 'F2', run: () => rename(name) },
@@ -160,6 +163,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
         { name: 'Show in the program', run: () => void act.locate(name) },
         { name: hidden ? 'Show' : 'Hide', keys: 'Space', run: () => act.toggle(name) },
         { name: 'Isolate', keys: 'Alt+I', run: () => act.isolate(name) },
+        ...fairing,
         ...change,
       ],
       x,
@@ -180,8 +184,11 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
       spellcheck: 'false',
     })
     field.value = name
+    let ended = false
     const end = (write: boolean) => {
-      if (!field.isConnected) return
+      // Leaving the page's tree is leaving the field, too.
+      if (ended) return
+      ended = true
       const now = field.value.trim()
       field.replaceWith(label)
       if (write && now && now !== name)
