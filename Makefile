@@ -69,10 +69,16 @@ $(VENV)/.with-tests: $(VENV)/.installed requirements/test.txt $(WEB)
 
 web: $(PAGE) ## the page of the workbench; needs Node.js
 
-$(PAGE): $(PAGE_SOURCES)
+NODE_MODULES := web/node_modules/.package-lock.json
+
+$(NODE_MODULES): web/package-lock.json
 	@command -v npm >/dev/null || { echo "the page of the workbench needs Node.js 20 or newer and npm"; exit 1; }
+	@cd web && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
+$(PAGE): $(PAGE_SOURCES) $(NODE_MODULES)
 	@echo "building the page of the workbench"
-	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build
+	@cd web && npm run --silent build
 	@touch $@
 
 # The engine for pages that compute by themselves; optimised by itself, it takes as long as the rest of the house.
@@ -118,13 +124,14 @@ quick: $(VENV)/.with-tests ## format, lints and some tests, two minutes; CRATE=n
 test: setup check ## every check and test
 	@$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-check: setup ## formatting, lints, types and the Rust tests
+check: setup $(if $(WEB),$(NODE_MODULES)) ## formatting, lints, types, the Rust tests and those of the page's parts
 	@cargo fmt --all --check
 	@cargo clippy --quiet --workspace --all-targets -- -D warnings
 	@cargo test --quiet --workspace --exclude moldloft-py --no-fail-fast
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --quiet --check
 	@$(BIN)/mypy --no-error-summary
+	@$(if $(WEB),cd web && npm run --silent check,echo "without Node.js the page is not checked")
 
 reference: $(VENV)/.installed ## rewrites docs/reference.md, the pictures of kinds and the stubs from the declarations
 	@$(BIN)/moldloft doc --markdown > docs/reference.md

@@ -1,28 +1,43 @@
-import { defineConfig } from 'vite'
+import { defineConfig } from 'vitest/config'
 
 const outDir = '../python/moldloft/workbench/page'
+const target = 'es2022'
 
-// One script and one style: the page of the server and the file of `export --html` are made of the same two.
+// The page of the server: a base with the picture, the program's editor beside it, and rooms that are loaded when they are shown.
 const page = {
   base: '/',
   build: {
-    target: 'es2022',
+    target,
     outDir,
     emptyOutDir: true,
     assetsInlineLimit: 0,
+    cssCodeSplit: false,
     modulePreload: { polyfill: false },
-    chunkSizeWarningLimit: 2000,
+    chunkSizeWarningLimit: 700,
+    rolldownOptions: {
+      output: {
+        codeSplitting: {
+          groups: [
+            { name: 'editor', test: /node_modules[\\/](@codemirror|@lezer|@marijn|crelt|style-mod|w3c-keyname)[\\/]/ },
+            { name: 'three', test: /node_modules[\\/]three[\\/]/ },
+          ],
+        },
+      },
+    },
   },
 }
 
-// The worker that holds the engine of such a file: a script without imports, since a file may start no other.
-const worker = {
+/** One script without imports: a file that is opened from the disk may start no other. */
+const single = (entry, name) => ({
   build: {
-    target: 'es2022',
+    target,
     outDir,
     emptyOutDir: false,
-    lib: { entry: 'src/worker.ts', formats: ['iife'], name: 'worker', fileName: () => 'worker.js' },
+    cssCodeSplit: false,
+    lib: { entry: `src/${entry}`, formats: ['iife'], name, fileName: () => `${name}.js`, cssFileName: name },
   },
-}
+})
 
-export default defineConfig(({ mode }) => (mode === 'worker' ? worker : page))
+const modes = { worker: single('worker.ts', 'worker'), file: single('main.ts', 'page') }
+
+export default defineConfig(({ mode }) => modes[mode] ?? { ...page, test: { include: ['test/**/*.test.ts'] } })

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -180,3 +181,46 @@ def test_typing_is_drawing_and_a_lost_process_loses_nothing(
 def arguments(pid: int) -> list[str]:
     """The words that a process was started with."""
     return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
+
+
+#: A picture of one grey pixel.
+PIXEL = (
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=="
+)
+
+
+def test_lines_are_duplicated_over_a_picture(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    b.begin("Pictorial: a solid with its depth")
+    b.chain((0, 0), (0, 80), (70, 60), (75, -15), (0, 0))
+    before = b.settle()["drawn"]
+    assert len(before["lines"]) == 4
+    # N goes through four points, then to the first line.
+    for _ in range(5):
+        b.page.keyboard.press("n")
+    b.page.keyboard.press("Control+d")
+    b.until(lambda: len(b.settle()["drawn"]["lines"]) == 5)
+    after = b.settle()["drawn"]
+    old, new = after["lines"][0], after["lines"][4]
+    places = {p[0]: (p[1], p[2]) for p in after["points"]}
+    moved = [[places[new[k]][c] - places[old[k]][c] for c in (0, 1)] for k in (1, 2)]
+    assert len(places) == 6 and moved[0] == pytest.approx(moved[1]) and moved[0][0] > 0
+    assert new[3] == old[3] and "LINE 5 FROM 5 TO 6" in b.text()
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: len(b.settle()["drawn"]["lines"]) == 4)
+    # A picture to trace over is below the drawing, follows the page, and is in no text.
+    text = b.text()
+    picture = {"name": "scan.png", "mimeType": "image/png", "buffer": base64.b64decode(PIXEL)}
+    b.page.get_by_label("picture underneath").set_input_files([picture])
+    image = b.page.locator("image.underlay")
+    b.page.get_by_label("strength of the picture").wait_for()
+    width = float(image.get_attribute("width") or 0)
+    b.page.mouse.move(*b.at(30, 30))
+    b.page.mouse.wheel(0, -200)
+    b.until(lambda: float(image.get_attribute("width") or 0) > 1.2 * width)
+    b.page.get_by_role("button", name="remove the picture").click()
+    assert not image.is_visible() and b.text() == text
+    words = {"name": "scan.png", "mimeType": "image/png", "buffer": b"no picture"}
+    b.page.get_by_label("picture underneath").set_input_files([words])
+    b.page.locator(".status").get_by_text("is no picture").wait_for()
+    assert not b.faults

@@ -328,3 +328,43 @@ def test_random_acts(desk: Callable[..., DeskHand]) -> None:
     assert last["log"] == [] and last["facts"]["list"] == first["facts"]["list"]
     assert last["facts"]["detail"]["after"] == first["facts"]["detail"]["after"]
     assert not d.faults
+
+
+def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHand]) -> None:
+    rows = [row.split(",") for row in hull(0.002).splitlines()]
+    # One reading of the middle station is wrong by 12 cm.
+    rows[3][6] = f"{float(rows[3][6]) + 0.12:.3f}"
+    d = desk('Model info(symmetry = "y", units = "m");\n')
+    page = d.page
+    state = d.table("hull.csv", "\n".join(",".join(row) for row in rows) + "\n")
+    bends = {line["name"]: line["inflections"] for line in state["facts"]["list"]}
+    assert bends["station 10"] != [0, 0] and all(
+        b[1] == 0 for n, b in bends.items() if "waterline 2" in n
+    )
+    # The station is chosen in the list, its reading in the picture, and set free.
+    page.get_by_role("listbox", name="lines").get_by_text("station 10", exact=True).click()
+    d.settle()
+    d.click(38)
+    d.tool("Free")
+    state = d.click(38)
+    assert [line["inflections"][1] for line in state["facts"]["list"]] == [0] * 18
+    page.get_by_role("button", name="Apply").click()
+    d.settle()
+    # A surface through the stations, picked in the list of objects.
+    page.get_by_role("tab", name="Model").click()
+    page.get_by_role("button", name="Add an object (Shift+A)").click()
+    panel = page.get_by_role("region", name="add an object")
+    panel.get_by_role("listitem").filter(has_text="CLoftSurf").first.click()
+    for x in range(0, 21, 2):
+        page.get_by_role("treeitem", name=f"hull_station_{x} ").click()
+    panel.get_by_role("button", name="Add", exact=True).click()
+    d.until(lambda: any(i["kind"] == "patch" for i in d.hand("items()")))
+    page.get_by_role("button", name="Export").click()
+    with page.expect_download(timeout=60_000) as found:
+        page.get_by_role("option", name="Export: gdf, WAMIT low-order panels").click()
+    words = Path(found.value.path()).read_text().split("\n")
+    panels = np.array([float(w) for row in words[4:] for w in row.split()]).reshape(-1, 4, 3)
+    x, y, z = panels.reshape(-1, 3).T
+    exact = 2.5 * (1 - ((x - 10) / 11) ** 2) * (1 - (1 - z / 2.2) ** 2)
+    assert len(panels) > 50 and np.abs(y - exact).max() < 0.01
+    assert not d.faults

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from page_in_browser import Bench, needs_page
@@ -177,3 +178,45 @@ def test_a_shape_is_made_from_nothing_by_the_pointer(bench: Callable[..., Bench]
     start.get_by_role("button", name=re.compile("^Bottle")).click()
     b.until(lambda: any(i["kind"] == "patch" for i in b.hand("items()")))
     assert not start.is_visible() and not b.faults
+
+
+def test_the_list_of_objects_has_a_menu(bench: Callable[..., Bench]) -> None:
+    b = opened(bench)
+    page = b.page
+    page.get_by_role("treeitem", name="Points").click()
+    row = page.get_by_role("treeitem", name=re.compile("^D "))
+    row.click(button="right")
+    menu = page.get_by_role("menu", name="D")
+    menu.get_by_role("menuitem", name="Hide").click()
+    b.until(lambda: not next(i for i in b.hand("items()") if i["object"] == "D")["seen"])
+    # By keys: the menu, the row's name as a field, deletion.
+    page.keyboard.press("Shift+F10")
+    menu.get_by_role("menuitem", name=re.compile("^Show ?Space")).wait_for()
+    page.keyboard.press("Escape")
+    assert not menu.is_visible()
+    page.keyboard.press("F2")
+    field = page.get_by_role("textbox", name="new name of D")
+    field.fill("tip")
+    field.press("Enter")
+    b.until(lambda: "AbsPoint tip(0, 3, 1);" in b.text())
+    row = page.get_by_role("treeitem", name=re.compile("^tip "))
+    row.click()
+    page.keyboard.press("Control+d")
+    b.until(lambda: "AbsPoint tip1(" in b.text())
+    row.focus()
+    page.keyboard.press("Delete")
+    b.until(lambda: "AbsPoint tip(" not in b.text())
+    b.hand("settled()")
+    assert b.hand("steps().done") == ["Rename D to tip", "Duplicate tip", "Delete tip"]
+    # What is hidden is remembered for this model alone.
+    keys = page.evaluate("() => Object.keys(localStorage).filter((k) => k.includes('hidden'))")
+    assert keys == ["moldloft.hidden.made.sdl"] and not b.faults
+
+
+def test_a_file_is_opened_from_the_start_page(bench: Callable[..., Bench], tmp_path: Path) -> None:
+    b = bench("", "new.sdl")
+    (tmp_path / "other.sdl").write_text(POINTS, encoding="utf-8")
+    b.page.get_by_label("open a program").set_input_files(tmp_path / "other.sdl")
+    b.until(lambda: b.text() == POINTS)
+    b.until(lambda: b.hand("items()"))
+    assert b.hand("steps().done") == ["Open other.sdl"] and not b.faults

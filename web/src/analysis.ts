@@ -1,8 +1,8 @@
-// What is asked about a shape and drawn over it: colours by numbers with their legend, combs of curves, a section plane.
+// What is asked about a shape and drawn over it: colours by numbers with their legend, combs of curves.
 
 import { ramp, type Scale } from './colour'
 import { h, shown } from './dom'
-import { Newest, type Link } from './link'
+import { type Link, Newest } from './link'
 import { model } from './state'
 import type { Paint, View } from './view'
 
@@ -24,15 +24,18 @@ export class Analysis {
   private readonly combs = new Set<string>()
   private readonly colouring = new Newest<void>(() => this.colour())
   private readonly combing = new Newest<void>(() => this.comb())
-  private readonly cutting = new Newest<void>(() => this.section())
 
-  constructor(private readonly view: View, private readonly link: Link, private readonly legendHost: HTMLElement, private readonly sectionHost: HTMLElement, private readonly act: AnalysisActions) {}
+  constructor(
+    private readonly view: View,
+    private readonly link: Link,
+    private readonly legendHost: HTMLElement,
+    private readonly act: AnalysisActions,
+  ) {}
 
   /** The scene has changed. */
   refresh(): void {
     if (this.field) this.colouring.push(undefined)
     if (this.combs.size) this.combing.push(undefined)
-    if (this.view.clip) this.cutting.push(undefined)
   }
 
   paint(paint: Paint, field = '', by = ''): void {
@@ -68,7 +71,12 @@ export class Analysis {
     const { scale: s } = found
     const bar = h('div', { class: 'ramp' })
     bar.style.background = ramp(s.signed)
-    this.legendHost.replaceChildren(h('span', { class: 'key' }, found.name), bar, h('span', { class: 'mono low' }, shown(s.low, 3)), h('span', { class: 'mono high' }, shown(s.high, 3)))
+    this.legendHost.replaceChildren(
+      h('span', { class: 'key' }, found.name),
+      bar,
+      h('span', { class: 'mono low' }, shown(s.low, 3)),
+      h('span', { class: 'mono high' }, shown(s.high, 3)),
+    )
   }
 
   /** Shows or removes the comb of a curve. */
@@ -100,39 +108,5 @@ export class Analysis {
       runs.push(tips)
     }
     view.overlay('combs', runs, 0x2f8f7f)
-  }
-
-  /** Cuts across an axis, or no more. */
-  cut(axis: number | null): void {
-    const { view, sectionHost } = this
-    if (axis === null || view.box.isEmpty()) {
-      view.clip = null
-      sectionHost.hidden = true
-      this.cutting.push(undefined)
-      view.draw()
-      return
-    }
-    const [low, high] = [view.box.min.getComponent(axis), view.box.max.getComponent(axis)]
-    view.clip = { axis, value: (low + high) / 2, flip: false }
-    const slider = h('input', { type: 'range', min: low, max: high, step: 'any', 'aria-label': `section at ${'xyz'[axis]}` })
-    slider.value = String(view.clip.value)
-    const out = h('span', { class: 'mono' }, shown(view.clip.value, 5))
-    const move = () => {
-      view.clip!.value = slider.valueAsNumber
-      out.textContent = shown(slider.valueAsNumber, 5)
-      view.draw()
-      this.cutting.push(undefined)
-    }
-    slider.addEventListener('input', move)
-    sectionHost.replaceChildren(`section ${'xyz'[axis]} =`, slider, out, h('button', { onclick: () => ((view.clip!.flip = !view.clip!.flip), view.draw()) }, 'Flip'), h('button', { class: 'icon', 'aria-label': 'no section', onclick: () => this.cut(null) }, '×'))
-    sectionHost.hidden = false
-    move()
-  }
-
-  private async section(): Promise<void> {
-    const { view } = this
-    if (!view.clip) return view.overlay('section', null)
-    const frame = await this.link.ask('section', { axis: view.clip.axis, value: view.clip.value })
-    view.overlay('section', (frame.head.lines as any[]).map((part) => Array.from(frame.floats(part))), 0xc2412d)
   }
 }

@@ -1,9 +1,9 @@
 // Volume grids: a plane of a block in the picture, coloured by the quality of its cells, and the cells that are folded.
 
-import { h, shown } from './dom'
-import { Newest, type Link } from './link'
-import type { View } from './view'
 import type { Scale } from './colour'
+import { h, shown } from './dom'
+import { type Link, Newest } from './link'
+import type { View } from './view'
 
 interface Block {
   name: string
@@ -29,9 +29,20 @@ export class BlockPlanes {
   private index = 0
   private failed = false
   private readonly requests = new Newest<void>(() => this.build())
-  private bar: { block: HTMLSelectElement; axis: HTMLSelectElement; slider: HTMLInputElement; out: HTMLElement; words: HTMLElement } | null = null
+  private bar: {
+    block: HTMLSelectElement
+    axis: HTMLSelectElement
+    slider: HTMLInputElement
+    out: HTMLElement
+    words: HTMLElement
+  } | null = null
 
-  constructor(private readonly host: HTMLElement, private readonly view: View, private readonly link: Link, private readonly act: { say(words: string): void; legend(): void }) {}
+  constructor(
+    private readonly host: HTMLElement,
+    private readonly view: View,
+    private readonly link: Link,
+    private readonly act: { say(words: string): void; legend(): void },
+  ) {}
 
   get shown(): boolean {
     return !this.host.hidden
@@ -73,10 +84,17 @@ export class BlockPlanes {
       this.blocks = frame.head.blocks
       const { plane, folded } = frame.head
       this.scale = this.view.plane({
-        position: frame.floats(plane.position), triangle: frame.numbers(plane.triangle), edge: frame.numbers(plane.edge), value: frame.floats(plane.value),
+        position: frame.floats(plane.position),
+        triangle: frame.numbers(plane.triangle),
+        edge: frame.numbers(plane.edge),
+        value: frame.floats(plane.value),
       })
       const ends = frame.floats(folded)
-      this.view.overlay('folded', Array.from({ length: ends.length / 6 }, (_, k) => Array.from(ends.subarray(6 * k, 6 * k + 6))), 0xc2412d)
+      this.view.overlay(
+        'folded',
+        Array.from({ length: ends.length / 6 }, (_, k) => Array.from(ends.subarray(6 * k, 6 * k + 6))),
+        0xc2412d,
+      )
       this.say()
       this.act.legend()
     } catch (error) {
@@ -95,12 +113,16 @@ export class BlockPlanes {
     if (!now) return
     const bar = (this.bar ??= this.made())
     const names = this.blocks.map((b) => b.name)
-    if ([...bar.block.options].map((o) => o.value).join('\n') !== names.join('\n')) bar.block.replaceChildren(...names.map((n) => h('option', { value: n }, n)))
+    if ([...bar.block.options].map((o) => o.value).join('\n') !== names.join('\n'))
+      bar.block.replaceChildren(...names.map((n) => h('option', { value: n }, n)))
     bar.block.value = this.block
     bar.axis.value = String(this.axis)
     bar.slider.max = String(now.divisions[this.axis])
     bar.slider.value = String(this.index)
-    bar.slider.setAttribute('aria-valuetext', `${AXES[this.axis]} = ${this.index + 1} of ${now.divisions[this.axis] + 1}`)
+    bar.slider.setAttribute(
+      'aria-valuetext',
+      `${AXES[this.axis]} = ${this.index + 1} of ${now.divisions[this.axis] + 1}`,
+    )
     bar.out.textContent = `${this.index + 1} of ${now.divisions[this.axis] + 1}`
     const bad = this.blocks.reduce((n, b) => n + b.folded, 0)
     bar.words.textContent = bad ? `${bad} folded cells` : `no folded cell, worst ${shown(now.worst, 3)}`
@@ -117,7 +139,16 @@ export class BlockPlanes {
     block.addEventListener('change', () => ((this.block = block.value), this.refresh()))
     axis.addEventListener('change', () => ((this.axis = Number(axis.value)), this.refresh()))
     slider.addEventListener('input', () => ((this.index = slider.valueAsNumber), this.refresh()))
-    this.host.replaceChildren('block', block, axis, '=', slider, out, words, h('button', { class: 'icon', 'aria-label': 'no plane of a block', onclick: () => this.close() }, '×'))
+    this.host.replaceChildren(
+      'block',
+      block,
+      axis,
+      '=',
+      slider,
+      out,
+      words,
+      h('button', { class: 'icon', 'aria-label': 'no plane of a block', onclick: () => this.close() }, '×'),
+    )
     return { block, axis, slider, out, words }
   }
 }

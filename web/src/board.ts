@@ -3,12 +3,14 @@
 import { redo, undo } from '@codemirror/commands'
 import './board.css'
 import { BoardBox } from './board_box'
-import { letter, Page, Painter, type Aim, type Check, type Drawn, type Mark } from './board_paint'
+import { duplicated, labels } from './board_edit'
+import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter } from './board_paint'
 import { BoardSolid, type SolidFacts } from './board_solid'
+import { Underlay } from './board_underlay'
 import { h, s } from './dom'
 import type { Editor } from './editor'
 import type { Facts } from './frame'
-import { Newest, Refused, type Link } from './link'
+import { type Link, Newest, Refused } from './link'
 
 type Place = [number, number]
 /** A place on the page that is, or becomes, a point. */
@@ -20,26 +22,62 @@ interface Corner {
 }
 
 const TYPES: Record<string, string> = { x: 'X', y: 'Y', z: 'Z', h: 'XY', p: 'YZ', f: 'XZ', o: 'O' }
-const PRESETS: [string, string][] = [['345 40 90', 'Trimetric 345 40 90'], ['ISO', 'Isometric'], ['CAVALIER', 'Cavalier'], ['CABINET', 'Cabinet'], ['MILITARY', 'Military'], ['DIN', 'Dimetric 42/7'], ['AUTO', 'As the lines show']]
+const PRESETS: [string, string][] = [
+  ['345 40 90', 'Trimetric 345 40 90'],
+  ['ISO', 'Isometric'],
+  ['CAVALIER', 'Cavalier'],
+  ['CABINET', 'Cabinet'],
+  ['MILITARY', 'Military'],
+  ['DIN', 'Dimetric 42/7'],
+  ['AUTO', 'As the lines show'],
+]
 /** Pixels: what a pointer reaches, what is a click, and how long a touch is no palm after a pen, ms. */
 const [REACH, CLICK, PALM] = [11, 5, 500]
+/** A duplicate is this far from what it was made of, in pixels. */
+const DUPLICATED = 24
 /** How long a hand rests before bodies and doubts are looked for, ms. */
 const REST = 60
 /** A number, with or without a unit; the rest is an expression, in quotes. */
 const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
-const NOTHING = { points: [], lines: [], marks: [], next: [], planes: [], axes: {}, angles: [], missing: {}, numbers: {}, faces: 0, section: null } as unknown as Drawn
+const NOTHING = {
+  points: [],
+  lines: [],
+  marks: [],
+  next: [],
+  planes: [],
+  axes: {},
+  angles: [],
+  missing: {},
+  numbers: {},
+  faces: 0,
+  section: null,
+} as unknown as Drawn
 
 export class Board {
   readonly element = h('div', { class: 'board', hidden: true })
   /** Times of requests, for tests: kind and milliseconds. */
   readonly times: { kind: string; ms: number }[] = []
-  private readonly svg = s('svg', { class: 'paper', tabindex: 0, role: 'application', 'aria-label': 'drawing board', 'aria-describedby': 'board-help' })
+  private readonly svg = s('svg', {
+    class: 'paper',
+    tabindex: 0,
+    role: 'application',
+    'aria-label': 'drawing board',
+    'aria-describedby': 'board-help',
+  })
   private readonly page = new Page()
   private readonly painter = new Painter(this.svg, this.page)
+  private readonly underlay = new Underlay(this.page, () => (this.buttons(), this.paint()))
   private readonly solid = new BoardSolid()
   private readonly bar = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
   private readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
-  private readonly line = h('input', { type: 'text', class: 'board-line', 'aria-label': 'sketch command', placeholder: 'a command of the sketch language: POINT, LINE 1 2, DIM X 1 2 = 8, ARC …', spellcheck: 'false', autocomplete: 'off' })
+  private readonly line = h('input', {
+    type: 'text',
+    class: 'board-line',
+    'aria-label': 'sketch command',
+    placeholder: 'a command of the sketch language: POINT, LINE 1 2, DIM X 1 2 = 8, ARC …',
+    spellcheck: 'false',
+    autocomplete: 'off',
+  })
   private readonly start = h('div', { class: 'board-start' })
   private readonly box: BoardBox
   private drawn: Drawn = { ...NOTHING, object: null, objects: [], faults: [] }
@@ -55,7 +93,16 @@ export class Board {
   private chosen = new Set<string>()
   private lit: Mark | null = null
   private hoveredLine = 0
-  private pressed: { id: number; at: Place; from: Place; kind: 'draw' | 'move' | 'pan' | 'axis' | 'none'; moved: boolean; what?: number; axis?: string; angles?: number[] } | null = null
+  private pressed: {
+    id: number
+    at: Place
+    from: Place
+    kind: 'draw' | 'move' | 'pan' | 'axis' | 'none'
+    moved: boolean
+    what?: number
+    axis?: string
+    angles?: number[]
+  } | null = null
   private touches = new Map<number, Place>()
   private pen = 0
   private fitted = false
@@ -86,10 +133,37 @@ export class Board {
     this.listIssues()
   })
 
-  constructor(private readonly link: Link, private readonly editor: Editor, private readonly say: (words: string) => void) {
-    this.box = new BoardBox(this.page, { commit: (mark, value) => this.dimension(mark, value), leave: () => this.svg.focus(), next: (step) => this.openNext(step), closed: () => this.paint() })
-    const help = h('p', { class: 'sr', id: 'board-help' }, 'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes. The command line takes every sketch command.')
-    this.element.append(this.bar, h('div', { class: 'board-stage' }, this.svg as unknown as HTMLElement, this.solid.element, this.issues, this.start, this.box.element), this.line, help)
+  constructor(
+    private readonly link: Link,
+    private readonly editor: Editor,
+    private readonly say: (words: string) => void,
+  ) {
+    this.svg.prepend(this.underlay.image)
+    this.box = new BoardBox(this.page, {
+      commit: (mark, value) => this.dimension(mark, value),
+      leave: () => this.svg.focus(),
+      next: (step) => this.openNext(step),
+      closed: () => this.paint(),
+    })
+    const help = h(
+      'p',
+      { class: 'sr', id: 'board-help' },
+      'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
+    )
+    this.element.append(
+      this.bar,
+      h(
+        'div',
+        { class: 'board-stage' },
+        this.svg as unknown as HTMLElement,
+        this.solid.element,
+        this.issues,
+        this.start,
+        this.box.element,
+      ),
+      this.line,
+      help,
+    )
     const on = (name: string, run: (e: any) => void) => this.svg.addEventListener(name, run)
     on('pointerdown', (e) => this.down(e))
     on('pointermove', (e) => this.move(e))
@@ -110,7 +184,9 @@ export class Board {
       if (e.key === 'Escape') this.svg.focus()
       if (e.key !== 'Enter' || !this.line.value.trim()) return
       const command = this.line.value
-      void this.act([{ do: 'run', command, last: !/^\s*(p|l|dim|d|spl|w|st|ty|al|ref|var|ax)/i.test(command) }]).then((fine) => fine && (this.line.value = ''))
+      void this.act([{ do: 'run', command, last: !/^\s*(p|l|dim|d|spl|w|st|ty|al|ref|var|ax)/i.test(command) }]).then(
+        (fine) => fine && (this.line.value = ''),
+      )
     })
     new ResizeObserver(() => this.paint()).observe(this.svg)
   }
@@ -163,7 +239,9 @@ export class Board {
 
   /** Changes of the sketch, as one step of the text's history. */
   private act(changes: Facts[] | (() => Facts[])): Promise<boolean> {
-    return this.later(async () => this.carryOut(typeof changes === 'function' ? changes() : changes)).then((x) => x === true)
+    return this.later(async () => this.carryOut(typeof changes === 'function' ? changes() : changes)).then(
+      (x) => x === true,
+    )
   }
 
   private async carryOut(changes: Facts[]): Promise<boolean> {
@@ -186,7 +264,10 @@ export class Board {
     this.checks = this.checks.filter((c) => c.about.lines.every((l) => lines.has(l)))
     if (!this.fitted && this.drawn.points.length > 2) {
       this.measurePage()
-      this.page.fit(this.drawn.points.map((p) => [p[1], p[2]]), this.solid.element.clientWidth)
+      this.page.fit(
+        this.drawn.points.map((p) => [p[1], p[2]]),
+        this.solid.element.clientWidth,
+      )
     }
     this.fitted ||= this.drawn.points.length > 0
     this.starting()
@@ -208,14 +289,24 @@ export class Board {
 
   private paint(): void {
     this.measurePage()
-    this.painter.draw(this.drawn, { chosen: this.chosen, checks: this.checks, proposed: this.proposed, open: this.box.mark?.name ?? '', planes: this.lit ?? this.box.mark, outlines: this.last?.outlines ?? [] })
+    this.underlay.draw()
+    this.painter.draw(this.drawn, {
+      chosen: this.chosen,
+      checks: this.checks,
+      proposed: this.proposed,
+      open: this.box.mark?.name ?? '',
+      planes: this.lit ?? this.box.mark,
+      outlines: this.last?.outlines ?? [],
+    })
     this.aim(this.aimed)
     this.box.place()
   }
 
   private aim(aim: Aim | null): void {
     this.aimed = aim
-    const start = this.chain.at(-1)?.at ?? (this.pressed?.kind === 'draw' && this.pressed.moved ? this.page.from(this.pressed.from) : null)
+    const start =
+      this.chain.at(-1)?.at ??
+      (this.pressed?.kind === 'draw' && this.pressed.moved ? this.page.from(this.pressed.from) : null)
     this.painter.aim(this.tool === 'draw' ? aim : null, start, this.drawn.section, this.lock)
   }
 
@@ -223,46 +314,105 @@ export class Board {
   private starting(): void {
     this.start.hidden = this.drawn.object !== null
     if (this.start.hidden || this.start.childElementCount) return
-    const begin = (words: string, command: string) => h('button', { onclick: () => void this.act([{ do: 'run', command, last: true }]).then(() => this.svg.focus()) }, words)
-    this.start.append(h('h3', {}, 'A new drawing'), h('p', { class: 'quiet' }, 'Only the directions of lines count; dimensions come after.'),
-      begin('Pictorial: a solid with its depth', `SKETCH PART\nAXES ${PRESETS[0][0]}`), ...['XZ', 'XY', 'YZ'].map((plane) => begin(`Cross section in ${plane.toLowerCase()}`, `SKETCH PART 2D ${plane}`)))
+    const begin = (words: string, command: string) =>
+      h(
+        'button',
+        { onclick: () => void this.act([{ do: 'run', command, last: true }]).then(() => this.svg.focus()) },
+        words,
+      )
+    this.start.append(
+      h('h3', {}, 'A new drawing'),
+      h('p', { class: 'quiet' }, 'Only the directions of lines count; dimensions come after.'),
+      begin('Pictorial: a solid with its depth', `SKETCH PART\nAXES ${PRESETS[0][0]}`),
+      ...['XZ', 'XY', 'YZ'].map((plane) => begin(`Cross section in ${plane.toLowerCase()}`, `SKETCH PART 2D ${plane}`)),
+    )
   }
 
   private buttons(): void {
     const d = this.drawn
-    const button = (words: string, key: string, run: () => void, more: Facts = {}) => h('button', { title: key ? `${words} (${key})` : words, onclick: run, ...more }, words, key ? h('kbd', {}, key) : '')
+    const button = (words: string, key: string, run: () => void, more: Facts = {}) =>
+      h(
+        'button',
+        { title: key ? `${words} (${key})` : words, onclick: run, ...more },
+        words,
+        key ? h('kbd', {}, key) : '',
+      )
     const select = (name: string, options: [string, string][], value: string, run: (v: string) => void) => {
-      const made = h('select', { 'aria-label': name, title: name }, ...options.map(([v, words]) => h('option', { value: v, selected: v === value }, words)))
+      const made = h(
+        'select',
+        { 'aria-label': name, title: name },
+        ...options.map(([v, words]) => h('option', { value: v, selected: v === value }, words)),
+      )
       made.addEventListener('change', () => run(made.value))
       return made
     }
     const planes: Record<string, number> = {}
     for (const [axis] of d.planes) planes[axis] = (planes[axis] ?? 0) + 1
-    const progress = Object.entries(d.missing).filter(([axis]) => axis in d.axes).map(([axis, open]) => {
-      const all = Math.max(0, (planes[axis] ?? 1) - 1)
-      return h('span', { class: `count type-${axis} ${open ? '' : 'done'}` }, `${axis} ${all - open}/${all}`)
-    })
+    const progress = Object.entries(d.missing)
+      .filter(([axis]) => axis in d.axes)
+      .map(([axis, open]) => {
+        const all = Math.max(0, (planes[axis] ?? 1) - 1)
+        return h('span', { class: `count type-${axis} ${open ? '' : 'done'}` }, `${axis} ${all - open}/${all}`)
+      })
     const confirm = this.toConfirm()
     const complete = d.lines.length > 2 && d.next.length === 0 && !d.faces
-    const action = d.section && d.lines.length > 2
-      ? h('span', { class: 'extrude' }, button('Extrude', '', () => void this.extrude(), { class: complete ? 'primary' : '' }))
-      : complete && this.last?.exact && this.last.vertices ? button('Make the solid', 'Enter', () => void this.make(), { class: 'primary' }) : ''
+    const action =
+      d.section && d.lines.length > 2
+        ? h(
+            'span',
+            { class: 'extrude' },
+            button('Extrude', '', () => void this.extrude(), { class: complete ? 'primary' : '' }),
+          )
+        : complete && this.last?.exact && this.last.vertices
+          ? button('Make the solid', 'Enter', () => void this.make(), { class: 'primary' })
+          : ''
     this.bar.replaceChildren(
-      button('Draw', 'D', () => this.use('draw'), { 'aria-pressed': this.tool === 'draw', class: this.tool === 'draw' ? 'on' : '' }),
-      button('Select', 'V', () => this.use('select'), { 'aria-pressed': this.tool === 'select', class: this.tool === 'select' ? 'on' : '' }),
-      ...(d.objects.length > 1 ? [select('object', d.objects.map((o) => [o, o]), d.object ?? '', (name) => this.choose(name))] : []),
-      ...(d.object && !d.section ? [select('axes', [['', `Axes ${d.angles.join(' ')}`], ...PRESETS], '', (axes) => axes && void this.act([{ do: 'axes', axes }]))] : []),
+      button('Draw', 'D', () => this.use('draw'), {
+        'aria-pressed': this.tool === 'draw',
+        class: this.tool === 'draw' ? 'on' : '',
+      }),
+      button('Select', 'V', () => this.use('select'), {
+        'aria-pressed': this.tool === 'select',
+        class: this.tool === 'select' ? 'on' : '',
+      }),
+      ...(d.objects.length > 1
+        ? [
+            select(
+              'object',
+              d.objects.map((o) => [o, o]),
+              d.object ?? '',
+              (name) => this.choose(name),
+            ),
+          ]
+        : []),
+      ...(d.object && !d.section
+        ? [
+            select(
+              'axes',
+              [['', `Axes ${d.angles.join(' ')}`], ...PRESETS],
+              '',
+              (axes) => axes && void this.act([{ do: 'axes', axes }]),
+            ),
+          ]
+        : []),
       h('span', { class: 'progress', role: 'status', 'aria-label': 'dimensions given of those needed' }, ...progress),
       ...(confirm.length ? [button(`${confirm.length} to confirm`, 'C', () => this.confirmNext())] : []),
-      ...(this.proposed.size ? [button(`Accept ${this.proposed.size} proposed`, 'T', () => void this.acceptProposed())] : []),
-      h('span', { class: 'grow' }), action,
+      ...(this.proposed.size
+        ? [button(`Accept ${this.proposed.size} proposed`, 'T', () => void this.acceptProposed())]
+        : []),
+      h('span', { class: 'grow' }),
+      ...this.underlay.controls(this.say),
+      action,
       button('Fit', '0', () => this.fit()),
     )
   }
 
   private fit(): void {
     this.measurePage()
-    this.page.fit(this.drawn.points.map((p) => [p[1], p[2]]), this.solid.element.clientWidth)
+    this.page.fit(
+      this.drawn.points.map((p) => [p[1], p[2]]),
+      this.solid.element.clientWidth,
+    )
     this.paint()
   }
 
@@ -285,18 +435,41 @@ export class Board {
     const fault = this.drawn.faults[0]
     const fix = (command: string) => {
       const typed = /^TYPE (\d+) AS (\w+)$/.exec(command)
-      return h('button', { onclick: () => void this.act([typed ? { do: 'type', lines: [Number(typed[1])], type: typed[2] } : { do: 'run', command }]) }, command)
+      return h(
+        'button',
+        {
+          onclick: () =>
+            void this.act([typed ? { do: 'type', lines: [Number(typed[1])], type: typed[2] } : { do: 'run', command }]),
+        },
+        command,
+      )
     }
     // A doubt is ended by what is proposed, or by what is there.
     const sure = (c: Check) => {
       const [id] = c.about.lines
       const type = this.proposed.get(id) ?? this.drawn.lines.find((l) => l[0] === id)?.[3]
-      return /doubtful|oblique|untyped/.test(c.about.kind) && type ? [`TYPE ${id} AS ${letter(type, this.drawn.section)}`] : []
+      return /doubtful|oblique|untyped/.test(c.about.kind) && type
+        ? [`TYPE ${id} AS ${letter(type, this.drawn.section)}`]
+        : []
     }
     this.issues.replaceChildren(
       ...(fault ? [h('div', { class: 'bad' }, `line ${fault.line}: ${fault.text}`)] : []),
-      ...this.checks.slice(0, 5).map((c) => h('div', { class: 'issue', onpointerenter: () => this.choosePart(c), tabindex: 0, onfocus: () => this.choosePart(c) }, c.text, ' ', ...[...new Set([...c.fixes, ...sure(c)])].map(fix))),
-      ...(this.checks.length > 5 ? [h('div', { class: 'quiet' }, `and ${this.checks.length - 5} more`)] : []))
+      ...this.checks.slice(0, 5).map((c) =>
+        h(
+          'div',
+          {
+            class: 'issue',
+            onpointerenter: () => this.choosePart(c),
+            tabindex: 0,
+            onfocus: () => this.choosePart(c),
+          },
+          c.text,
+          ' ',
+          ...[...new Set([...c.fixes, ...sure(c)])].map(fix),
+        ),
+      ),
+      ...(this.checks.length > 5 ? [h('div', { class: 'quiet' }, `and ${this.checks.length - 5} more`)] : []),
+    )
   }
 
   private choosePart(c: Check): void {
@@ -327,7 +500,8 @@ export class Board {
     }
     const target = e.target as Element
     this.svg.setPointerCapture(e.pointerId)
-    const press = (kind: NonNullable<typeof this.pressed>['kind'], more: Facts = {}) => (this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, ...more })
+    const press = (kind: NonNullable<typeof this.pressed>['kind'], more: Facts = {}) =>
+      (this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, ...more })
     const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
     const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
     if (e.button === 2 && this.chain.length) {
@@ -367,13 +541,15 @@ export class Board {
         this.page.pan(dx, dy)
         return this.paint()
       }
-      if (pressed.kind === 'move') return this.dragging.push({ point: pressed.what!, at: this.rounded(this.page.from(at)) })
+      if (pressed.kind === 'move')
+        return this.dragging.push({ point: pressed.what!, at: this.rounded(this.page.from(at)) })
       if (pressed.kind === 'axis') return this.turnAxis(at)
       if (pressed.kind === 'none') return
     } else {
       const hit = this.painter.hit(at, this.drawn, REACH)
       this.hoveredLine = hit.line ?? 0
-      if (hit.point && this.woken.at(-1) !== hit.point) this.woken = [...this.woken.filter((p) => p !== hit.point), hit.point].slice(-4)
+      if (hit.point && this.woken.at(-1) !== hit.point)
+        this.woken = [...this.woken.filter((p) => p !== hit.point), hit.point].slice(-4)
       const name = (e.target as Element).closest('[data-mark]')?.getAttribute('data-mark')
       const lit = name ? this.markOf(name) : null
       if (lit !== this.lit) {
@@ -383,7 +559,13 @@ export class Board {
     }
     if (this.tool !== 'draw' || this.drawn.object === null) return
     const start = this.chain.at(-1)?.at ?? (pressed?.kind === 'draw' ? this.page.from(pressed.from) : null)
-    this.pointing.push({ at: this.page.from(at), reach: REACH / this.page.scale, start, free: e.shiftKey, woken: this.woken })
+    this.pointing.push({
+      at: this.page.from(at),
+      reach: REACH / this.page.scale,
+      start,
+      free: e.shiftKey,
+      woken: this.woken,
+    })
   }
 
   private up(e: PointerEvent): void {
@@ -392,7 +574,8 @@ export class Board {
     if (!pressed || pressed.id !== e.pointerId) return
     this.pressed = null
     const at = this.at(e)
-    if (pressed.kind === 'axis' && pressed.moved) void this.act([{ do: 'axes', axes: pressed.angles!.map((a) => String(Math.round(a))).join(' ') }])
+    if (pressed.kind === 'axis' && pressed.moved)
+      void this.act([{ do: 'axes', axes: pressed.angles!.map((a) => String(Math.round(a))).join(' ') }])
     if (pressed.kind === 'move' && pressed.moved) this.drop(pressed.what!, at)
     if (pressed.kind !== 'draw') return
     const free = e.shiftKey
@@ -425,7 +608,13 @@ export class Board {
   }
 
   private async corner(at: Place, start: Place | null, free: boolean): Promise<Corner> {
-    const found = (await this.ask('board_place', { at, reach: REACH / this.page.scale, start, free, woken: this.woken })) as Aim
+    const found = (await this.ask('board_place', {
+      at,
+      reach: REACH / this.page.scale,
+      start,
+      free,
+      woken: this.woken,
+    })) as Aim
     if (found.why === 'point') return { at: found.at, point: found.point }
     if (found.why === 'line' || found.why === 'mid') return { at: found.at, line: found.line, part: found.part }
     return { at: found.why ? (found.at.map((x) => Math.round(x * 1000) / 1000) as Place) : this.rounded(found.at) }
@@ -465,13 +654,22 @@ export class Board {
     const made = [a, b].filter((c) => c.point === undefined)
     for (const c of made) {
       c.point = free++
-      commands.push(c.line === undefined ? `POINT ${c.point} AT ${c.at[0]} ${c.at[1]}` : `SPLIT ${c.line} ${Number(c.part!.toFixed(4))}`)
+      commands.push(
+        c.line === undefined
+          ? `POINT ${c.point} AT ${c.at[0]} ${c.at[1]}`
+          : `SPLIT ${c.line} ${Number(c.part!.toFixed(4))}`,
+      )
     }
     if (a.point === b.point) return
-    const there = this.drawn.lines.some(([, p, q]) => (p === a.point && q === b.point) || (p === b.point && q === a.point))
+    const there = this.drawn.lines.some(
+      ([, p, q]) => (p === a.point && q === b.point) || (p === b.point && q === a.point),
+    )
     const splits = commands.filter((c) => c.startsWith('SPLIT')).length
     const label = 1 + splits + Math.max(0, ...this.drawn.lines.map((l) => l[0]))
-    if (!there) commands.push(`LINE ${label} FROM ${a.point} TO ${b.point}${this.lock ? ` TYPE ${letter(this.lock, this.drawn.section)}` : ''}`)
+    if (!there)
+      commands.push(
+        `LINE ${label} FROM ${a.point} TO ${b.point}${this.lock ? ` TYPE ${letter(this.lock, this.drawn.section)}` : ''}`,
+      )
     this.lock = ''
     try {
       if (commands.length) await this.carryOut([{ do: 'run', command: commands.join('; ') }])
@@ -489,7 +687,9 @@ export class Board {
 
   private drop(point: number, at: Place): void {
     const place = this.rounded(this.page.from(at))
-    const near = [...this.painter.places].find(([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH)?.[0]
+    const near = [...this.painter.places].find(
+      ([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH,
+    )?.[0]
     void this.later(async () => {
       await this.dragging.settled()
       try {
@@ -541,7 +741,12 @@ export class Board {
 
   private dimension(mark: Mark, value: string): void {
     const missing = mark.p !== undefined
-    const change = missing ? { do: 'run', command: `DIMENSION ${this.freeName()} ${mark.axis} ${mark.p} TO ${mark.q} = ${PLAIN.test(value) ? value : `"${value}"`}` } : { do: 'value', name: mark.name, value }
+    const change = missing
+      ? {
+          do: 'run',
+          command: `DIMENSION ${this.freeName()} ${mark.axis} ${mark.p} TO ${mark.q} = ${PLAIN.test(value) ? value : `"${value}"`}`,
+        }
+      : { do: 'value', name: mark.name, value }
     void this.act([change]).then((fine) => {
       if (!fine) return this.box.refuse()
       if (missing) {
@@ -565,7 +770,9 @@ export class Board {
   private between(digit: string): boolean {
     const [p, q] = [...this.chosen].filter((c) => c[0] === 'p').map((c) => Number(c.slice(1)))
     if (!p || !q) return false
-    const apart = Object.keys(this.drawn.axes).filter((axis) => !this.drawn.planes.some(([a, members]) => a === axis && members.includes(p) && members.includes(q)))
+    const apart = Object.keys(this.drawn.axes).filter(
+      (axis) => !this.drawn.planes.some(([a, members]) => a === axis && members.includes(p) && members.includes(q)),
+    )
     const at = (id: number) => this.drawn.points.find((x) => x[0] === id)
     const far = (axis: string) => {
       const k = 'XYZ'.indexOf(axis)
@@ -578,7 +785,23 @@ export class Board {
     }
     const [a, b] = [p, q].map((id) => at(id)!.slice(1, 3) as Place)
     const ends = far(apart[0]) < 0 ? [q, p] : [p, q]
-    this.box.open({ name: '', text: '', value: Math.abs(far(apart[0])), reference: false, axis: apart[0], at: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], line: [a, b], witnesses: [], p: ends[0], q: ends[1] }, true, digit, apart)
+    this.box.open(
+      {
+        name: '',
+        text: '',
+        value: Math.abs(far(apart[0])),
+        reference: false,
+        axis: apart[0],
+        at: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2],
+        line: [a, b],
+        witnesses: [],
+        p: ends[0],
+        q: ends[1],
+      },
+      true,
+      digit,
+      apart,
+    )
     this.paint()
     return true
   }
@@ -586,7 +809,9 @@ export class Board {
   // Types, solids.
 
   private toConfirm(): number[] {
-    const doubted = this.checks.filter((c) => /doubtful|oblique|untyped/.test(c.about.kind)).flatMap((c) => c.about.lines)
+    const doubted = this.checks
+      .filter((c) => /doubtful|oblique|untyped/.test(c.about.kind))
+      .flatMap((c) => c.about.lines)
     return [...new Set(doubted)].filter((id) => this.drawn.lines.some((l) => l[0] === id && l[4] !== 'user'))
   }
 
@@ -602,18 +827,41 @@ export class Board {
   }
 
   private async acceptProposed(): Promise<void> {
-    const found = [...this.proposed].map(([id, type]) => ({ do: 'type', lines: [id], type: letter(type, this.drawn.section) }))
+    const found = [...this.proposed].map(([id, type]) => ({
+      do: 'type',
+      lines: [id],
+      type: letter(type, this.drawn.section),
+    }))
     this.proposed.clear()
     await this.act(found)
   }
 
   private async make(): Promise<void> {
-    if (await this.act([{ do: 'run', command: 'GENERATE FACES', last: true }])) this.say('The body is in the model, exact.')
+    if (await this.act([{ do: 'run', command: 'GENERATE FACES', last: true }]))
+      this.say('The body is in the model, exact.')
   }
 
   private async extrude(): Promise<void> {
-    const mark: Mark = { name: 'EXTRUDE', text: 'depth', value: null, reference: false, axis: null, at: this.page.from([this.page.size[0] / 2 - 60, 40]), line: null, witnesses: [] }
-    this.box.open(mark, true, '', [], (value) => void this.act([{ do: 'run', command: `EXTRUDE ${value}`, last: true }]).then((fine) => (fine ? (this.box.close(), this.fit(), this.svg.focus()) : this.box.refuse())))
+    const mark: Mark = {
+      name: 'EXTRUDE',
+      text: 'depth',
+      value: null,
+      reference: false,
+      axis: null,
+      at: this.page.from([this.page.size[0] / 2 - 60, 40]),
+      line: null,
+      witnesses: [],
+    }
+    this.box.open(
+      mark,
+      true,
+      '',
+      [],
+      (value) =>
+        void this.act([{ do: 'run', command: `EXTRUDE ${value}`, last: true }]).then((fine) =>
+          fine ? (this.box.close(), this.fit(), this.svg.focus()) : this.box.refuse(),
+        ),
+    )
   }
 
   // Keys.
@@ -625,6 +873,10 @@ export class Board {
       e.stopPropagation()
     }
     if (e.ctrlKey || e.metaKey) {
+      if (key === 'd') {
+        this.duplicate()
+        return done()
+      }
       if (key !== 'z' && key !== 'y') return
       done()
       this.endChain()
@@ -635,7 +887,7 @@ export class Board {
       return
     }
     if (e.altKey || /^F\d/.test(e.key)) return
-    const lines = [...this.chosen].filter((c) => c[0] === 'l').map((c) => Number(c.slice(1)))
+    const lines = labels(this.chosen, 'l')
     if (key in TYPES) {
       const type = TYPES[key]
       const own = this.drawn.section && type.length > 1 ? 'F' : letter(type, null)
@@ -684,29 +936,53 @@ export class Board {
   }
 
   private nudge([du, dv]: Place): void {
-    const points = [...this.chosen].filter((c) => c[0] === 'p').map((c) => Number(c.slice(1)))
+    const points = labels(this.chosen, 'p')
     if (!points.length) {
       this.page.pan(-du * 30 * this.page.scale, dv * 30 * this.page.scale)
       return this.paint()
     }
-    void this.act(() => points.map((point) => {
-      const [, u, v] = this.drawn.points.find((p) => p[0] === point)!
-      return { do: 'move', point, at: [u + du, v + dv] }
-    }))
+    void this.act(() =>
+      points.map((point) => {
+        const [, u, v] = this.drawn.points.find((p) => p[0] === point)!
+        return { do: 'move', point, at: [u + du, v + dv] }
+      }),
+    )
+  }
+
+  private duplicate(): void {
+    const by = DUPLICATED / this.page.scale
+    const { commands, chosen } = duplicated(this.drawn, this.chosen, [by, -by])
+    if (!commands.length) return this.say('choose lines or points to duplicate')
+    void this.act([{ do: 'run', command: commands.join('; ') }]).then((fine) => {
+      if (!fine) return
+      this.chosen = new Set(chosen)
+      this.paint()
+    })
   }
 
   private remove(): void {
-    const of = (kind: string) => [...this.chosen].filter((c) => c[0] === kind).map((c) => c.slice(1))
-    const [points, lines] = [of('p'), of('l')]
+    const [points, lines] = [labels(this.chosen, 'p'), labels(this.chosen, 'l')]
     this.chosen.clear()
-    const commands = [lines.length && `DELETE LINE ${lines.join(' ')}`, points.length && `DELETE POINT ${points.join(' ')}`].filter(Boolean)
+    const commands = [
+      lines.length && `DELETE LINE ${lines.join(' ')}`,
+      points.length && `DELETE POINT ${points.join(' ')}`,
+    ].filter(Boolean)
     if (commands.length) void this.act([{ do: 'run', command: commands.join('; ') }])
   }
 
   /** For tests: where a place of the page, a point or a mark is on the screen, and what is drawn. */
   look(): Facts {
     const box = this.svg.getBoundingClientRect()
-    return { drawn: this.drawn, checks: this.checks, proposed: [...this.proposed], solid: this.last, origin: [box.left, box.top], size: [box.width, box.height], open: this.box.mark, chain: this.chain.length }
+    return {
+      drawn: this.drawn,
+      checks: this.checks,
+      proposed: [...this.proposed],
+      solid: this.last,
+      origin: [box.left, box.top],
+      size: [box.width, box.height],
+      open: this.box.mark,
+      chain: this.chain.length,
+    }
   }
 
   onScreen(at: Place): Place {

@@ -1,7 +1,7 @@
 // The box of a dimension, where it stands: a value, an expression, or Enter for what the picture suggests.
 
-import { h, shown } from './dom'
 import type { Mark, Page } from './board_paint'
+import { h, shown } from './dom'
 
 export interface BoxActions {
   commit(mark: Mark, value: string): void
@@ -18,7 +18,10 @@ export class BoardBox {
   private readonly axis = h('select', { 'aria-label': 'axis' })
   private own: ((value: string) => void) | null = null
 
-  constructor(private readonly page: Page, private readonly act: BoxActions) {
+  constructor(
+    private readonly page: Page,
+    private readonly act: BoxActions,
+  ) {
     this.element.append(this.label, this.axis, this.input)
     this.input.addEventListener('keydown', (e) => this.key(e))
     this.input.addEventListener('input', () => this.element.classList.remove('refused'))
@@ -28,14 +31,27 @@ export class BoardBox {
     })
   }
 
-  open(mark: Mark, missing: boolean, begun = '', axes: string[] = [], own: ((value: string) => void) | null = null): void {
+  open(
+    mark: Mark,
+    missing: boolean,
+    begun = '',
+    axes: string[] = [],
+    own: ((value: string) => void) | null = null,
+  ): void {
     this.mark = { ...mark }
     this.own = own
     const words = own ? mark.text : missing ? `${mark.axis} ${mark.p} → ${mark.q}` : mark.name
     this.label.textContent = words
     this.axis.hidden = axes.length < 2
     this.axis.replaceChildren(...axes.map((a) => h('option', { value: a }, a)))
-    this.input.setAttribute('aria-label', missing && !own ? `distance along ${mark.axis} from point ${mark.p} to ${mark.q}` : own ? mark.text : `value of ${mark.name}`)
+    this.input.setAttribute(
+      'aria-label',
+      missing && !own
+        ? `distance along ${mark.axis} from point ${mark.p} to ${mark.q}`
+        : own
+          ? mark.text
+          : `value of ${mark.name}`,
+    )
     this.input.placeholder = missing && mark.value !== null ? `≈ ${shown(mark.value, 3)}` : ''
     this.input.value = begun || (missing || mark.value === null ? '' : String(mark.value))
     this.element.hidden = false
@@ -81,7 +97,9 @@ export class BoardBox {
     } else if (e.key === 'Enter') {
       e.preventDefault()
       const typed = this.input.value.trim().replace(/^(\d+),(\d+)$/, '$1.$2')
-      const value = typed || (this.mark.p !== undefined && this.mark.value !== null ? String(Number(this.mark.value.toPrecision(3))) : '')
+      const value =
+        typed ||
+        (this.mark.p !== undefined && this.mark.value !== null ? String(Number(this.mark.value.toPrecision(3))) : '')
       if (!value) return this.refuse()
       if (this.own) this.own(value)
       else this.act.commit(this.mark, value)

@@ -87,10 +87,16 @@ export class Page {
   fit(places: Place[], right: number): void {
     if (places.length < 2) return
     const [us, vs] = [places.map((p) => p[0]), places.map((p) => p[1])]
-    const [low, high] = [[Math.min(...us), Math.min(...vs)], [Math.max(...us), Math.max(...vs)]]
+    const [low, high] = [
+      [Math.min(...us), Math.min(...vs)],
+      [Math.max(...us), Math.max(...vs)],
+    ]
     const [w, h] = [this.size[0] - right - 140, this.size[1] - 150]
     this.scale = Math.max(0.02, Math.min(4, w / Math.max(1, high[0] - low[0]), h / Math.max(1, high[1] - low[1])))
-    this.corner = [(low[0] + high[0] + right / this.scale - this.size[0] / this.scale) / 2, (low[1] + high[1] - this.size[1] / this.scale) / 2]
+    this.corner = [
+      (low[0] + high[0] + right / this.scale - this.size[0] / this.scale) / 2,
+      (low[1] + high[1] - this.size[1] / this.scale) / 2,
+    ]
   }
 }
 
@@ -99,9 +105,19 @@ export function letter(type: string, section: string | null): string {
   return section && type === section ? 'F' : ({ XY: 'H', YZ: 'P', XZ: 'F' }[type] ?? type)
 }
 
-const words: Record<string, string> = { X: 'along x', Y: 'along y', Z: 'along z', XY: 'horizontal', XZ: 'frontal', YZ: 'profile', O: 'oblique', '': 'untyped' }
+const words: Record<string, string> = {
+  X: 'along x',
+  Y: 'along y',
+  Z: 'along z',
+  XY: 'horizontal',
+  XZ: 'frontal',
+  YZ: 'profile',
+  O: 'oblique',
+  '': 'untyped',
+}
 const middle = (a: Place, b: Place): Place => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]
-const segment = (a: Place, b: Place, attributes: Facts) => s('line', { x1: a[0].toFixed(1), y1: a[1].toFixed(1), x2: b[0].toFixed(1), y2: b[1].toFixed(1), ...attributes })
+const segment = (a: Place, b: Place, attributes: Facts) =>
+  s('line', { x1: a[0].toFixed(1), y1: a[1].toFixed(1), x2: b[0].toFixed(1), y2: b[1].toFixed(1), ...attributes })
 
 export class Painter {
   private readonly dimensions = s('g', { class: 'dimensions' })
@@ -112,65 +128,150 @@ export class Painter {
   private readonly over = s('g', { class: 'over', 'aria-hidden': 'true' })
   readonly places = new Map<number, Place>()
 
-  constructor(readonly svg: SVGElement, readonly page: Page) {
+  constructor(
+    readonly svg: SVGElement,
+    readonly page: Page,
+  ) {
     svg.append(this.faces, this.lines, this.dimensions, this.over, this.points, this.triad)
   }
 
-  draw(d: Drawn, state: { chosen: Set<string>; checks: Check[]; proposed: Map<number, string>; open: string; planes: Mark | null; outlines: number[][] }): void {
+  draw(
+    d: Drawn,
+    state: {
+      chosen: Set<string>
+      checks: Check[]
+      proposed: Map<number, string>
+      open: string
+      planes: Mark | null
+      outlines: number[][]
+    },
+  ): void {
     const { page } = this
     this.places.clear()
     for (const [id, u, v] of d.points ?? []) this.places.set(id, page.to([u, v]))
     const doubted = new Set(state.checks.flatMap((c) => c.about.lines))
-    const wrong = new Set(state.checks.filter((c) => !/doubtful|oblique|untyped|gap|loose/.test(c.about.kind)).flatMap((c) => c.about.lines))
+    const wrong = new Set(
+      state.checks
+        .filter((c) => !/doubtful|oblique|untyped|gap|loose/.test(c.about.kind))
+        .flatMap((c) => c.about.lines),
+    )
     const loose = new Set(state.checks.flatMap((c) => c.about.points))
     const lit = new Map<number, string>()
     if (state.planes?.axis) {
       const { axis, p, q } = state.planes
-      for (const [a, members] of d.planes) if (a === axis) for (const [end, kind] of [[p, 'from'], [q, 'to']] as const) if (end && members.includes(end)) members.forEach((m) => lit.set(m, kind))
+      for (const [a, members] of d.planes)
+        if (a === axis)
+          for (const [end, kind] of [
+            [p, 'from'],
+            [q, 'to'],
+          ] as const)
+            if (end && members.includes(end)) members.forEach((m) => lit.set(m, kind))
     }
-    this.faces.replaceChildren(...state.outlines.flatMap((way) => {
-      const corners = way.map((p) => this.places.get(p))
-      return corners.every(Boolean) ? [s('polygon', { points: corners.map((c) => `${c![0].toFixed(1)},${c![1].toFixed(1)}`).join(' ') })] : []
-    }))
-    this.lines.replaceChildren(...(d.lines ?? []).flatMap(([id, p, q, type, source]) => {
-      const [a, b] = [this.places.get(p), this.places.get(q)]
-      if (!a || !b) return []
-      const proposal = state.proposed.get(id)
-      const sure = type === '' ? 'unknown' : doubted.has(id) && source !== 'user' ? 'guessed' : 'sure'
-      const kind = type || 'none'
-      const name = `line ${id}, ${p} to ${q}, ${words[type] ?? type}${source === 'user' ? ', locked' : sure === 'guessed' ? ', to confirm' : ''}${proposal && !type ? `, proposed ${letter(proposal, d.section)}` : ''}`
-      const m = middle(a, b)
-      const label = type ? letter(type, d.section) : proposal ? `${letter(proposal, d.section)}?` : '?'
-      return [s('g', { class: `stroke ${sure} type-${kind} ${wrong.has(id) ? 'wrong' : ''} ${state.chosen.has(`l${id}`) ? 'chosen' : ''}`, role: 'listitem', 'aria-label': name, 'data-line': id },
-        ...(wrong.has(id) ? [segment(a, b, { class: 'halo' })] : []),
-        segment(a, b, { class: 'ink' }),
-        s('rect', { class: 'tag', x: m[0] - 4.5 * label.length - 3, y: m[1] - 8, width: 9 * label.length + 6, height: 16, rx: 4 }),
-        s('text', { class: 'letter', x: m[0], y: m[1] + 4 }, label))]
-    }))
-    this.points.replaceChildren(...[...this.places].map(([id, [x, y]]) => s('g', { class: `dot ${lit.get(id) ?? ''} ${loose.has(id) ? 'loose' : ''} ${state.chosen.has(`p${id}`) ? 'chosen' : ''}`, role: 'listitem', 'aria-label': `point ${id}`, 'data-point': id },
-      s('circle', { cx: x.toFixed(1), cy: y.toFixed(1), r: 4 }), s('text', { x: x + 7, y: y - 6 }, String(id)))))
-    this.dimensions.replaceChildren(...[...(d.marks ?? []).map((m) => this.mark(m, m.reference ? 'reference' : 'given', state.open)), ...(d.next ?? []).map((m, k) => this.mark(m, k === 0 ? 'missing first' : 'missing', state.open))])
+    this.faces.replaceChildren(
+      ...state.outlines.flatMap((way) => {
+        const corners = way.map((p) => this.places.get(p))
+        return corners.every(Boolean)
+          ? [s('polygon', { points: corners.map((c) => `${c![0].toFixed(1)},${c![1].toFixed(1)}`).join(' ') })]
+          : []
+      }),
+    )
+    this.lines.replaceChildren(
+      ...(d.lines ?? []).flatMap(([id, p, q, type, source]) => {
+        const [a, b] = [this.places.get(p), this.places.get(q)]
+        if (!a || !b) return []
+        const proposal = state.proposed.get(id)
+        const sure = type === '' ? 'unknown' : doubted.has(id) && source !== 'user' ? 'guessed' : 'sure'
+        const kind = type || 'none'
+        const name = `line ${id}, ${p} to ${q}, ${words[type] ?? type}${source === 'user' ? ', locked' : sure === 'guessed' ? ', to confirm' : ''}${proposal && !type ? `, proposed ${letter(proposal, d.section)}` : ''}`
+        const m = middle(a, b)
+        const label = type ? letter(type, d.section) : proposal ? `${letter(proposal, d.section)}?` : '?'
+        return [
+          s(
+            'g',
+            {
+              class: `stroke ${sure} type-${kind} ${wrong.has(id) ? 'wrong' : ''} ${state.chosen.has(`l${id}`) ? 'chosen' : ''}`,
+              role: 'listitem',
+              'aria-label': name,
+              'data-line': id,
+            },
+            ...(wrong.has(id) ? [segment(a, b, { class: 'halo' })] : []),
+            segment(a, b, { class: 'ink' }),
+            s('rect', {
+              class: 'tag',
+              x: m[0] - 4.5 * label.length - 3,
+              y: m[1] - 8,
+              width: 9 * label.length + 6,
+              height: 16,
+              rx: 4,
+            }),
+            s('text', { class: 'letter', x: m[0], y: m[1] + 4 }, label),
+          ),
+        ]
+      }),
+    )
+    this.points.replaceChildren(
+      ...[...this.places].map(([id, [x, y]]) =>
+        s(
+          'g',
+          {
+            class: `dot ${lit.get(id) ?? ''} ${loose.has(id) ? 'loose' : ''} ${state.chosen.has(`p${id}`) ? 'chosen' : ''}`,
+            role: 'listitem',
+            'aria-label': `point ${id}`,
+            'data-point': id,
+          },
+          s('circle', { cx: x.toFixed(1), cy: y.toFixed(1), r: 4 }),
+          s('text', { x: x + 7, y: y - 6 }, String(id)),
+        ),
+      ),
+    )
+    this.dimensions.replaceChildren(
+      ...[
+        ...(d.marks ?? []).map((m) => this.mark(m, m.reference ? 'reference' : 'given', state.open)),
+        ...(d.next ?? []).map((m, k) => this.mark(m, k === 0 ? 'missing first' : 'missing', state.open)),
+      ],
+    )
     this.axes(d)
   }
 
   private mark(m: Mark, kind: string, open: string): SVGElement {
     const text = kind.startsWith('missing') ? `${m.axis} ≈ ${shown(m.value, 3)}` : m.text
     const [x, y] = this.page.to(m.at)
-    const parts: SVGElement[] = m.witnesses.map(([a, b]) => segment(this.page.to(a), this.page.to(b), { class: 'witness' }))
+    const parts: SVGElement[] = m.witnesses.map(([a, b]) =>
+      segment(this.page.to(a), this.page.to(b), { class: 'witness' }),
+    )
     if (m.line) parts.push(segment(this.page.to(m.line[0]), this.page.to(m.line[1]), { class: 'measure' }))
     const wide = 7 * text.length + 8
-    parts.push(s('rect', { x: x - wide / 2, y: y - 9, width: wide, height: 18, rx: 4 }), s('text', { x, y: y + 4 }, text))
-    const name = kind.startsWith('missing') ? `missing: ${m.axis} from ${m.p} to ${m.q}, about ${shown(m.value, 3)}` : `dimension ${m.text}`
-    return s('g', { class: `mark ${kind} ${open === m.name ? 'open' : ''}`, 'data-mark': m.name, 'aria-label': name, role: 'button' }, ...parts)
+    parts.push(
+      s('rect', { x: x - wide / 2, y: y - 9, width: wide, height: 18, rx: 4 }),
+      s('text', { x, y: y + 4 }, text),
+    )
+    const name = kind.startsWith('missing')
+      ? `missing: ${m.axis} from ${m.p} to ${m.q}, about ${shown(m.value, 3)}`
+      : `dimension ${m.text}`
+    return s(
+      'g',
+      {
+        class: `mark ${kind} ${open === m.name ? 'open' : ''}`,
+        'data-mark': m.name,
+        'aria-label': name,
+        role: 'button',
+      },
+      ...parts,
+    )
   }
 
   private axes(d: Drawn): void {
     const origin: Place = [64, this.page.size[1] - 64]
-    this.triad.replaceChildren(...Object.entries(d.axes ?? {}).flatMap(([name, [c, w]]) => {
-      const tip: Place = [origin[0] + 42 * c, origin[1] - 42 * w]
-      return [segment(origin, tip, { class: `axis type-${name}` }), s('circle', { class: `tip type-${name}`, cx: tip[0], cy: tip[1], r: 7, 'data-axis': name }),
-        s('text', { class: 'axis', x: tip[0] + 13 * c, y: tip[1] - 13 * w + 4 }, name.toLowerCase())]
-    }))
+    this.triad.replaceChildren(
+      ...Object.entries(d.axes ?? {}).flatMap(([name, [c, w]]) => {
+        const tip: Place = [origin[0] + 42 * c, origin[1] - 42 * w]
+        return [
+          segment(origin, tip, { class: `axis type-${name}` }),
+          s('circle', { class: `tip type-${name}`, cx: tip[0], cy: tip[1], r: 7, 'data-axis': name }),
+          s('text', { class: 'axis', x: tip[0] + 13 * c, y: tip[1] - 13 * w + 4 }, name.toLowerCase()),
+        ]
+      }),
+    )
     this.triad.dataset.origin = origin.join()
   }
 
@@ -187,12 +288,25 @@ export class Painter {
         const type = lock || aim.type || ''
         const kind = type ? ((aim.certainty ?? 0) >= 0.6 || lock ? 'sure' : 'guessed') : 'unknown'
         parts.push(segment(this.page.to(start), at, { class: `rubber ${kind} type-${type || 'none'}` }))
-        const words = lock ? `${letter(lock, section)} locked` : type ? `${letter(type, section)}${kind === 'guessed' ? '?' : ''}` : '?'
+        const words = lock
+          ? `${letter(lock, section)} locked`
+          : type
+            ? `${letter(type, section)}${kind === 'guessed' ? '?' : ''}`
+            : '?'
         parts.push(s('text', { class: `guess type-${type || 'none'}`, x: at[0] + 14, y: at[1] + 22 }, words))
       }
-      const named: Record<string, string> = { point: 'point', cross: 'crossing', mid: 'middle', line: 'on the line', axis: `along ${(aim.axes ?? []).join().toLowerCase()}` }
+      const named: Record<string, string> = {
+        point: 'point',
+        cross: 'crossing',
+        mid: 'middle',
+        line: 'on the line',
+        axis: `along ${(aim.axes ?? []).join().toLowerCase()}`,
+        extension: `extension of ${(aim.axes ?? []).join()}`,
+        parallel: `parallel to ${(aim.axes ?? []).join()}`,
+      }
       parts.push(s('circle', { class: `snap ${aim.why ?? 'free'}`, cx: at[0], cy: at[1], r: aim.why ? 6 : 3 }))
-      if (aim.why && aim.why !== 'point') parts.push(s('text', { class: 'why', x: at[0] + 14, y: at[1] - 8 }, named[aim.why]))
+      if (aim.why && aim.why !== 'point')
+        parts.push(s('text', { class: 'why', x: at[0] + 14, y: at[1] - 8 }, named[aim.why]))
     }
     this.over.replaceChildren(...parts)
   }

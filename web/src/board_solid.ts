@@ -1,8 +1,27 @@
 // The solid beside the drawing: the picture's wireframe at first, the body once it is known.
 
-import { AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera, Scene, ShapeUtils, Vector2, Vector3, WebGLRenderer, DoubleSide } from 'three'
-import { h, shown } from './dom'
+import {
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  OrthographicCamera,
+  Scene,
+  ShapeUtils,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from 'three'
 import type { Drawn } from './board_paint'
+import { h, shown } from './dom'
 
 export interface SolidFacts {
   exact: boolean
@@ -24,9 +43,15 @@ function flat(corners: (number[] | null | undefined)[]): BufferGeometry | null {
   at.forEach((a, k) => normal.add(a.clone().cross(at[(k + 1) % at.length])))
   const u = at[1].clone().sub(at[0]).normalize()
   const v = normal.clone().cross(u).normalize()
-  const triangles = ShapeUtils.triangulateShape(at.map((a) => new Vector2(a.dot(u), a.dot(v))), [])
+  const triangles = ShapeUtils.triangulateShape(
+    at.map((a) => new Vector2(a.dot(u), a.dot(v))),
+    [],
+  )
   const geometry = new BufferGeometry()
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(triangles.flat().flatMap((k) => at[k].toArray())), 3))
+  geometry.setAttribute(
+    'position',
+    new BufferAttribute(new Float32Array(triangles.flat().flatMap((k) => at[k].toArray())), 3),
+  )
   geometry.computeVertexNormals()
   return geometry
 }
@@ -57,7 +82,11 @@ export class BoardSolid {
       const azimuth = Math.atan2(this.direction.y, this.direction.x) - e.movementX * 0.01
       const flat = Math.hypot(this.direction.x, this.direction.y)
       const elevation = Math.max(-1.5, Math.min(1.5, Math.atan2(this.direction.z, flat) + e.movementY * 0.01))
-      this.direction.set(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation))
+      this.direction.set(
+        Math.cos(azimuth) * Math.cos(elevation),
+        Math.sin(azimuth) * Math.cos(elevation),
+        Math.sin(elevation),
+      )
       this.draw()
     })
     new ResizeObserver(() => this.draw()).observe(this.element)
@@ -86,23 +115,57 @@ export class BoardSolid {
       const corners: number[] = []
       for (let k = 0; k < quads.length; k += 4) {
         const [a, b, c, e] = quads.slice(k, k + 4)
-        for (const t of c === e ? [[a, b, c]] : [[a, b, c], [a, c, e]]) for (const i of t) corners.push(...vertices.slice(3 * i, 3 * i + 3))
+        for (const t of c === e
+          ? [[a, b, c]]
+          : [
+              [a, b, c],
+              [a, c, e],
+            ])
+          for (const i of t) corners.push(...vertices.slice(3 * i, 3 * i + 3))
       }
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(corners), 3))
       geometry.computeVertexNormals()
       const colour = new Color(solid.exact ? 0x6f9fd0 : 0xb9b19c)
-      this.parts.add(new Mesh(geometry, new MeshLambertMaterial({ color: colour, flatShading: true, side: DoubleSide, transparent: !solid.exact, opacity: solid.exact ? 1 : 0.72, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 })))
+      this.parts.add(
+        new Mesh(
+          geometry,
+          new MeshLambertMaterial({
+            color: colour,
+            flatShading: true,
+            side: DoubleSide,
+            transparent: !solid.exact,
+            opacity: solid.exact ? 1 : 0.72,
+            polygonOffset: true,
+            polygonOffsetFactor: 1,
+            polygonOffsetUnits: 1,
+          }),
+        ),
+      )
       this.parts.add(new LineSegments(new EdgesGeometry(geometry, 12), ink))
     } else {
       const places = new Map(d.points?.map((p) => [p[0], p[3]?.map((x) => x ?? 0) ?? null]))
-      const ends = (d.lines ?? []).flatMap(([, p, q]) => (places.get(p) && places.get(q) ? [...places.get(p)!, ...places.get(q)!] : []))
+      const ends = (d.lines ?? []).flatMap(([, p, q]) =>
+        places.get(p) && places.get(q) ? [...places.get(p)!, ...places.get(q)!] : [],
+      )
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(ends), 3))
       if (ends.length) this.parts.add(new LineSegments(geometry, ink))
       for (const way of solid?.outlines ?? []) {
         const face = flat(way.map((p) => places.get(p)))
-        if (face) this.parts.add(new Mesh(face, new MeshLambertMaterial({ color: 0xb9b19c, side: DoubleSide, transparent: true, opacity: 0.4, depthWrite: false })))
+        if (face)
+          this.parts.add(
+            new Mesh(
+              face,
+              new MeshLambertMaterial({
+                color: 0xb9b19c,
+                side: DoubleSide,
+                transparent: true,
+                opacity: 0.4,
+                depthWrite: false,
+              }),
+            ),
+          )
       }
     }
     const box = new Vector3()
@@ -120,7 +183,14 @@ export class BoardSolid {
     }
     const number = solid?.volume ?? solid?.area
     const what = solid?.volume != null ? 'volume' : 'area'
-    const words = number == null ? (d.lines?.length ? 'wireframe as the picture suggests it' : '') : solid!.exact ? `${what} ${shown(number, 10)}` : `estimate: ${what} ≈ ${shown(number, 3)}`
+    const words =
+      number == null
+        ? d.lines?.length
+          ? 'wireframe as the picture suggests it'
+          : ''
+        : solid!.exact
+          ? `${what} ${shown(number, 10)}`
+          : `estimate: ${what} ≈ ${shown(number, 3)}`
     this.caption.textContent = words
     this.caption.className = `caption ${solid?.exact && number != null ? 'exact' : 'estimate'}`
     this.element.dataset.volume = number == null ? '' : String(number)
@@ -135,7 +205,14 @@ export class BoardSolid {
     this.renderer.setSize(w, t)
     const half = this.reach * 1.15
     const wide = w / t
-    Object.assign(this.camera, { left: -half * Math.max(1, wide), right: half * Math.max(1, wide), top: half * Math.max(1, 1 / wide), bottom: -half * Math.max(1, 1 / wide), near: -10 * half, far: 10 * half })
+    Object.assign(this.camera, {
+      left: -half * Math.max(1, wide),
+      right: half * Math.max(1, wide),
+      top: half * Math.max(1, 1 / wide),
+      bottom: -half * Math.max(1, 1 / wide),
+      near: -10 * half,
+      far: 10 * half,
+    })
     const d = this.direction.clone().normalize()
     this.camera.up.set(0, 0, 1)
     this.camera.position.copy(this.centre).addScaledVector(d, half)

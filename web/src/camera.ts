@@ -1,6 +1,6 @@
 // The camera: turntable about z, orthographic or perspective; the eye is far enough never to be inside.
 
-import { Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
+import { type Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
 
 export type Standard = 'iso' | 'profile' | 'starboard' | 'plan' | 'bottom' | 'body' | 'stern'
 
@@ -24,6 +24,8 @@ export class Camera {
   azimuth = STANDARD.iso[0]
   elevation = STANDARD.iso[1]
   perspective = false
+  /** The share of the picture's height, at its top, that is covered: what is looked at is in the middle of the rest. */
+  inset = 0
   private readonly ortho = new OrthographicCamera()
   private readonly persp = new PerspectiveCamera(FIELD)
 
@@ -64,7 +66,7 @@ export class Camera {
     const [right, up] = [this.right, this.up]
     const half = box.getSize(new Vector3()).multiplyScalar(0.5)
     const along = (v: Vector3) => Math.abs(v.x) * half.x + Math.abs(v.y) * half.y + Math.abs(v.z) * half.z
-    this.reach = Math.max(1.12 * along(up), (1.12 * along(right)) / aspect, 1e-9)
+    this.reach = Math.max((1.12 * along(up)) / (1 - this.inset), (1.12 * along(right)) / aspect, 1e-9)
     if (this.perspective) this.reach = Math.max(this.reach, 0.6 * half.length())
   }
 
@@ -83,7 +85,8 @@ export class Camera {
     const before = this.grain(height)
     this.reach = Math.max(1e-12, this.reach * factor)
     const moved = before - this.grain(height)
-    this.target.addScaledVector(this.right, x * moved).addScaledVector(this.up, -y * moved)
+    const below = y - (this.inset * height) / 2
+    this.target.addScaledVector(this.right, x * moved).addScaledVector(this.up, -below * moved)
   }
 
   /** The cameras of three for a picture of that shape; `box` is all that may be seen. */
@@ -97,8 +100,14 @@ export class Camera {
       camera.position.copy(this.target).addScaledVector(towards, distance)
       camera.matrix.makeBasis(right, up, towards)
       camera.quaternion.setFromRotationMatrix(camera.matrix)
+      camera.setViewOffset(aspect, 1, 0, -this.inset / 2, aspect, 1)
     }
-    Object.assign(this.ortho, { left: -this.reach * aspect, right: this.reach * aspect, top: this.reach, bottom: -this.reach })
+    Object.assign(this.ortho, {
+      left: -this.reach * aspect,
+      right: this.reach * aspect,
+      top: this.reach,
+      bottom: -this.reach,
+    })
     Object.assign(this.ortho, { near: distance - 1.5 * far, far: distance + 1.5 * far })
     Object.assign(this.persp, { aspect, near: Math.max(distance - far, distance * 1e-3), far: distance + far })
     this.three.updateProjectionMatrix()

@@ -3,7 +3,11 @@
 /** Patches: muted tones of Tol's bright scheme; neighbours never have the same. */
 export const HUES = [0x8fb3d9, 0xe7b877, 0x8cc5a2, 0xd998a6, 0xb7a5d6, 0x9fd0dc, 0xd8cf8a, 0xb9b9b9]
 
-export const hex = (n: number): [number, number, number] => [((n >> 16) & 255) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255]
+export const hex = (n: number): [number, number, number] => [
+  ((n >> 16) & 255) / 255,
+  ((n >> 8) & 255) / 255,
+  (n & 255) / 255,
+]
 
 const stops = (text: string) => text.split(' ').map((word) => hex(parseInt(word, 16)))
 
@@ -30,7 +34,8 @@ export function scale(values: Float32Array[], signed: boolean): Scale {
     const most = Math.max(Math.abs(low), Math.abs(high))
     ;[low, high] = [-most, most]
   }
-  if (high - low < 1e-12 * Math.max(1e-300, Math.abs(high))) [low, high] = [low - 0.5e-9 - Math.abs(low) * 1e-6, high + 0.5e-9 + Math.abs(high) * 1e-6]
+  if (high - low < 1e-12 * Math.max(1e-300, Math.abs(high)))
+    [low, high] = [low - 0.5e-9 - Math.abs(low) * 1e-6, high + 0.5e-9 + Math.abs(high) * 1e-6]
   return { low, high, signed }
 }
 

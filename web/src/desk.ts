@@ -2,18 +2,28 @@
 
 import { redo, undo } from '@codemirror/commands'
 import './desk.css'
-import { DeskPainter, Sheet, strips, views, type Chosen, type DeskFacts } from './desk_paint'
+import { type Chosen, type DeskFacts, DeskPainter, Sheet, strips, views } from './desk_paint'
 import { h, s, shown, store, stored } from './dom'
 import type { Editor } from './editor'
 import type { Facts } from './frame'
-import { Newest, Refused, type Link } from './link'
+import { type Link, Newest, Refused } from './link'
 import { model } from './state'
 
 type Place = [number, number]
 
 /** Marks on one point and on a stretch between two: tool, its key, its command, words. */
-const POINTS: [string, string, string][] = [['knuckle', 'k', 'Knuckle'], ['fix', 'f', 'Fixed'], ['free', 'e', 'Free']]
-const SPANS: [string, string, string][] = [['straight', 's', 'Straight'], ['flat', 'l', 'Flat'], ['arc', 'a', 'Arc'], ['one-way', 'i', 'No inflection'], ['range', 'r', 'Range']]
+const POINTS: [string, string, string][] = [
+  ['knuckle', 'k', 'Knuckle'],
+  ['fix', 'f', 'Fixed'],
+  ['free', 'e', 'Free'],
+]
+const SPANS: [string, string, string][] = [
+  ['straight', 's', 'Straight'],
+  ['flat', 'l', 'Flat'],
+  ['arc', 'a', 'Arc'],
+  ['one-way', 'i', 'No inflection'],
+  ['range', 'r', 'Range'],
+]
 const TOOLS = [...POINTS, ...SPANS, ['side', 'o', 'One-sided'] as [string, string, string]]
 /** Pixels: what a pointer reaches, and what is a click. */
 const [REACH, CLICK] = [12, 4]
@@ -33,7 +43,13 @@ export class Desk {
   readonly element = h('div', { class: 'desk', hidden: true })
   /** Times of requests, for tests: kind and milliseconds. */
   readonly times: { kind: string; ms: number }[] = []
-  private readonly svg = s('svg', { class: 'desk-shape', tabindex: 0, role: 'application', 'aria-label': 'fairing desk', 'aria-describedby': 'desk-help' })
+  private readonly svg = s('svg', {
+    class: 'desk-shape',
+    tabindex: 0,
+    role: 'application',
+    'aria-label': 'fairing desk',
+    'aria-describedby': 'desk-help',
+  })
   private readonly sheet = new Sheet()
   private readonly painter = new DeskPainter(this.svg, this.sheet)
   private readonly bar = h('div', { class: 'desk-bar', role: 'toolbar', 'aria-label': 'fairing' })
@@ -44,8 +60,21 @@ export class Desk {
   private readonly below = h('div', { class: 'desk-strips' })
   private readonly start = h('div', { class: 'desk-start' })
   private readonly progress = h('div', { class: 'desk-progress', role: 'status', hidden: true })
-  private readonly line = h('input', { type: 'text', class: 'desk-line', 'aria-label': 'fairing command', placeholder: 'a command of the desk: tolerance 0.02, knuckle 12, straight 1-9, range 5-20, lock 3, cut z 1.5 …', spellcheck: 'false', autocomplete: 'off' })
-  private readonly slider = h('input', { type: 'range', min: -DECADES, max: DECADES, step: 0.01, 'aria-label': 'tolerance' })
+  private readonly line = h('input', {
+    type: 'text',
+    class: 'desk-line',
+    'aria-label': 'fairing command',
+    placeholder: 'a command of the desk: tolerance 0.02, knuckle 12, straight 1-9, range 5-20, lock 3, cut z 1.5 …',
+    spellcheck: 'false',
+    autocomplete: 'off',
+  })
+  private readonly slider = h('input', {
+    type: 'range',
+    min: -DECADES,
+    max: DECADES,
+    step: 0.01,
+    'aria-label': 'tolerance',
+  })
   private readonly value = h('input', { type: 'text', 'aria-label': 'tolerance as a number', inputmode: 'decimal' })
   private session: Session | null = null
   private facts: DeskFacts | null = null
@@ -65,27 +94,58 @@ export class Desk {
   private decided = 0
   /** Whether what is drawn is not decided. */
   private previewed = false
-  private readonly sliding = new Newest<{ command: string; final: boolean; decided: number }>(async ({ command, final, decided }) => {
-    if (decided !== this.decided) return
-    try {
-      const found = await this.ask('desk_slide', { command, final })
+  private readonly sliding = new Newest<{ command: string; final: boolean; decided: number }>(
+    async ({ command, final, decided }) => {
       if (decided !== this.decided) return
-      this.draw({ ...this.facts!, ...found } as DeskFacts)
-    } catch (error) {
-      if (!(error instanceof Refused && error.message === 'superseded')) this.say((error as Error).message)
-    }
-  })
+      try {
+        const found = await this.ask('desk_slide', { command, final })
+        if (decided !== this.decided) return
+        this.draw({ ...this.facts!, ...found } as DeskFacts)
+      } catch (error) {
+        if (!(error instanceof Refused && error.message === 'superseded')) this.say((error as Error).message)
+      }
+    },
+  )
 
-  constructor(private readonly link: Link, private readonly editor: Editor, private readonly say: (words: string) => void, private readonly give: (blob: Blob, name: string) => void) {
-    const help = h('p', { class: 'sr', id: 'desk-help' }, 'Arrow keys go through points, Shift extends a stretch. K marks a knuckle, F a fixed point, S straight, L flat, A arc, I no inflection, R range, E frees. Alt and arrows move a point. Brackets change the tolerance, G the goal, N the line. Enter accepts a suspect.')
+  constructor(
+    private readonly link: Link,
+    private readonly editor: Editor,
+    private readonly say: (words: string) => void,
+    private readonly give: (blob: Blob, name: string) => void,
+  ) {
+    const help = h(
+      'p',
+      { class: 'sr', id: 'desk-help' },
+      'Arrow keys go through points, Shift extends a stretch. K marks a knuckle, F a fixed point, S straight, L flat, A arc, I no inflection, R range, E frees. Alt and arrows move a point. Brackets change the tolerance, G the goal, N the line. Enter accepts a suspect.',
+    )
     this.value.addEventListener('keydown', (e) => {
       e.stopPropagation()
       if (e.key === 'Enter') void this.run(`tolerance ${this.value.value.trim().replace(/^(\d+),(\d+)$/, '$1.$2')}`)
     })
     this.slider.addEventListener('input', () => this.slide())
     this.slider.addEventListener('change', () => void this.settleTolerance())
-    const side = h('div', { class: 'desk-side' }, h('h3', {}, 'Lines'), this.lines, h('h3', {}, 'Suspects'), this.suspects, h('h3', {}, 'Marks'), this.marks)
-    this.element.append(this.bar, h('div', { class: 'desk-body' }, side, h('div', { class: 'desk-main' }, this.top, this.svg as unknown as HTMLElement, this.below, this.progress)), this.line, this.start, help)
+    const side = h(
+      'div',
+      { class: 'desk-side' },
+      h('h3', {}, 'Lines'),
+      this.lines,
+      h('h3', {}, 'Suspects'),
+      this.suspects,
+      h('h3', {}, 'Marks'),
+      this.marks,
+    )
+    this.element.append(
+      this.bar,
+      h(
+        'div',
+        { class: 'desk-body' },
+        side,
+        h('div', { class: 'desk-main' }, this.top, this.svg as unknown as HTMLElement, this.below, this.progress),
+      ),
+      this.line,
+      this.start,
+      help,
+    )
     this.lines.addEventListener('keydown', (e) => {
       const by = { ArrowDown: 1, ArrowUp: -1 }[e.key]
       if (!by || !this.facts) return
@@ -127,7 +187,9 @@ export class Desk {
     this.starting()
     this.buttons()
     this.paint()
-    ;(this.session ? (this.svg as unknown as HTMLElement) : (this.start.querySelector('button') as HTMLElement))?.focus({ preventScroll: true })
+    ;(this.session ? (this.svg as unknown as HTMLElement) : (this.start.querySelector('button') as HTMLElement))?.focus(
+      { preventScroll: true },
+    )
   }
 
   async settled(): Promise<void> {
@@ -145,7 +207,8 @@ export class Desk {
     const own = session ? { log: this.log, line: this.shownLine, key: session.key } : {}
     let found = await this.link.tell({ kind, ...own, ...fields })
     // A process that was lost knows nothing: it is told the whole.
-    if (found.unknown && session) found = await this.link.tell({ kind, ...own, source: session.source, tolerance: session.tolerance, ...fields })
+    if (found.unknown && session)
+      found = await this.link.tell({ kind, ...own, source: session.source, tolerance: session.tolerance, ...fields })
     this.times.push({ kind, ms: performance.now() - from })
     if (session && found.key) session.key = found.key
     return found
@@ -180,7 +243,9 @@ export class Desk {
       await this.lineByLine()
       this.take(found as DeskFacts, true)
       this.svg.focus()
-      this.say(`${found.title}: ${found.list.length === 1 ? `${found.detail.points.length} points` : `${found.list.length} lines`}, tolerance ${shown(found.tolerance)} by the scatter of the points`)
+      this.say(
+        `${found.title}: ${found.list.length === 1 ? `${found.detail.points.length} points` : `${found.list.length} lines`}, tolerance ${shown(found.tolerance)} by the scatter of the points`,
+      )
     })
   }
 
@@ -188,7 +253,13 @@ export class Desk {
   private goOn(kept: Facts): Promise<unknown> {
     return this.later(async () => {
       this.session = { source: kept.source, tolerance: kept.tolerance }
-      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [kept.log, kept.log.map(() => 'log'), [], '', 0]
+      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [
+        kept.log,
+        kept.log.map(() => 'log'),
+        [],
+        '',
+        0,
+      ]
       this.start.hidden = true
       this.take((await this.ask('desk_show')) as DeskFacts, true)
       this.svg.focus()
@@ -280,7 +351,10 @@ export class Desk {
     await this.later(async () => {
       if (!this.session) return
       await this.editor.synced()
-      const stem = String(this.facts!.title).replace(/\.\w+$/, '').replace(/\W+/g, '_').replace(/^(\d|_)/, 'f$1')
+      const stem = String(this.facts!.title)
+        .replace(/\.\w+$/, '')
+        .replace(/\W+/g, '_')
+        .replace(/^(\d|_)/, 'f$1')
       const taken = (name: string) => !this.applied && model.objects.some((o) => o.name === name)
       let name = taken(stem) ? `${stem}_faired` : stem
       for (let k = 2; taken(name); k++) name = `${stem}_faired_${k}`
@@ -311,7 +385,8 @@ export class Desk {
     this.decided++
     this.previewed = false
     // A page that is loaded again goes on from here; a table too large for the browser's store is opened anew.
-    if (this.session) store(`desk.${model.name}`, { source: this.session.source, tolerance: this.session.tolerance, log: this.log })
+    if (this.session)
+      store(`desk.${model.name}`, { source: this.session.source, tolerance: this.session.tolerance, log: this.log })
     this.shownLine = facts.line
     if (!facts.detail.points.includes(this.chosen.point)) this.chosen = { point: facts.detail.points[0], anchor: -1 }
     if (!facts.detail.points.includes(this.chosen.anchor)) this.chosen.anchor = -1
@@ -352,7 +427,8 @@ export class Desk {
     const wide = (this.svg.parentElement as HTMLElement).clientWidth || 600
     this.below.replaceChildren(...(strips(this.facts, wide) as unknown as HTMLElement[]))
     this.top.replaceChildren(...(views(this.facts, Math.floor(wide / 3) - 1, 190) as unknown as HTMLElement[]))
-    for (const line of this.top.querySelectorAll<SVGElement>('[data-line]')) line.addEventListener('click', () => this.showLine(Number(line.dataset.line)))
+    for (const line of this.top.querySelectorAll<SVGElement>('[data-line]'))
+      line.addEventListener('click', () => this.showLine(Number(line.dataset.line)))
   }
 
   fit(): void {
@@ -375,20 +451,53 @@ export class Desk {
 
   private listLines(): void {
     const f = this.facts!
-    this.lines.replaceChildren(...f.list.map((o, k) => {
-      const lock = h('button', { title: o.locked ? 'Unlock the line' : 'Lock the line as it is', 'aria-label': `${o.locked ? 'unlock' : 'lock'} ${o.name}`, onclick: (e: Event) => (e.stopPropagation(), void this.run(`${o.locked ? 'unlock' : 'lock'} ${k + 1}`)) }, o.locked ? 'Locked' : 'Lock')
-      const compared = f.compared?.[k]
-      return h('div', { role: 'option', 'aria-selected': k === f.line, 'data-line': k, onclick: () => this.showLine(k) },
-        h('span', {}, o.name), lock,
-        h('span', { class: 'facts' }, `bends ${o.inflections[0]} → ${o.inflections[1]}, pieces ${o.pieces[0]} → ${o.pieces[1]}, moved ${shown(o.moved, 3)} (${Math.round(100 * o.share)} %)${compared ? `, ${shown(compared, 2)} by the last step` : ''}`))
-    }))
+    this.lines.replaceChildren(
+      ...f.list.map((o, k) => {
+        const lock = h(
+          'button',
+          {
+            title: o.locked ? 'Unlock the line' : 'Lock the line as it is',
+            'aria-label': `${o.locked ? 'unlock' : 'lock'} ${o.name}`,
+            onclick: (e: Event) => (e.stopPropagation(), void this.run(`${o.locked ? 'unlock' : 'lock'} ${k + 1}`)),
+          },
+          o.locked ? 'Locked' : 'Lock',
+        )
+        const compared = f.compared?.[k]
+        return h(
+          'div',
+          { role: 'option', 'aria-selected': k === f.line, 'data-line': k, onclick: () => this.showLine(k) },
+          h('span', {}, o.name),
+          lock,
+          h(
+            'span',
+            { class: 'facts' },
+            `bends ${o.inflections[0]} → ${o.inflections[1]}, pieces ${o.pieces[0]} → ${o.pieces[1]}, moved ${shown(o.moved, 3)} (${Math.round(100 * o.share)} %)${compared ? `, ${shown(compared, 2)} by the last step` : ''}`,
+          ),
+        )
+      }),
+    )
   }
 
   private listSuspects(): void {
     const f = this.facts!
-    this.suspects.replaceChildren(...(f.suspects.length ? f.suspects.map((x) => h('div', { 'data-point': x.point }, x.text, x.reading && f.kind !== 'curves' ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
-      h('button', { 'aria-pressed': x.accepted, onclick: () => void this.run(`accept ${x.point + 1}`) }, x.accepted ? 'Accepted' : 'Accept'),
-      h('button', { onclick: () => this.showPoint(x.line, x.point) }, 'Show'))) : [h('p', { class: 'quiet' }, 'none')]))
+    this.suspects.replaceChildren(
+      ...(f.suspects.length
+        ? f.suspects.map((x) =>
+            h(
+              'div',
+              { 'data-point': x.point },
+              x.text,
+              x.reading && f.kind !== 'curves' ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
+              h(
+                'button',
+                { 'aria-pressed': x.accepted, onclick: () => void this.run(`accept ${x.point + 1}`) },
+                x.accepted ? 'Accepted' : 'Accept',
+              ),
+              h('button', { onclick: () => this.showPoint(x.line, x.point) }, 'Show'),
+            ),
+          )
+        : [h('p', { class: 'quiet' }, 'none')]),
+    )
   }
 
   private showPoint(line: number, point: number): void {
@@ -399,12 +508,25 @@ export class Desk {
 
   private listMarks(): void {
     const f = this.facts!
-    const button = (words: string, command: string) => h('button', { title: `take away: ${words}`, onclick: () => void this.run(command) }, `${words} ×`)
+    const button = (words: string, command: string) =>
+      h('button', { title: `take away: ${words}`, onclick: () => void this.run(command) }, `${words} ×`)
     const { knuckles, fixed, released } = f.detail
     this.marks.replaceChildren(
-      ...knuckles.map((p) => button(`knuckle ${p + 1}`, `knuckle ${p + 1}`)), ...fixed.map((p) => button(`fixed ${p + 1}`, `free ${p + 1}`)), ...released.map((p) => button(`released ${p + 1}`, `accept ${p + 1}`)),
-      ...f.shapes.filter((x) => x.line === f.line).map((x) => (x.ends ? button(x.text, `${x.text.split('=')[0]} ${x.ends.map((p) => p + 1).join('-')}${x.text.includes(':') && !x.text.startsWith('within') ? ` ${x.text.split(':')[1]}` : ''}`) : button(x.text, x.text.replace('=', ' ') + ` line ${x.line + 1}`))),
-      ...(f.span ? [button(`range ${f.span[1] + 1}-${f.span[2] + 1}`, 'range off')] : []))
+      ...knuckles.map((p) => button(`knuckle ${p + 1}`, `knuckle ${p + 1}`)),
+      ...fixed.map((p) => button(`fixed ${p + 1}`, `free ${p + 1}`)),
+      ...released.map((p) => button(`released ${p + 1}`, `accept ${p + 1}`)),
+      ...f.shapes
+        .filter((x) => x.line === f.line)
+        .map((x) =>
+          x.ends
+            ? button(
+                x.text,
+                `${x.text.split('=')[0]} ${x.ends.map((p) => p + 1).join('-')}${x.text.includes(':') && !x.text.startsWith('within') ? ` ${x.text.split(':')[1]}` : ''}`,
+              )
+            : button(x.text, `${x.text.replace('=', ' ')} line ${x.line + 1}`),
+        ),
+      ...(f.span ? [button(`range ${f.span[1] + 1}-${f.span[2] + 1}`, 'range off')] : []),
+    )
   }
 
   private badge(): void {
@@ -412,7 +534,14 @@ export class Desk {
     if (!badge || !this.facts) return
     const { state, words } = this.facts.detail.certificate
     badge.className = `badge ${state}`
-    badge.textContent = state === 'certified' ? 'certified' : state === 'kept' ? 'within limits' : state === 'draft' ? 'draft' : 'limit not kept'
+    badge.textContent =
+      state === 'certified'
+        ? 'certified'
+        : state === 'kept'
+          ? 'within limits'
+          : state === 'draft'
+            ? 'draft'
+            : 'limit not kept'
     badge.setAttribute('title', words)
     badge.setAttribute('aria-label', words)
   }
@@ -420,20 +549,66 @@ export class Desk {
   private starting(): void {
     this.start.hidden = this.session !== null
     if (this.session) return
-    const choose = h('input', { type: 'file', accept: '.csv,.tsv,.txt,.dat,.xyz,.pts', 'aria-label': 'a table of offsets' })
+    const choose = h('input', {
+      type: 'file',
+      accept: '.csv,.tsv,.txt,.dat,.xyz,.pts',
+      'aria-label': 'a table of offsets',
+    })
     choose.addEventListener('change', () => choose.files?.[0] && void this.openFile(choose.files[0]))
-    const picks = model.objects.filter((o) => ['curve', 'snake', 'surface'].includes(o.class) && o.state === 'ok').slice(0, 60)
+    const picks = model.objects
+      .filter((o) => ['curve', 'snake', 'surface'].includes(o.class) && o.state === 'ok')
+      .slice(0, 60)
     const kept = stored<Facts | null>(`desk.${model.name}`, null)
-    const again = kept ? h('button', { class: 'primary', onclick: () => void this.goOn(kept) }, `Go on with ${kept.source.name}, ${kept.log.length} ${kept.log.length === 1 ? 'step' : 'steps'}`) : ''
-    this.start.replaceChildren(again, h('h3', {}, 'What is to be faired?'), h('p', { class: 'quiet' }, 'Drop a table of offsets or points here, choose a file, or pick a curve or a surface of the model.'), choose,
-      h('div', { class: 'picks' }, ...picks.map((o) => h('button', { onclick: () => void this.open({ object: o.name }) }, o.name))))
+    const again = kept
+      ? h(
+          'button',
+          { class: 'primary', onclick: () => void this.goOn(kept) },
+          `Go on with ${kept.source.name}, ${kept.log.length} ${kept.log.length === 1 ? 'step' : 'steps'}`,
+        )
+      : ''
+    this.start.replaceChildren(
+      again,
+      h('h3', {}, 'What is to be faired?'),
+      h(
+        'p',
+        { class: 'quiet' },
+        'Drop a table of offsets or points here, choose a file, or pick a curve or a surface of the model.',
+      ),
+      choose,
+      h(
+        'div',
+        { class: 'picks' },
+        ...picks.map((o) => h('button', { onclick: () => void this.open({ object: o.name }) }, o.name)),
+      ),
+    )
   }
 
   private buttons(): void {
     const f = this.facts
-    const button = (words: string, key: string, run: () => void, more: Facts = {}) => h('button', { title: key ? `${words} (${key})` : words, onclick: run, ...more }, words, key ? h('kbd', {}, key) : '')
-    const tool = ([name, key, words]: [string, string, string]) => button(words, key.toUpperCase(), () => this.use(name), { 'aria-pressed': this.tool === name, class: this.tool === name ? 'on' : '' })
-    const save = h('select', { 'aria-label': 'save', title: 'save' }, ...[['', 'Save…'], ['csv', 'Table'], ['igs', 'Splines, IGES'], ['dxf', 'Splines, DXF'], ['json', 'Splines, JSON'], ['html', 'Sheet']].map(([v, words]) => h('option', { value: v }, words)))
+    const button = (words: string, key: string, run: () => void, more: Facts = {}) =>
+      h(
+        'button',
+        { title: key ? `${words} (${key})` : words, onclick: run, ...more },
+        words,
+        key ? h('kbd', {}, key) : '',
+      )
+    const tool = ([name, key, words]: [string, string, string]) =>
+      button(words, key.toUpperCase(), () => this.use(name), {
+        'aria-pressed': this.tool === name,
+        class: this.tool === name ? 'on' : '',
+      })
+    const save = h(
+      'select',
+      { 'aria-label': 'save', title: 'save' },
+      ...[
+        ['', 'Save…'],
+        ['csv', 'Table'],
+        ['igs', 'Splines, IGES'],
+        ['dxf', 'Splines, DXF'],
+        ['json', 'Splines, JSON'],
+        ['html', 'Sheet'],
+      ].map(([v, words]) => h('option', { value: v }, words)),
+    )
     save.addEventListener('change', () => {
       const stem = String(f?.title ?? 'faired').replace(/\.\w+$/, '')
       const own = String(f?.title ?? '').match(/\.\w+$/)?.[0] ?? '.csv'
@@ -444,11 +619,20 @@ export class Desk {
     this.bar.replaceChildren(
       button('Open', '', () => this.reopen()),
       h('span', { class: 'tol' }, 'Tolerance', this.slider, this.value),
-      button(f?.goal === 'fairest' ? 'Fairest' : 'Nearest', 'G', () => this.switchGoal(), { 'aria-pressed': f?.goal === 'fairest', 'aria-label': 'goal: nearest or fairest' }),
-      tool(['select', 'v', 'Select']), ...TOOLS.map(tool),
-      h('span', { class: 'grow' }), h('span', { class: 'badge', role: 'status' }),
-      button('Undo', '', () => void this.later(() => this.undoOne()), { disabled: !this.done.length }), button('Redo', '', () => void this.later(() => this.redoOne()), { disabled: !this.undone.length }),
-      button('Fit', '0', () => this.fit()), save, button('Apply', '', () => void this.apply(), { class: 'primary' }))
+      button(f?.goal === 'fairest' ? 'Fairest' : 'Nearest', 'G', () => this.switchGoal(), {
+        'aria-pressed': f?.goal === 'fairest',
+        'aria-label': 'goal: nearest or fairest',
+      }),
+      tool(['select', 'v', 'Select']),
+      ...TOOLS.map(tool),
+      h('span', { class: 'grow' }),
+      h('span', { class: 'badge', role: 'status' }),
+      button('Undo', '', () => void this.later(() => this.undoOne()), { disabled: !this.done.length }),
+      button('Redo', '', () => void this.later(() => this.redoOne()), { disabled: !this.undone.length }),
+      button('Fit', '0', () => this.fit()),
+      save,
+      button('Apply', '', () => void this.apply(), { class: 'primary' }),
+    )
     this.badge()
     if (focus) this.bar.querySelector<HTMLElement>(`[title="${CSS.escape(focus)}"]`)?.focus()
   }
@@ -527,7 +711,12 @@ export class Desk {
     this.svg.setPointerCapture(e.pointerId)
     const at = this.at(e)
     const k = e.button === 0 ? this.painter.hit(at, REACH) : -1
-    this.pressed = { at, kind: k >= 0 ? 'point' : 'pan', point: k >= 0 ? this.facts.detail.points[k] : -1, moved: false }
+    this.pressed = {
+      at,
+      kind: k >= 0 ? 'point' : 'pan',
+      point: k >= 0 ? this.facts.detail.points[k] : -1,
+      moved: false,
+    }
   }
 
   private move(e: PointerEvent): void {
@@ -599,7 +788,11 @@ export class Desk {
   /** The curve stays on the other side of its points than where the click was. */
   private sideAt(at: Place): void {
     const { detail } = this.facts!
-    const near = this.painter.places.reduce((m, p, k, all) => (Math.hypot(p[0] - at[0], p[1] - at[1]) < Math.hypot(all[m][0] - at[0], all[m][1] - at[1]) ? k : m), 0)
+    const near = this.painter.places.reduce(
+      (m, p, k, all) =>
+        Math.hypot(p[0] - at[0], p[1] - at[1]) < Math.hypot(all[m][0] - at[0], all[m][1] - at[1]) ? k : m,
+      0,
+    )
     const [x, y] = this.painter.places[near]
     const way = [0, 0, 0]
     if (Math.abs(at[0] - x) > Math.abs(at[1] - y)) way[detail.axes[0]] = Math.sign(at[0] - x)
@@ -656,9 +849,11 @@ export class Desk {
     else if (span && anchor >= 0 && anchor !== point) {
       this.chosen.anchor = -1
       this.mark(span[0], [anchor, point])
-    } else if (span) this.say(`${span[2]}: choose a stretch with Shift and the arrow keys, or click its ends`), this.use(span[0])
+    } else if (span)
+      this.say(`${span[2]}: choose a stretch with Shift and the arrow keys, or click its ends`), this.use(span[0])
     else if (key === 'o') this.use('side')
-    else if (key === '[' || key === ']') void this.run(this.command(Number((this.facts.limit * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))))
+    else if (key === '[' || key === ']')
+      void this.run(this.command(Number((this.facts.limit * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))))
     else if (key === 'g') this.switchGoal()
     else if (key === 'n') this.showLine(this.shownLine + (e.shiftKey ? -1 : 1))
     else if (key === 'v') this.use('select')
@@ -678,7 +873,22 @@ export class Desk {
   /** For tests: what is known, and where points are on the screen. */
   look(): Facts {
     const box = this.svg.getBoundingClientRect()
-    const places = Object.fromEntries((this.facts?.detail.points ?? []).map((p, k) => [p, [box.left + (this.painter.places[k]?.[0] ?? 0), box.top + (this.painter.places[k]?.[1] ?? 0)]]))
-    return { facts: this.facts, log: this.log, undone: this.undone.length, done: this.done.length, places, chosen: this.chosen, tool: this.tool, session: this.session, scale: this.sheet.scale }
+    const places = Object.fromEntries(
+      (this.facts?.detail.points ?? []).map((p, k) => [
+        p,
+        [box.left + (this.painter.places[k]?.[0] ?? 0), box.top + (this.painter.places[k]?.[1] ?? 0)],
+      ]),
+    )
+    return {
+      facts: this.facts,
+      log: this.log,
+      undone: this.undone.length,
+      done: this.done.length,
+      places,
+      chosen: this.chosen,
+      tool: this.tool,
+      session: this.session,
+      scale: this.sheet.scale,
+    }
   }
 }

@@ -60,7 +60,8 @@ export interface Chosen {
   anchor: number
 }
 
-const join = (places: Place[]): string => (places.length ? `M${places.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join('L')}` : '')
+const join = (places: Place[]): string =>
+  places.length ? `M${places.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join('L')}` : ''
 const path = (d: string, attributes: Facts) => s('path', { d, ...attributes })
 
 /** The sheet on the screen: its lower left corner and pixels of a unit. */
@@ -86,12 +87,18 @@ export class Sheet {
   fit(places: Place[], margin = 46): void {
     if (!places.length) return
     const [us, vs] = [places.map((p) => p[0]), places.map((p) => p[1])]
-    const [low, high] = [[Math.min(...us), Math.min(...vs)], [Math.max(...us), Math.max(...vs)]]
+    const [low, high] = [
+      [Math.min(...us), Math.min(...vs)],
+      [Math.max(...us), Math.max(...vs)],
+    ]
     const [w, h] = [Math.max(40, this.size[0] - 2 * margin), Math.max(30, this.size[1] - 2 * margin)]
     const [du, dv] = [high[0] - low[0], high[1] - low[1]]
     this.scale = Math.min(du > 0 ? w / du : Infinity, dv > 0 ? h / dv : Infinity)
     if (!Number.isFinite(this.scale)) this.scale = 1
-    this.corner = [(low[0] + high[0] - this.size[0] / this.scale) / 2, (low[1] + high[1] - this.size[1] / this.scale) / 2]
+    this.corner = [
+      (low[0] + high[0] - this.size[0] / this.scale) / 2,
+      (low[1] + high[1] - this.size[1] / this.scale) / 2,
+    ]
   }
 }
 
@@ -122,7 +129,10 @@ export class DeskPainter {
   private readonly over = s('g', { 'aria-hidden': 'true' })
   places: Place[] = []
 
-  constructor(readonly svg: SVGElement, readonly sheet: Sheet) {
+  constructor(
+    readonly svg: SVGElement,
+    readonly sheet: Sheet,
+  ) {
     svg.append(this.ground, this.dots, this.over)
   }
 
@@ -130,7 +140,10 @@ export class DeskPainter {
     const { detail: d } = f
     const { sheet } = this
     this.places = d.data.map(sheet.to)
-    const band = path(join(d.before.at.map(sheet.to)), { class: 'band', 'stroke-width': Math.max(1, 2 * f.limit * sheet.scale).toFixed(1) })
+    const band = path(join(d.before.at.map(sheet.to)), {
+      class: 'band',
+      'stroke-width': Math.max(1, 2 * f.limit * sheet.scale).toFixed(1),
+    })
     const cut = usual(d.after)
     const longest = 0.16 * Math.min(...sheet.size)
     const feet = d.after.at.map(sheet.to)
@@ -138,28 +151,67 @@ export class DeskPainter {
     const step = Math.max(1, Math.floor(feet.length / 400))
     const teeth = feet.map((p, k) => (k % step ? '' : `${join([p, tips[k]])}`)).join('')
     const parts: SVGElement[] = [band]
-    if (f.cut) for (const [seen, kind] of [[f.cut.before, 'before'], [f.cut.after, 'after']] as [Seen, string][]) if (String(f.cut.axes) === String(d.axes)) parts.push(path(join(seen.at.map(sheet.to)), { class: `line cut ${kind}` }))
+    if (f.cut)
+      for (const [seen, kind] of [
+        [f.cut.before, 'before'],
+        [f.cut.after, 'after'],
+      ] as [Seen, string][])
+        if (String(f.cut.axes) === String(d.axes))
+          parts.push(path(join(seen.at.map(sheet.to)), { class: `line cut ${kind}` }))
     parts.push(
       path(join(comb(d.before, sheet, cut, longest)), { class: 'comb before' }),
-      path(teeth, { class: 'teeth' }), path(join(tips), { class: 'comb after' }),
-      path(join(d.before.at.map(sheet.to)), { class: 'line before' }))
+      path(teeth, { class: 'teeth' }),
+      path(join(tips), { class: 'comb after' }),
+      path(join(d.before.at.map(sheet.to)), { class: 'line before' }),
+    )
     if (d.last) parts.push(path(join(d.last.map(sheet.to)), { class: 'line last' }))
     parts.push(path(join(feet), { class: 'line after' }))
-    for (const shape of f.shapes) if (shape.line === d.line && shape.ends) parts.push(...this.span(d, shape.ends, shape.text.split('=')[0]))
+    for (const shape of f.shapes)
+      if (shape.line === d.line && shape.ends) parts.push(...this.span(d, shape.ends, shape.text.split('=')[0]))
     if (f.span && f.span[0] === d.line) parts.push(...this.span(d, [f.span[1], f.span[2]], 'range'))
-    if (chosen.anchor >= 0 && chosen.anchor !== chosen.point) parts.push(...this.span(d, [chosen.anchor, chosen.point], 'chosen'))
+    if (chosen.anchor >= 0 && chosen.anchor !== chosen.point)
+      parts.push(...this.span(d, [chosen.anchor, chosen.point], 'chosen'))
     this.ground.replaceChildren(...parts)
     const suspects = new Map((f.suspects ?? []).map((x) => [x.point, x]))
-    this.dots.replaceChildren(...d.points.map((point, k) => {
-      const [x, y] = this.places[k]
-      const limit = d.limits[k]
-      const marks = [d.fixed.includes(point) ? 'fixed' : '', d.knuckles.includes(point) ? 'knuckle' : '', d.released.includes(point) ? 'released' : '', suspects.get(point)?.accepted === false ? 'suspect' : '', limit !== null && limit > 0 && d.moved[k] >= (1 - 1e-4) * limit ? 'reached' : '']
-      const name = f.names?.[point] ?? `point ${point + 1}`
-      const words = `${name}, ${limit === null ? 'released' : `moved ${shown(d.moved[k], 3)} of ${shown(limit, 3)}`}${marks.filter(Boolean).map((m) => `, ${m}`).join('')}`
-      const shape = marks[1] ? s('rect', { x: x - 4, y: y - 4, width: 8, height: 8, transform: `rotate(45 ${x} ${y})` }) : marks[0] ? s('rect', { x: x - 4, y: y - 4, width: 8, height: 8 }) : s('circle', { cx: x.toFixed(1), cy: y.toFixed(1), r: point === chosen.point ? 5 : 3 })
-      const ring = suspects.get(point) && !suspects.get(point)!.accepted ? [s('circle', { cx: x, cy: y, r: 9, class: 'ring' })] : []
-      return s('g', { class: `datum ${marks.filter(Boolean).join(' ')} ${point === chosen.point ? 'chosen' : ''}`, role: 'option', 'aria-selected': point === chosen.point, 'aria-label': words, 'data-point': point }, ...ring, shape)
-    }))
+    this.dots.replaceChildren(
+      ...d.points.map((point, k) => {
+        const [x, y] = this.places[k]
+        const limit = d.limits[k]
+        const marks = [
+          d.fixed.includes(point) ? 'fixed' : '',
+          d.knuckles.includes(point) ? 'knuckle' : '',
+          d.released.includes(point) ? 'released' : '',
+          suspects.get(point)?.accepted === false ? 'suspect' : '',
+          limit !== null && limit > 0 && d.moved[k] >= (1 - 1e-4) * limit ? 'reached' : '',
+        ]
+        const name = f.names?.[point] ?? `point ${point + 1}`
+        const words = `${name}, ${limit === null ? 'released' : `moved ${shown(d.moved[k], 3)} of ${shown(limit, 3)}`}${marks
+          .filter(Boolean)
+          .map((m) => `, ${m}`)
+          .join('')}`
+        const shape = marks[1]
+          ? s('rect', { x: x - 4, y: y - 4, width: 8, height: 8, transform: `rotate(45 ${x} ${y})` })
+          : marks[0]
+            ? s('rect', { x: x - 4, y: y - 4, width: 8, height: 8 })
+            : s('circle', { cx: x.toFixed(1), cy: y.toFixed(1), r: point === chosen.point ? 5 : 3 })
+        const ring =
+          suspects.get(point) && !suspects.get(point)!.accepted
+            ? [s('circle', { cx: x, cy: y, r: 9, class: 'ring' })]
+            : []
+        return s(
+          'g',
+          {
+            class: `datum ${marks.filter(Boolean).join(' ')} ${point === chosen.point ? 'chosen' : ''}`,
+            role: 'option',
+            'aria-selected': point === chosen.point,
+            'aria-label': words,
+            'data-point': point,
+          },
+          ...ring,
+          shape,
+        )
+      }),
+    )
     this.svg.dataset.tool = tool
     this.bar()
   }
@@ -170,7 +222,10 @@ export class DeskPainter {
     if (ends[0] < 0) return []
     const way = d.faired.slice(ends[0], ends[1] + 1).map(this.sheet.to)
     const [x, y] = way[Math.floor(way.length / 2)]
-    return [path(join(way), { class: `span ${word}` }), ...(word === 'chosen' ? [] : [s('text', { class: 'tag', x, y: y - 14 }, word)])]
+    return [
+      path(join(way), { class: `span ${word}` }),
+      ...(word === 'chosen' ? [] : [s('text', { class: 'tag', x, y: y - 14 }, word)]),
+    ]
   }
 
   /** A length that fits the picture, with its number. */
@@ -179,7 +234,10 @@ export class DeskPainter {
     const power = 10 ** Math.floor(Math.log10(wide / this.sheet.scale))
     const length = [5, 2, 1].map((k) => k * power).find((x) => x * this.sheet.scale <= wide) ?? power
     const [x, y] = [14, this.sheet.size[1] - 12]
-    this.over.replaceChildren(path(`M${x} ${y}h${(length * this.sheet.scale).toFixed(1)}`, { class: 'scale' }), s('text', { x: x + length * this.sheet.scale + 6, y: y + 4 }, shown(length)))
+    this.over.replaceChildren(
+      path(`M${x} ${y}h${(length * this.sheet.scale).toFixed(1)}`, { class: 'scale' }),
+      s('text', { x: x + length * this.sheet.scale + 6, y: y + 4 }, shown(length)),
+    )
   }
 
   hit([x, y]: Place, reach: number): number {
@@ -197,29 +255,69 @@ const HEIGHT = 84
 /** Strips below the line: curvature along the length, jumps at the knots, deviation against the limit. */
 export function strips(f: DeskFacts, width: number): SVGElement[] {
   const { detail: d } = f
-  const plot = (name: string, label: string, ...parts: SVGElement[]) => s('svg', { class: `desk-strip ${name}`, viewBox: `0 0 ${width} ${HEIGHT}`, width, height: HEIGHT, role: 'img', 'aria-label': label }, ...parts, s('text', { class: 'title', x: 8, y: 13 }, label))
+  const plot = (name: string, label: string, ...parts: SVGElement[]) =>
+    s(
+      'svg',
+      {
+        class: `desk-strip ${name}`,
+        viewBox: `0 0 ${width} ${HEIGHT}`,
+        width,
+        height: HEIGHT,
+        role: 'img',
+        'aria-label': label,
+      },
+      ...parts,
+      s('text', { class: 'title', x: 8, y: 13 }, label),
+    )
   const x = (share: number) => 8 + share * (width - 16)
   const cut = usual(d.after) * 1.15 || 1
   const y = (k: number) => HEIGHT / 2 - (Math.max(-1, Math.min(1, k / cut)) * (HEIGHT - 30)) / 2 + 6
-  const bends = (seen: Seen, kind: string) => path(join(seen.arc.map((a, k) => [x(a), y(seen.bend[k])])), { class: `line ${kind}` })
+  const bends = (seen: Seen, kind: string) =>
+    path(join(seen.arc.map((a, k) => [x(a), y(seen.bend[k])])), { class: `line ${kind}` })
   const largest = Math.max(...d.after.bend.map(Math.abs))
-  const curvature = plot('curvature', `curvature, largest ${shown(largest, 3)}`, path(`M${x(0)} ${y(0)}H${x(1)}`, { class: 'zero' }), bends(d.before, 'before'), bends(d.after, 'after'))
+  const curvature = plot(
+    'curvature',
+    `curvature, largest ${shown(largest, 3)}`,
+    path(`M${x(0)} ${y(0)}H${x(1)}`, { class: 'zero' }),
+    bends(d.before, 'before'),
+    bends(d.after, 'after'),
+  )
   const most = Math.max(...d.jumps[1], 1e-300)
   const rough = Math.max(...d.jumps[0], 1e-300)
   // Decades below the roughest.
-  const high = (j: number) => Math.max(0, Math.min(1, 1 + Math.log10(Math.max(j, 1e-300) / Math.max(rough, most)) / 6)) * (HEIGHT - 24)
-  const bars = (jumps: number[], kind: string, by: number) => path(jumps.map((j, k) => `M${(x(d.knots[k] ?? 0) + by).toFixed(1)} ${HEIGHT - 4}v${-high(j).toFixed(1)}`).join(''), { class: `bars ${kind}` })
-  const jumps = plot('jumps', `jumps of the third derivative, largest ${shown(rough, 3)} → ${shown(most, 3)}`, bars(d.jumps[0], 'before', -1), bars(d.jumps[1], 'after', 1))
+  const high = (j: number) =>
+    Math.max(0, Math.min(1, 1 + Math.log10(Math.max(j, 1e-300) / Math.max(rough, most)) / 6)) * (HEIGHT - 24)
+  const bars = (jumps: number[], kind: string, by: number) =>
+    path(
+      jumps.map((j, k) => `M${(x(d.knots[k] ?? 0) + by).toFixed(1)} ${HEIGHT - 4}v${-high(j).toFixed(1)}`).join(''),
+      { class: `bars ${kind}` },
+    )
+  const jumps = plot(
+    'jumps',
+    `jumps of the third derivative, largest ${shown(rough, 3)} → ${shown(most, 3)}`,
+    bars(d.jumps[0], 'before', -1),
+    bars(d.jumps[1], 'after', 1),
+  )
   const share = (k: number) => (d.limits[k] ? Math.min(1.3, d.moved[k] / d.limits[k]!) : 0)
   const top = (v: number) => HEIGHT - 4 - (v / 1.3) * (HEIGHT - 24)
   const places = d.points.map((_, k) => x(d.points.length > 1 ? k / (d.points.length - 1) : 0))
   const worst = d.moved.reduce((m, v, k) => (v > d.moved[m] ? k : m), 0)
-  const deviation = plot('deviation', `deviation against the limit, largest ${shown(d.moved[worst], 3)} at ${f.names?.[d.points[worst]] ?? `point ${d.points[worst] + 1}`}`, path(`M${x(0)} ${top(1)}H${x(1)}`, { class: 'limit' }),
-    path(places.map((p, k) => `M${p.toFixed(1)} ${HEIGHT - 4}V${top(share(k)).toFixed(1)}`).join(''), { class: 'bars after' }))
+  const deviation = plot(
+    'deviation',
+    `deviation against the limit, largest ${shown(d.moved[worst], 3)} at ${f.names?.[d.points[worst]] ?? `point ${d.points[worst] + 1}`}`,
+    path(`M${x(0)} ${top(1)}H${x(1)}`, { class: 'limit' }),
+    path(places.map((p, k) => `M${p.toFixed(1)} ${HEIGHT - 4}V${top(share(k)).toFixed(1)}`).join(''), {
+      class: 'bars after',
+    }),
+  )
   return [curvature, jumps, deviation]
 }
 
-const VIEWS: [string, number, number][] = [['Body plan', 1, 2], ['Waterlines', 0, 1], ['Profile', 0, 2]]
+const VIEWS: [string, number, number][] = [
+  ['Body plan', 1, 2],
+  ['Waterlines', 0, 1],
+  ['Profile', 0, 2],
+]
 
 /** The views of a network at once: stations, waterlines and buttocks, the shown line strong. */
 export function views(f: DeskFacts, width: number, height: number): SVGElement[] {
@@ -228,11 +326,34 @@ export function views(f: DeskFacts, width: number, height: number): SVGElement[]
   return VIEWS.map(([name, i, j]) => {
     const sheet = new Sheet()
     sheet.size = [width, height]
-    sheet.fit([[low[i], low[j]], [high[i], high[j]]], 18)
+    sheet.fit(
+      [
+        [low[i], low[j]],
+        [high[i], high[j]],
+      ],
+      18,
+    )
     const flat = (line: [number, number, number][]) => join(line.map((p) => sheet.to([p[i], p[j]])))
-    const lines = f.views!.map((line, k) => path(flat(line), { class: `line after ${k === f.line ? 'chosen' : ''}`, 'data-line': k }))
+    const lines = f.views!.map((line, k) =>
+      path(flat(line), { class: `line after ${k === f.line ? 'chosen' : ''}`, 'data-line': k }),
+    )
     const before = (f.views_before ?? []).map((line) => path(flat(line), { class: 'line before' }))
     const cut = f.cut ? [path(flat(f.cut.polyline), { class: 'line cut' })] : []
-    return s('svg', { class: 'desk-view', viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': name, 'data-view': name }, ...before, ...lines, ...cut, s('text', { class: 'title', x: 8, y: 15 }, name))
+    return s(
+      'svg',
+      {
+        class: 'desk-view',
+        viewBox: `0 0 ${width} ${height}`,
+        width,
+        height,
+        role: 'img',
+        'aria-label': name,
+        'data-view': name,
+      },
+      ...before,
+      ...lines,
+      ...cut,
+      s('text', { class: 'title', x: 8, y: 15 }, name),
+    )
   })
 }

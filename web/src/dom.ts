@@ -17,7 +17,11 @@ export function h<K extends keyof HTMLElementTagNameMap>(
     else if (value === true && !name.startsWith('aria-')) element.setAttribute(name, '')
     else element.setAttribute(name, String(value))
   }
-  element.append(...(children.filter((c) => c !== null && c !== undefined && c !== false) as (Node | string)[]).map((c) => (typeof c === 'number' ? String(c) : c)))
+  element.append(
+    ...(children.filter((c) => c !== null && c !== undefined && c !== false) as (Node | string)[]).map((c) =>
+      typeof c === 'number' ? String(c) : c,
+    ),
+  )
   return element
 }
 
@@ -33,7 +37,8 @@ export function s(tag: string, attributes: Attributes = {}, ...children: (Node |
 /** A number as a person reads it: six significant digits. */
 export function shown(x: unknown, digits = 6): string {
   if (Array.isArray(x)) return `(${x.map((v) => shown(v, digits)).join(', ')})`
-  if (typeof x !== 'number') return x === null || x === undefined ? '' : typeof x === 'object' ? listed(x as any, digits) : String(x)
+  if (typeof x !== 'number')
+    return x === null || x === undefined ? '' : typeof x === 'object' ? listed(x as any, digits) : String(x)
   if (!Number.isFinite(x)) return String(x)
   if (x !== 0 && (Math.abs(x) >= 1e7 || Math.abs(x) < 1e-5)) return x.toExponential(digits - 2).replace(/\.?0+e/, 'e')
   return String(Number(x.toPrecision(digits))).replace('-', '−')

@@ -1,16 +1,50 @@
 // The program: CodeMirror, with what the engine knows of the text, and changes shared with the hub.
 
-import { acceptCompletion, autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
+import {
+  acceptCompletion,
+  autocompletion,
+  type CompletionContext,
+  type CompletionResult,
+  closeBrackets,
+  closeBracketsKeymap,
+  completionKeymap,
+} from '@codemirror/autocomplete'
 import { collab, getSyncedVersion, receiveUpdates, sendableUpdates } from '@codemirror/collab'
 import { defaultKeymap, indentLess, indentMore, toggleComment } from '@codemirror/commands'
-import { bracketMatching, foldGutter, indentOnInput, StreamLanguage, syntaxHighlighting, type StreamParser } from '@codemirror/language'
-import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
-import { highlightSelectionMatches, searchKeymap, search } from '@codemirror/search'
-import { Annotation, ChangeSet, Compartment, EditorState, StateEffect, StateField, Transaction, type Text } from '@codemirror/state'
-import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from '@codemirror/view'
+import {
+  bracketMatching,
+  foldGutter,
+  indentOnInput,
+  StreamLanguage,
+  type StreamParser,
+  syntaxHighlighting,
+} from '@codemirror/language'
+import { type Diagnostic, lintGutter, setDiagnostics } from '@codemirror/lint'
+import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search'
+import {
+  Annotation,
+  ChangeSet,
+  Compartment,
+  EditorState,
+  StateEffect,
+  StateField,
+  type Text,
+  Transaction,
+} from '@codemirror/state'
+import {
+  Decoration,
+  type DecorationSet,
+  drawSelection,
+  EditorView,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  hoverTooltip,
+  keymap,
+  lineNumbers,
+} from '@codemirror/view'
 import { classHighlighter } from '@lezer/highlight'
 import { h } from './dom'
-import { holding, keptSteps, stepOf, Steps, type Held } from './history'
+import { type Held, holding, keptSteps, Steps, stepOf } from './history'
 import type { Link } from './link'
 
 export interface Edit {
@@ -30,9 +64,10 @@ const marks = StateField.define<DecorationSet>({
     set = set.map(tr.changes)
     for (const e of tr.effects)
       if (e.is(mark))
-        set = e.value && e.value.to > e.value.from && e.value.to <= tr.newDoc.length
-          ? Decoration.set([Decoration.mark({ class: 'cm-object' }).range(e.value.from, e.value.to)])
-          : Decoration.none
+        set =
+          e.value && e.value.to > e.value.from && e.value.to <= tr.newDoc.length
+            ? Decoration.set([Decoration.mark({ class: 'cm-object' }).range(e.value.from, e.value.to)])
+            : Decoration.none
     return set
   },
   provide: (f) => EditorView.decorations.from(f),
@@ -100,7 +135,12 @@ export class Editor {
   onEdit: (before: Text, changes: Edit[]) => void = () => {}
   onShow: (place: [number, number], focus: boolean) => void = () => {}
 
-  constructor(host: HTMLElement, private readonly link: Link, nonce: string, private readonly keys: { key: string; run: () => boolean }[]) {
+  constructor(
+    host: HTMLElement,
+    private readonly link: Link,
+    nonce: string,
+    private readonly keys: { key: string; run: () => boolean }[],
+  ) {
     this.view = new EditorView({ parent: host, state: this.state('', nonce) })
   }
 
@@ -109,12 +149,32 @@ export class Editor {
       doc: text,
       extensions: [
         nonce ? EditorView.cspNonce.of(nonce) : [],
-        lineNumbers(), highlightActiveLineGutter(), foldGutter(), keptSteps(), drawSelection(), indentOnInput(), bracketMatching(), closeBrackets(),
-        autocompletion({ override: [(c) => this.complete(c)] }), highlightActiveLine(), highlightSelectionMatches(), search({ top: true }), lintGutter(), marks,
-        syntaxHighlighting(classHighlighter), EditorState.tabSize.of(4), EditorView.lineWrapping,
-        this.language.of(StreamLanguage.define(parser({}))), this.shared.of([]),
+        lineNumbers(),
+        highlightActiveLineGutter(),
+        foldGutter(),
+        keptSteps(),
+        drawSelection(),
+        indentOnInput(),
+        bracketMatching(),
+        closeBrackets(),
+        autocompletion({ override: [(c) => this.complete(c)] }),
+        highlightActiveLine(),
+        highlightSelectionMatches(),
+        search({ top: true }),
+        lintGutter(),
+        marks,
+        syntaxHighlighting(classHighlighter),
+        EditorState.tabSize.of(4),
+        EditorView.lineWrapping,
+        this.language.of(StreamLanguage.define(parser({}))),
+        this.shared.of([]),
         EditorState.readOnly.of(this.link.still),
-        EditorView.contentAttributes.of({ 'aria-label': 'program', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
+        EditorView.contentAttributes.of({
+          'aria-label': 'program',
+          spellcheck: 'false',
+          autocorrect: 'off',
+          autocapitalize: 'off',
+        }),
         hoverTooltip((_, pos) => this.hover(pos), { hoverTime: 350 }),
         keymap.of([
           ...this.keys,
@@ -123,14 +183,19 @@ export class Editor {
           { key: 'F2', run: () => (void this.rename(), true) },
           { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
           { key: 'Mod-/', run: toggleComment },
-          ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...completionKeymap,
+          ...closeBracketsKeymap,
+          ...defaultKeymap,
+          ...searchKeymap,
+          ...completionKeymap,
         ]),
         EditorView.updateListener.of((update) => {
           this.steps.follow(update)
           if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) {
             if (!update.transactions.some((t) => t.annotation(fromHost))) {
               const made: Edit[] = []
-              update.changes.iterChanges((from, to, _a, _b, insert) => made.push({ from, to, insert: insert.toString() }))
+              update.changes.iterChanges((from, to, _a, _b, insert) =>
+                made.push({ from, to, insert: insert.toString() }),
+              )
               this.onEdit(update.startState.doc, made)
             }
             this.push()
@@ -210,7 +275,11 @@ export class Editor {
     while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
     this.view.dispatch({
       changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) },
-      annotations: host ? [Transaction.addToHistory.of(false), fromHost.of(true)] : silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : stepOf(name),
+      annotations: host
+        ? [Transaction.addToHistory.of(false), fromHost.of(true)]
+        : silently
+          ? [Transaction.addToHistory.of(false), fromOutside.of(true)]
+          : stepOf(name),
     })
   }
 
@@ -275,12 +344,23 @@ export class Editor {
     const effects = held.map((one) => holding.of(one))
     if (!edits.length && !effects.length) return
     const since = this.past.filter((p) => p.version >= version)
-    if (this.version - version !== since.length) return this.onTrouble('The text has changed too much meanwhile: do it again')
+    if (this.version - version !== since.length)
+      return this.onTrouble('The text has changed too much meanwhile: do it again')
     // What was typed meanwhile moves the places.
-    const later = [...since.map((p) => p.changes), ...(this.pending ? sendableUpdates(this.view.state).map((u) => u.changes) : [])]
+    const later = [
+      ...since.map((p) => p.changes),
+      ...(this.pending ? sendableUpdates(this.view.state).map((u) => u.changes) : []),
+    ]
     const changes = edits.map((e) => {
       const from = later.reduce((at, c) => c.mapPos(at, 1), e.from)
-      return { from, to: Math.max(from, later.reduce((at, c) => c.mapPos(at, -1), e.to)), insert: e.insert }
+      return {
+        from,
+        to: Math.max(
+          from,
+          later.reduce((at, c) => c.mapPos(at, -1), e.to),
+        ),
+        insert: e.insert,
+      }
     })
     this.view.dispatch({ changes, effects, annotations: stepOf(name), userEvent: 'input.hand' })
   }
@@ -298,9 +378,25 @@ export class Editor {
       const expected = d.expected ? `\nexpected ${d.expected}` : ''
       const help = (d.help ?? []).map((t: string) => `\n${t}`).join('')
       const actions = d.edit
-        ? [{ name: d.edit.title, apply: (v: EditorView) => d.edit.place[1] <= v.state.doc.length && v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert }, annotations: stepOf(d.edit.title) }) }]
+        ? [
+            {
+              name: d.edit.title,
+              apply: (v: EditorView) =>
+                d.edit.place[1] <= v.state.doc.length &&
+                v.dispatch({
+                  changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert },
+                  annotations: stepOf(d.edit.title),
+                }),
+            },
+          ]
         : []
-      shown.push({ from, to, severity: d.severity === 'note' ? 'info' : d.severity, message: d.message + expected + found + help, actions })
+      shown.push({
+        from,
+        to,
+        severity: d.severity === 'note' ? 'info' : d.severity,
+        message: d.message + expected + found + help,
+        actions,
+      })
     }
     shown.sort((a, b) => a.from - b.from)
     this.view.dispatch(setDiagnostics(this.view.state, shown))
@@ -327,7 +423,9 @@ export class Editor {
       const { head } = await this.link.ask('complete', { offset: context.pos })
       const types: Record<string, string> = { kind: 'class', member: 'property', object: 'constant' }
       const options = (head.completions as [string, string, string][]).map(([label, type, detail]) => ({
-        label, type: types[type] ?? type, detail: detail.length > 60 ? `${detail.slice(0, 60)}…` : detail,
+        label,
+        type: types[type] ?? type,
+        detail: detail.length > 60 ? `${detail.slice(0, 60)}…` : detail,
       }))
       return { from: word ? word.from : context.pos, options, validFor: /^\w*$/ }
     } catch {

@@ -3,7 +3,7 @@
 import type { Scale } from './colour'
 import { h, shown } from './dom'
 import type { Frame } from './frame'
-import { Newest, type Link } from './link'
+import { type Link, Newest } from './link'
 import { model } from './state'
 import type { View } from './view'
 
@@ -24,10 +24,18 @@ export class Foreign {
   private meshes: ForeignMesh[] = []
   private readonly files = new Map<string, string>()
   private readonly deviating = new Newest<void>(async () => {
-    if (this.meshes.length) await this.link.ask('deviation').then((f) => this.laid(f), () => undefined)
+    if (this.meshes.length)
+      await this.link.ask('deviation').then(
+        (f) => this.laid(f),
+        () => undefined,
+      )
   })
 
-  constructor(private readonly view: View, private readonly link: Link, private readonly act: { say(words: string): void; legend(): void }) {}
+  constructor(
+    private readonly view: View,
+    private readonly link: Link,
+    private readonly act: { say(words: string): void; legend(): void },
+  ) {}
 
   /** The model has changed. */
   refresh(): void {
@@ -48,7 +56,11 @@ export class Foreign {
     })
     this.scale = this.view.foreign(this.meshes)
     this.act.legend()
-    const words = overlays.map((o) => (o.rms === undefined ? `${o.name}: the model has no surface to compare with` : `${o.name}: rms ${shown(o.rms, 4)}, largest ${shown(o.largest, 4)} ${model.unit}`))
+    const words = overlays.map((o) =>
+      o.rms === undefined
+        ? `${o.name}: the model has no surface to compare with`
+        : `${o.name}: rms ${shown(o.rms, 4)}, largest ${shown(o.largest, 4)} ${model.unit}`,
+    )
     if (words.length) this.act.say(words.join(' · '))
   }
 
@@ -72,7 +84,11 @@ export class Foreign {
 
   /** A new engine is given them again. */
   async again(): Promise<void> {
-    for (const [name, data] of this.files) await this.link.ask('overlay', { name, data }).then((f) => this.laid(f), (error) => this.act.say(error.message))
+    for (const [name, data] of this.files)
+      await this.link.ask('overlay', { name, data }).then(
+        (f) => this.laid(f),
+        (error) => this.act.say(error.message),
+      )
   }
 
   /** Lets a person choose files. */

@@ -16,7 +16,11 @@ export class Gumball {
   private drawn = ''
 
   /** `grip`: a handle was pressed: along an axis, or in the plane across one. */
-  constructor(private readonly view: View, private readonly at: () => Vector3 | null, private readonly grip: (e: PointerEvent, axis: number | null, plane: number | null) => void) {
+  constructor(
+    private readonly view: View,
+    private readonly at: () => Vector3 | null,
+    private readonly grip: (e: PointerEvent, axis: number | null, plane: number | null) => void,
+  ) {
     this.element.append(this.svg)
     // The browser would drag what is selected in the page, and take the focus from the picture.
     this.element.addEventListener('mousedown', (e) => e.preventDefault())
@@ -49,15 +53,44 @@ export class Gumball {
       const [ux, uy] = [dx / length, dy / length]
       const [tx, ty] = [x + dx, y + dy]
       const head = `${tx},${ty} ${tx - 10 * ux + 4.5 * uy},${ty - 10 * uy - 4.5 * ux} ${tx - 10 * ux - 4.5 * uy},${ty - 10 * uy + 4.5 * ux}`
-      const line = (width: number, ink: string) => s('line', { x1: x + 9 * ux, y1: y + 9 * uy, x2: tx - 6 * ux, y2: ty - 6 * uy, stroke: ink, 'stroke-width': width })
-      handle(s('g', { class: 'axis' }, line(12, 'transparent'), line(2.4, INKS[k]), s('polygon', { points: head, fill: INKS[k] })), `along ${'xyz'[k]}`, k, null)
+      const line = (width: number, ink: string) =>
+        s('line', {
+          x1: x + 9 * ux,
+          y1: y + 9 * uy,
+          x2: tx - 6 * ux,
+          y2: ty - 6 * uy,
+          stroke: ink,
+          'stroke-width': width,
+        })
+      handle(
+        s(
+          'g',
+          { class: 'axis' },
+          line(12, 'transparent'),
+          line(2.4, INKS[k]),
+          s('polygon', { points: head, fill: INKS[k] }),
+        ),
+        `along ${'xyz'[k]}`,
+        k,
+        null,
+      )
     }
     // Over the arrows, which pass beside them in some views.
     for (let k = 0; k < 3; k++) {
       const [a, b] = [ways[(k + 1) % 3], ways[(k + 2) % 3]]
       if (Math.abs(a[0] * b[1] - a[1] * b[0]) < SEEN * REACH * REACH) continue
-      const corners = [[0.3, 0.3], [0.52, 0.3], [0.52, 0.52], [0.3, 0.52]].map(([m, n]) => `${x + m * a[0] + n * b[0]},${y + m * a[1] + n * b[1]}`)
-      handle(s('polygon', { points: corners.join(' '), fill: INKS[k], class: 'plane' }), `in the plane ${'xyz'.replace('xyz'[k], '')}`, null, k)
+      const corners = [
+        [0.3, 0.3],
+        [0.52, 0.3],
+        [0.52, 0.52],
+        [0.3, 0.52],
+      ].map(([m, n]) => `${x + m * a[0] + n * b[0]},${y + m * a[1] + n * b[1]}`)
+      handle(
+        s('polygon', { points: corners.join(' '), fill: INKS[k], class: 'plane' }),
+        `in the plane ${'xyz'.replace('xyz'[k], '')}`,
+        null,
+        k,
+      )
     }
   }
 }

@@ -3,7 +3,7 @@
 import { Vector3 } from 'three'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
-import { Newest, Refused, type Link } from './link'
+import { type Link, Newest, Refused } from './link'
 import { model } from './state'
 import { typed } from './typed'
 import type { Drawn, View } from './view'
@@ -59,7 +59,12 @@ interface Drag {
 }
 
 const AXES = ['x', 'y', 'z']
-const STEPS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
+const STEPS: Record<string, [number, number]> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+}
 /** Picture points behind the pointer that need a reason. */
 const BEHIND = 2
 const unit = (k: number) => new Vector3().setComponent(k, 1)
@@ -79,8 +84,17 @@ export class Hands {
   private readonly chooser = h('div', { class: 'chooser', role: 'group', 'aria-label': 'what to move', hidden: true })
   private readonly entry = h('input', { class: 'entry number', type: 'text', 'aria-label': 'value', hidden: true })
 
-  constructor(private readonly view: View, private readonly link: Link, host: HTMLElement, private readonly act: Handlers) {
-    this.gumball = new Gumball(view, () => this.held(), (e, axis, plane) => this.grip(e, axis, plane))
+  constructor(
+    private readonly view: View,
+    private readonly link: Link,
+    host: HTMLElement,
+    private readonly act: Handlers,
+  ) {
+    this.gumball = new Gumball(
+      view,
+      () => this.held(),
+      (e, axis, plane) => this.grip(e, axis, plane),
+    )
     host.append(this.gumball.element, this.tip, this.chooser, this.entry)
     this.requests = new Newest((run) => run())
     const c = view.canvas
@@ -163,8 +177,23 @@ export class Hands {
     this.act.select(item.object)
     const start = this.view.place(item)
     const drag: Drag = {
-      item, start, target: start.clone(), handles: [], own: [], names: [], chosen: [], axis: null, plane: null, onSurface: false,
-      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y], offset: [0, 0],
+      item,
+      start,
+      target: start.clone(),
+      handles: [],
+      own: [],
+      names: [],
+      chosen: [],
+      axis: null,
+      plane: null,
+      onSurface: false,
+      moved: false,
+      ready: false,
+      begun: Promise.resolve(false),
+      aimed: false,
+      keys,
+      last: [x, y],
+      offset: [0, 0],
     }
     this.drag = drag
     drag.begun = this.begin(drag)
@@ -179,7 +208,9 @@ export class Hands {
       Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
       const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression`
       if (this.drag === drag) {
-        this.act.status(`${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
+        this.act.status(
+          `${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`,
+        )
         if (drag.moved) this.aim(drag, false)
       }
       return true
@@ -193,7 +224,8 @@ export class Hands {
   /** A drag of the selected point by keys: arrows instead of the pointer. */
   take(object: string): void {
     const item = this.point(object)
-    if (!item) return this.act.status(object ? `${object} is no point that can be moved: select one` : 'Select a point first')
+    if (!item)
+      return this.act.status(object ? `${object} is no point that can be moved: select one` : 'Select a point first')
     if (this.drag || this.link.still) return
     this.view.canvas.focus({ preventScroll: true })
     this.grab(item, ...this.view.project(this.view.place(item)), true)
@@ -211,14 +243,28 @@ export class Hands {
       this.aim(drag, false)
     }
     const chip = (label: string, names: string[]) =>
-      h('button', { class: `chip ${names.join() === follow.join() ? 'on' : ''}`, 'aria-pressed': names.join() === follow.join(), onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+      h(
+        'button',
+        {
+          class: `chip ${names.join() === follow.join() ? 'on' : ''}`,
+          'aria-pressed': names.join() === follow.join(),
+          onpointerdown: (e: Event) => e.stopPropagation(),
+          onclick: () => choose(names),
+        },
+        label,
+      )
     const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
-    const listed = [...others].sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a)).slice(0, 6)
+    const listed = [...others]
+      .sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a))
+      .slice(0, 6)
     const params = others.filter((k) => k.parameter).map((k) => k.name)
     this.chooser.replaceChildren(
       h('span', { class: 'quiet' }, 'follows by'),
-      ...listed.map((k) => chip(k.parameter ? k.name : `${shown(k.value)} of ${k.name.replace(/#\d+$/, '')}`, [k.name])),
-      ...(params.length > 1 ? [chip('all parameters', params)] : []))
+      ...listed.map((k) =>
+        chip(k.parameter ? k.name : `${shown(k.value)} of ${k.name.replace(/#\d+$/, '')}`, [k.name]),
+      ),
+      ...(params.length > 1 ? [chip('all parameters', params)] : []),
+    )
     this.chooser.style.left = `${x + 16}px`
     this.chooser.style.top = `${y + 16}px`
   }
@@ -313,12 +359,14 @@ export class Hands {
       // The point of the axis that is nearest to the ray.
       const a = unit(drag.axis)
       const [w, b] = [drag.start.clone().sub(ray.origin), ray.direction.dot(a)]
-      if (1 - b * b > 1e-3) drag.target.copy(drag.start).addScaledVector(a, (b * ray.direction.dot(w) - a.dot(w)) / (1 - b * b))
+      if (1 - b * b > 1e-3)
+        drag.target.copy(drag.start).addScaledVector(a, (b * ray.direction.dot(w) - a.dot(w)) / (1 - b * b))
       basis = [a]
     } else {
       const n = drag.plane !== null ? unit(drag.plane) : camera.towards
       const slope = n.dot(ray.direction)
-      if (Math.abs(slope) > 0.05) drag.target.copy(ray.origin).addScaledVector(ray.direction, n.dot(drag.start.clone().sub(ray.origin)) / slope)
+      if (Math.abs(slope) > 0.05)
+        drag.target.copy(ray.origin).addScaledVector(ray.direction, n.dot(drag.start.clone().sub(ray.origin)) / slope)
       if (drag.plane !== null) basis = [0, 1, 2].filter((k) => k !== drag.plane).map(unit)
       const near = free ? null : this.view.near(x, y, 8, drag.item.object)
       if (near) {
@@ -333,21 +381,34 @@ export class Hands {
     const grain = camera.grain(this.view.height)
     this.requests.push(async () => {
       try {
-        const { head } = await this.link.ask('drag_to', { target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.chosen, grain })
+        const { head } = await this.link.ask('drag_to', {
+          target: target.toArray(),
+          basis: basis.map((b) => b.toArray()),
+          names: drag.chosen,
+          grain,
+        })
         if (this.drag !== drag) return
         const values = head.values as Record<string, number>
         drag.names = Object.keys(values)
         this.offer(drag)
         this.label(drag, head.reached)
         const words = Object.entries(values).map(([n, v]) => `${n} = ${shown(v)}`)
-        const lock = drag.axis !== null ? ` · along ${AXES[drag.axis]}` : drag.plane !== null ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}` : ''
+        const lock =
+          drag.axis !== null
+            ? ` · along ${AXES[drag.axis]}`
+            : drag.plane !== null
+              ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}`
+              : ''
         // Where it stays behind the pointer, the reason: an end of a range, or no number for the rest of the way.
         const short = Number(head.left) / grain
         const ended = (head.ended as string[]).map((n) => `${n} is at the end of its range, ${shown(values[n])}`)
-        const why = !(short > BEHIND) ? '' : ` · stays ${Math.round(short)} px behind: ${ended.length ? ended.join(', ') : `${drag.names.join(', ')} ${drag.names.length > 1 ? 'move' : 'moves'} it no further that way`}`
+        const why = !(short > BEHIND)
+          ? ''
+          : ` · stays ${Math.round(short)} px behind: ${ended.length ? ended.join(', ') : `${drag.names.join(', ')} ${drag.names.length > 1 ? 'move' : 'moves'} it no further that way`}`
         this.act.status(words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why)
       } catch (error) {
-        if (error instanceof Refused && error.message !== 'superseded') this.act.status(`${error.message}. Turn the view, or lock another axis`)
+        if (error instanceof Refused && error.message !== 'superseded')
+          this.act.status(`${error.message}. Turn the view, or lock another axis`)
       }
     })
   }
@@ -357,7 +418,11 @@ export class Hands {
     const now = new Vector3().fromArray(reached)
     const by = now.clone().sub(drag.start)
     this.view.overlay('moved', [[...drag.start.toArray(), ...reached]], 0xe8711a)
-    const parts = AXES.map((a, k) => (by.getComponent(k) ? `${a} ${shown(now.getComponent(k), 5)} (${by.getComponent(k) > 0 ? '+' : ''}${shown(by.getComponent(k), 3)})` : '')).filter(Boolean)
+    const parts = AXES.map((a, k) =>
+      by.getComponent(k)
+        ? `${a} ${shown(now.getComponent(k), 5)} (${by.getComponent(k) > 0 ? '+' : ''}${shown(by.getComponent(k), 3)})`
+        : '',
+    ).filter(Boolean)
     this.tip.textContent = `${parts.join('   ')} ${model.unit}`
     this.tip.hidden = !parts.length
     const [x, y] = this.view.project(now)
@@ -422,9 +487,16 @@ export class Hands {
     const [x, y] = this.at(e)
     const box = this.view.canvas.getBoundingClientRect()
     const lines = e.deltaMode === 1 ? 16 : 1
-    const fine = e.deltaMode === 0 && Math.abs(e.deltaY) < 60 && !e.ctrlKey && (e.deltaX !== 0 || !Number.isInteger(e.deltaY))
+    const fine =
+      e.deltaMode === 0 && Math.abs(e.deltaY) < 60 && !e.ctrlKey && (e.deltaX !== 0 || !Number.isInteger(e.deltaY))
     if (fine) this.view.camera.pan(-e.deltaX, -e.deltaY, this.view.height)
-    else this.view.camera.zoom(Math.exp(e.deltaY * lines * (e.ctrlKey ? 0.01 : 0.0015)), x - box.width / 2, y - box.height / 2, this.view.height)
+    else
+      this.view.camera.zoom(
+        Math.exp(e.deltaY * lines * (e.ctrlKey ? 0.01 : 0.0015)),
+        x - box.width / 2,
+        y - box.height / 2,
+        this.view.height,
+      )
     this.view.draw()
   }
 
@@ -434,13 +506,14 @@ export class Hands {
     if (drag) {
       const axis = AXES.indexOf(e.key.toLowerCase())
       const step = STEPS[e.key]
-      if (step && drag.keys) drag.last = [drag.last[0] + step[0] * (e.shiftKey ? 10 : 1), drag.last[1] + step[1] * (e.shiftKey ? 10 : 1)]
+      if (step && drag.keys)
+        drag.last = [drag.last[0] + step[0] * (e.shiftKey ? 10 : 1), drag.last[1] + step[1] * (e.shiftKey ? 10 : 1)]
       else if (e.key.toLowerCase() === 's') drag.onSurface = !drag.onSurface
       else if (axis >= 0 && !e.shiftKey) [drag.axis, drag.plane] = [drag.axis === axis ? null : axis, null]
       else if (axis >= 0) [drag.axis, drag.plane] = [null, drag.plane === axis ? null : axis]
       else if (e.key === 'Enter' && drag.keys) void this.finish(drag.moved)
       else if (e.key === 'Escape') this.cancel()
-      else if (/^[\d=.\-]$/.test(e.key)) return this.enter(drag, e)
+      else if (/^[\d=.-]$/.test(e.key)) return this.enter(drag, e)
       else return
       e.preventDefault()
       e.stopPropagation()
@@ -450,7 +523,12 @@ export class Hands {
       this.aim(drag, e.altKey || drag.keys)
       return
     }
-    const turn: Record<string, [number, number]> = { ArrowLeft: [-15, 0], ArrowRight: [15, 0], ArrowUp: [0, -15], ArrowDown: [0, 15] }
+    const turn: Record<string, [number, number]> = {
+      ArrowLeft: [-15, 0],
+      ArrowRight: [15, 0],
+      ArrowUp: [0, -15],
+      ArrowDown: [0, 15],
+    }
     if (e.key in turn && !e.altKey && !e.metaKey) {
       const [dx, dy] = turn[e.key]
       if (e.ctrlKey || e.shiftKey) camera.pan(-dx * 3, -dy * 3, this.view.height)
@@ -466,7 +544,11 @@ export class Hands {
   private enter(drag: Drag, e: KeyboardEvent): void {
     e.preventDefault()
     e.stopPropagation()
-    const names = drag.names.length ? drag.names : drag.own.length ? drag.own : drag.handles.slice(0, 1).map((k) => k.name)
+    const names = drag.names.length
+      ? drag.names
+      : drag.own.length
+        ? drag.own
+        : drag.handles.slice(0, 1).map((k) => k.name)
     const name = names.find((n) => drag.axis !== null && n.endsWith(`.${AXES[drag.axis]}`)) ?? names[0]
     if (!name) return
     this.entry.hidden = false
@@ -496,7 +578,9 @@ export class Hands {
     } catch (error) {
       return this.act.status((error as Error).message)
     }
-    this.requests.push(() => this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)))
+    this.requests.push(() =>
+      this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)),
+    )
     if (this.drag) this.drag.moved = this.drag.aimed = true
     if (e.key === 'Tab') {
       const all = (names ?? '').split('\n')
@@ -513,13 +597,19 @@ export class Hands {
     if (!p) return
     this.places = [...(this.places.length < 3 ? this.places : []), p.clone()]
     const [a, b, c] = this.places
-    const coordinates = (q: Vector3) => `(${q.toArray().map((x) => shown(x)).join(', ')})`
+    const coordinates = (q: Vector3) =>
+      `(${q
+        .toArray()
+        .map((x) => shown(x))
+        .join(', ')})`
     this.view.overlay('measure', b ? [this.places.flatMap((q) => q.toArray())] : null, 0xe8711a)
     if (!b) return this.act.status(`from ${coordinates(a)}: click a second place`)
     const d = b.clone().sub(a)
     const distance = `distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`
     if (!c) return this.act.status(`${distance} · a third place measures the angle`)
     const angle = (a.clone().sub(b).angleTo(c.clone().sub(b)) * 180) / Math.PI
-    this.act.status(`angle ${shown(angle)}° at ${coordinates(b)}   ${distance}   then ${shown(c.distanceTo(b))} ${model.unit}`)
+    this.act.status(
+      `angle ${shown(angle)}° at ${coordinates(b)}   ${distance}   then ${shown(c.distanceTo(b))} ${model.unit}`,
+    )
   }
 }

@@ -4,9 +4,10 @@
 // text does not state, travels with it as an effect.
 
 import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands'
-import { Annotation, StateEffect, type Extension, type Transaction } from '@codemirror/state'
+import { Annotation, type Extension, StateEffect, type Transaction } from '@codemirror/state'
 import type { EditorView, ViewUpdate } from '@codemirror/view'
 import { h } from './dom'
+import { icon } from './icons'
 
 /** What a step is called in the list. */
 export const called = Annotation.define<string>()
@@ -25,7 +26,11 @@ const MOST_STEPS = 2000
 export function keptSteps(): Extension {
   return [
     history({ minDepth: MOST_STEPS }),
-    invertedEffects.of((tr) => tr.effects.filter((e) => e.is(holding)).map((e) => holding.of({ name: e.value.name, from: e.value.to, to: e.value.from }))),
+    invertedEffects.of((tr) =>
+      tr.effects
+        .filter((e) => e.is(holding))
+        .map((e) => holding.of({ name: e.value.name, from: e.value.to, to: e.value.from })),
+    ),
   ]
 }
 
@@ -37,7 +42,13 @@ function word(tr: Transaction): string {
   if (given) return given
   let line = 1
   tr.changes.iterChangedRanges((_a, _b, from) => (line = tr.newDoc.lineAt(from).number))
-  const what = tr.isUserEvent('delete') ? 'Deletion' : tr.isUserEvent('input.paste') ? 'Paste' : tr.isUserEvent('input.type') ? 'Typing' : 'Edit'
+  const what = tr.isUserEvent('delete')
+    ? 'Deletion'
+    : tr.isUserEvent('input.paste')
+      ? 'Paste'
+      : tr.isUserEvent('input.type')
+        ? 'Typing'
+        : 'Edit'
   return `${what}, line ${line}`
 }
 
@@ -78,22 +89,22 @@ export class Steps {
   }
 }
 
-const icon = (path: string) => {
-  const box = h('span', { class: 'sign', 'aria-hidden': 'true' })
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg')
-  svg.setAttribute('viewBox', '0 0 16 16')
-  const line = document.createElementNS('http://www.w3.org/2000/svg', 'path')
-  line.setAttribute('d', path)
-  svg.append(line)
-  box.append(svg)
-  return box
-}
-
 /** Buttons and the list. `go` takes that many steps back, or does them again when it is negative. */
 export function historyButtons(steps: Steps, go: (count: number) => void, listed: boolean): HTMLElement {
-  const back = h('button', { class: 'icon', 'aria-label': 'undo', onclick: () => go(1) }, icon('M6 3 2.5 6.5 6 10M2.5 6.5H10a3.5 3.5 0 0 1 0 7H7'))
-  const again = h('button', { class: 'icon', 'aria-label': 'redo', onclick: () => go(-1) }, icon('M10 3l3.5 3.5L10 10M13.5 6.5H6a3.5 3.5 0 0 0 0 7h3'))
-  const open = h('button', { class: 'icon', 'aria-label': 'history', title: 'History', 'aria-expanded': false, 'aria-haspopup': 'true', onclick: () => show(!!list.hidden) }, '▾')
+  const back = h('button', { class: 'icon', 'aria-label': 'undo', onclick: () => go(1) }, icon('undo'))
+  const again = h('button', { class: 'icon', 'aria-label': 'redo', onclick: () => go(-1) }, icon('redo'))
+  const open = h(
+    'button',
+    {
+      class: 'icon',
+      'aria-label': 'history',
+      title: 'History',
+      'aria-expanded': false,
+      'aria-haspopup': 'true',
+      onclick: () => show(!!list.hidden),
+    },
+    '▾',
+  )
   const list = h('div', { class: 'history', role: 'group', 'aria-label': 'steps', hidden: true })
   const box = h('div', { class: 'steps' }, back, again, listed ? open : '', list)
   function show(on: boolean): void {
@@ -109,9 +120,16 @@ export function historyButtons(steps: Steps, go: (count: number) => void, listed
     back.title = last ? `Undo: ${last} (Ctrl+Z)` : 'Undo (Ctrl+Z)'
     again.title = next ? `Redo: ${next} (Ctrl+Shift+Z)` : 'Redo (Ctrl+Shift+Z)'
     if (list.hidden) return
-    const row = (name: string, count: number, state: string) => h('button', { class: state, onclick: () => (count ? go(count) : undefined), 'aria-current': count === 0 ? 'step' : null }, name)
+    const row = (name: string, count: number, state: string) =>
+      h(
+        'button',
+        { class: state, onclick: () => (count ? go(count) : undefined), 'aria-current': count === 0 ? 'step' : null },
+        name,
+      )
     const later = steps.undone.map((name, k) => row(name, k - steps.undone.length, 'undone'))
-    const before = steps.done.map((name, k) => row(name, steps.done.length - 1 - k, k === steps.done.length - 1 ? 'now' : '')).reverse()
+    const before = steps.done
+      .map((name, k) => row(name, steps.done.length - 1 - k, k === steps.done.length - 1 ? 'now' : ''))
+      .reverse()
     // The focus stays in the list that it came from: Escape closes that.
     const within = list.contains(document.activeElement)
     list.replaceChildren(...later, ...before, row('As opened', steps.done.length, steps.done.length ? '' : 'now'))

@@ -34,7 +34,11 @@ export class Host {
   private readonly files = new Map<string, Facts>()
   private act: HostActions | null = null
 
-  constructor(private readonly api: Api, hello: Facts, where: { worker: string; engine: string }) {
+  constructor(
+    private readonly api: Api,
+    hello: Facts,
+    where: { worker: string; engine: string },
+  ) {
     // A webview may not start a worker of its own files, nor may a worker fetch them: the page does both.
     const make = async () => {
       const script = await fetch(where.worker)

@@ -1,9 +1,12 @@
 // What answers the page: the server's engine through a socket, or the last scene of a file.
 
-import { Frame, type Facts } from './frame'
+import { type Facts, Frame } from './frame'
 
 export class Refused extends Error {
-  constructor(message: string, readonly facts: Facts = {}) {
+  constructor(
+    message: string,
+    readonly facts: Facts = {},
+  ) {
     super(message)
   }
 }
@@ -113,7 +116,10 @@ export class StillLink implements Link {
   onMessage: (message: Facts) => void = () => {}
   onState: (state: 'up' | 'down') => void = () => {}
 
-  constructor(private readonly hello: Facts, private readonly frames: Record<string, ArrayBuffer>) {}
+  constructor(
+    private readonly hello: Facts,
+    private readonly frames: Record<string, ArrayBuffer>,
+  ) {}
 
   async start(): Promise<void> {
     this.onState('up')
@@ -138,7 +144,10 @@ export class Newest<A> {
   private waiting: A | null = null
   private busy = false
 
-  constructor(private readonly carryOut: (a: A) => Promise<unknown>, private readonly merge = (_: A, b: A) => b) {}
+  constructor(
+    private readonly carryOut: (a: A) => Promise<unknown>,
+    private readonly merge = (_: A, b: A) => b,
+  ) {}
 
   push(a: A): void {
     this.waiting = this.waiting === null ? a : this.merge(this.waiting, a)

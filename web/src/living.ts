@@ -4,9 +4,9 @@
 // fails or takes too long a new one begins with the text as it is: nothing that was typed is lost.
 
 import { ChangeSet, Text } from '@codemirror/state'
-import { Frame, type Facts } from './frame'
-import { Refused, type Link } from './link'
 import { store, stored } from './dom'
+import { type Facts, Frame } from './frame'
+import { type Link, Refused } from './link'
 
 /** What computes: an engine that can be asked, and begun again. */
 export interface Engine {
@@ -26,7 +26,21 @@ interface Job {
 }
 
 /** As in the hub: requests of which only the newest counts. */
-const NEWEST = new Set(['set', 'solve_for', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
+const NEWEST = new Set([
+  'set',
+  'solve_for',
+  'drag_to',
+  'sync',
+  'hover',
+  'complete',
+  'inspect',
+  'section',
+  'field',
+  'combs',
+  'deviation',
+  'measure',
+  'blocks',
+])
 
 /** What a new engine must hear before it is asked anything else. */
 const STATE = ['show', 'watch']
@@ -51,7 +65,12 @@ export class LivingLink implements Link {
   private recovered = false
 
   /** `drafts`: whether what is typed is kept in this browser. */
-  constructor(private readonly hello: Facts, private readonly first: ArrayBuffer | null, private readonly engine: Engine, private readonly drafts = true) {
+  constructor(
+    private readonly hello: Facts,
+    private readonly first: ArrayBuffer | null,
+    private readonly engine: Engine,
+    private readonly drafts = true,
+  ) {
     this.original = hello.text
     const kept = !drafts ? null : stored<{ from: string; text: string } | null>(this.key, null)
     if (kept && kept.from === digest(this.original) && kept.text !== this.original) {
@@ -71,7 +90,13 @@ export class LivingLink implements Link {
 
   async start(): Promise<void> {
     this.onState('up')
-    this.onMessage({ ...this.hello, text: this.text.toString(), version: 0, dirty: this.dirty, recovered: this.recovered })
+    this.onMessage({
+      ...this.hello,
+      text: this.text.toString(),
+      version: 0,
+      dirty: this.dirty,
+      recovered: this.recovered,
+    })
     try {
       await this.engine.begin(this.text.toString())
       this.running = true
@@ -158,7 +183,10 @@ export class LivingLink implements Link {
     try {
       await this.engine.begin(this.text.toString())
       this.running = true
-      this.jobs.unshift(...STATE.filter((k) => this.state.has(k)).map((k) => this.silent(k, this.state.get(k))), this.silent('open'))
+      this.jobs.unshift(
+        ...STATE.filter((k) => this.state.has(k)).map((k) => this.silent(k, this.state.get(k))),
+        this.silent('open'),
+      )
     } catch (error) {
       this.onMessage({ kind: 'engine', state: 'lost', reason: (error as Error).message })
     }
@@ -180,7 +208,8 @@ export class LivingLink implements Link {
   }
 
   private push(message: Facts): Facts {
-    if (message.version !== this.version) return { kind: 'pushed', ok: false, version: this.version, text: this.text.toString() }
+    if (message.version !== this.version)
+      return { kind: 'pushed', ok: false, version: this.version, text: this.text.toString() }
     this.accept(message.updates)
     return { kind: 'pushed', ok: true, version: this.version }
   }
@@ -205,13 +234,13 @@ export class LivingLink implements Link {
       void this.again().then(() => this.pump())
     }
   }
-
 }
 
 /** A short hash of a text, to know it again. */
 function digest(text: string): string {
   let hash = 0xcbf29ce484222325n
-  for (let k = 0; k < text.length; k++) hash = ((hash ^ BigInt(text.charCodeAt(k))) * 0x100000001b3n) & 0xffffffffffffffffn
+  for (let k = 0; k < text.length; k++)
+    hash = ((hash ^ BigInt(text.charCodeAt(k))) * 0x100000001b3n) & 0xffffffffffffffffn
   return `${text.length}-${hash.toString(36)}`
 }
 
@@ -228,7 +257,10 @@ export class WorkerEngine implements Engine {
   /** Called when the model asks for files that are not here; those that `give` gets are there for the next beginning. */
   onMissing: (files: [string, string | null][]) => void = () => {}
 
-  constructor(private readonly make: () => Worker | Promise<Worker>, private readonly beginning: () => Promise<Facts>) {}
+  constructor(
+    private readonly make: () => Worker | Promise<Worker>,
+    private readonly beginning: () => Promise<Facts>,
+  ) {}
 
   /** All files that the model may read from now on. */
   give(files: unknown[]): void {

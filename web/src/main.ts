@@ -1,300 +1,91 @@
 // The workbench: one page in which a model lives.
 
 import './style.css'
-import { Editor } from './editor'
-import { BlockPlanes } from './blocks'
 import { Analysis } from './analysis'
-import { Board } from './board'
-import { Desk } from './desk'
-import { h, shown, store, stored } from './dom'
+import type { App, TabName } from './app'
+import { BlockPlanes } from './blocks'
+import { Changes, valuesInWords } from './changes'
+import { commands, SHEETS } from './commands'
+import { connected } from './connection'
+import { h, store, stored } from './dom'
+import { Editor } from './editor'
+import { copyLink, download, give, installDrop, openFile, openLink } from './files'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
-import { historyButtons, type Held } from './history'
-import { door, Host } from './host'
-import { Cell } from './notebook'
-import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
-import { LivingLink, WorkerEngine } from './living'
-import { help, palette, type Command } from './palette'
+import { historyButtons } from './history'
+import { installKeys } from './keys'
+import { Newest, Refused } from './link'
 import { Making } from './making'
+import { Cell } from './notebook'
 import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
-import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
-import { Sheets, type SheetName } from './sheets'
+import { help, palette } from './palette'
+import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
+import { Rooms } from './rooms'
+import { Saving } from './saving'
+import { SectionPlane } from './section'
+import { Sheets } from './sheets'
+import { makeShell, themes } from './shell'
 import { startPage } from './start'
 import { changed, model, on } from './state'
+import { tablesOf, tablesSheet } from './tables'
+import { buildToolbar } from './toolbar'
+import { treePanel } from './tree'
 import { typed } from './typed'
-import { View, type Paint, type Style } from './view'
-import type { Standard } from './camera'
+import { View } from './view'
 
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
-/** The editor that the page is inside of, if any: the text is there. */
-let host = null as Host | null
+const { link, host, inCell } = connected(() => saving.show())
+const shell = makeShell(link)
+const { say, warn } = shell
 /** The notebook's cell that the page is inside of, if any: it follows the text. */
-let cell = null as Cell | null
-let inCell = false
-
-/** The link: a server has an engine; a file carries its last scene, and an engine where the package has one. */
-function linked(): Link & { start(): Promise<void> } {
-  const carried = document.getElementById('moldloft-model')
-  if (!carried?.textContent) return new SocketLink()
-  const { hello, frames, files, host: where, cell: within } = JSON.parse(carried.textContent)
-  inCell = within === true
-  const api = where ? door() : null
-  if (api) {
-    host = new Host(api, hello, where)
-    document.body.dataset.host = 'editor'
-    host.link.onReady = () => {
-      document.body.dataset.engine = 'ready'
-      showSaved()
-    }
-    return host.link
-  }
-  const bytes = (text: string) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer as ArrayBuffer
-  const first: Record<string, ArrayBuffer> = Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)]))
-  const part = (id: string) => document.getElementById(id)?.textContent ?? ''
-  if (!document.getElementById('moldloft-worker')) return new StillLink(hello, first)
-  // A file may start a worker of a blob only.
-  const make = () => new Worker(URL.createObjectURL(new Blob([JSON.parse(part('moldloft-worker'))], { type: 'text/javascript' })))
-  const beginning = async () => {
-    // The engine comes last in the file: what is seen does not wait for it.
-    if (document.readyState === 'loading') await new Promise((r) => document.addEventListener('DOMContentLoaded', r, { once: true }))
-    return { packed: part('moldloft-engine'), name: hello.name, files }
-  }
-  const living = new LivingLink(hello, first.open ?? null, new WorkerEngine(make, beginning), !inCell)
-  living.onReady = () => {
-    document.body.dataset.engine = 'ready'
-    showSaved()
-  }
-  return living
-}
-
-const link = linked()
-const inside = () => host
+let cell: Cell | null = null
 let selected = ''
-let dirty = false
-let online = false
 let fitted = false
-let theirs: string | null = null
-let contours = stored('contours', true)
 let instance = ''
-/** For tests: when frames came, how long they took. */
-const stamps: { kind: string; from: number; to: number }[] = []
-
-// The frame of the page.
-
-const $ = <K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, unknown> = {}, ...children: any[]) => h(tag, attributes, ...children)
-const title = $('h1', {}, 'Moldloft')
-const file = $('span', { class: 'file' })
-const saved = $('span', { class: 'saved', role: 'status' })
-const saveButton = link.local
-  ? $('button', { class: 'primary', title: 'The text as a file (Ctrl+S)' }, 'Download')
-  : $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
-const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
-const exportButton = $('button', { title: 'Picture, meshes, curves, panels' }, 'Export')
-const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
-const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
-const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'history-place' }), $('span', { class: 'grow' }), paletteButton, exportButton, link.still ? '' : saveButton, themeButton, helpButton)
-const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
-const editorHost = $('div', { class: 'editor' })
-const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
-const viewHost = $('div', { class: 'view' })
-const sheetHost = $('div', { class: 'sheet', hidden: true, tabindex: 0 })
-const toolbar = $('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'view' })
-const tabs = $('div', { class: 'tabs', role: 'tablist', 'aria-label': 'what is shown' })
-const legend = $('div', { class: 'legend', hidden: true })
-const section = $('div', { class: 'section', hidden: true })
-const planesHost = $('div', { class: 'section', role: 'group', 'aria-label': 'plane of a block', hidden: true })
-const status = $('output', { class: 'status', 'aria-live': 'polite' })
-const params = $('section', { class: 'card', 'aria-label': 'parameters' })
-const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
-const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
-const footer = $('footer', { class: 'strip' })
-const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
-const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
-const right = $('div', { class: 'right' }, ...[['Parameters', params], ['Objects', tree], ['Inspector', inspector]].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)))
-const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
-const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
-document.getElementById('app')!.append(header, banner, body, footer)
-
-function say(words: string): void {
-  status.textContent = words
-}
-
-function warn(words: string, ...buttons: HTMLElement[]): void {
-  banner.replaceChildren(words, ...buttons)
-  banner.hidden = !words
-}
-
-// Theme and sizes.
-
-const media = matchMedia('(prefers-color-scheme: dark)')
-let theme = stored<'light' | 'dark' | 'system'>('theme', 'system')
-const isDark = () => (theme === 'system' ? media.matches : theme === 'dark')
-const sizes = stored<Record<string, number>>('sizes', { left: 420, right: 300, messages: 130 })
-function resize(): void {
-  for (const [name, size] of Object.entries(sizes)) document.documentElement.style.setProperty(`--${name}`, `${size}px`)
-}
-resize()
-for (const g of document.querySelectorAll<HTMLElement>('.grip')) {
-  const name = g.dataset.size!
-  const limits = (x: number) => Math.max(name === 'messages' ? 60 : 180, Math.min(name === 'messages' ? 500 : 900, x))
-  const put = (x: number) => {
-    sizes[name] = limits(x)
-    resize()
-    store('sizes', sizes)
-  }
-  g.addEventListener('pointerdown', (e) => {
-    g.setPointerCapture(e.pointerId)
-    const [from, size] = [name === 'messages' ? e.clientY : e.clientX, sizes[name]]
-    const move = (m: PointerEvent) => put(size + (name === 'messages' ? from - m.clientY : (name === 'right' ? -1 : 1) * (m.clientX - from)))
-    g.addEventListener('pointermove', move)
-    g.addEventListener('pointerup', () => g.removeEventListener('pointermove', move), { once: true })
-  })
-  g.addEventListener('keydown', (e) => {
-    const by = { ArrowLeft: -20, ArrowUp: 20, ArrowRight: 20, ArrowDown: -20 }[e.key]
-    if (by) put(sizes[name] + (name === 'right' ? -by : by))
-  })
-}
+const contours = stored('contours', true)
 
 // The picture.
 
-const view = new View(viewHost)
+const view = new View(shell.view)
 const canvas = view.canvas
 canvas.tabIndex = 0
 canvas.setAttribute('role', 'application')
 canvas.setAttribute('aria-label', 'model')
 canvas.setAttribute('aria-describedby', 'selection')
-const selection = $('span', { class: 'sr', id: 'selection' })
-viewHost.append(selection)
-
-function applyTheme(): void {
-  document.documentElement.dataset.theme = isDark() ? 'dark' : 'light'
-  view.theme(isDark())
-}
-media.addEventListener('change', applyTheme)
-themeButton.addEventListener('click', () => {
-  theme = isDark() ? 'light' : 'dark'
-  store('theme', theme)
-  applyTheme()
-})
-
-const orientation = new Orientation(view.camera, (name) => look(name), () => view.height)
-viewHost.parentElement!.append(orientation.element)
+const selection = h('span', { class: 'sr', id: 'selection' })
+shell.view.append(selection)
+view.covered = () => (shell.toolbar.hidden ? 0 : shell.toolbar.offsetTop + shell.toolbar.offsetHeight)
+const orientation = new Orientation(
+  view.camera,
+  (name) => app.look(name),
+  () => view.height,
+)
+shell.view.append(orientation.element)
 canvas.addEventListener('pointermove', (e) => orientation.hover(e))
 view.onFrame = () => {
   orientation.draw()
   hands.drawn()
+  section.placed()
 }
 
 // What the page does.
 
-const setting = new Newest<Record<string, number>>(
-  async (values) => {
-    const from = performance.now()
-    try {
-      await link.ask('set', { values })
-      stamps.push({ kind: 'set', from, to: performance.now() })
-    } catch (error) {
-      if (error instanceof Refused && error.message !== 'superseded') say(error.message)
-    }
-  },
-  (a, b) => ({ ...a, ...b }),
-)
-
-/** One after the other: the engine must have what the last one wrote before it writes the next. */
-let writing: Promise<void> = Promise.resolve()
-function edits(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
-  writing = writing.then(() => written(kind, fields, name))
-  return writing
-}
-
-/** Values of parameters that the text computes from others, while they are held. */
-const held = new Map<string, number>()
-
-async function written(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
-  try {
-    await editor.synced()
-    await setting.settled()
-    const { head } = await link.ask(kind, fields)
-    const now = (head.kept ?? []).map((n: string) => ({ name: n, from: held.get(n) ?? null, to: model.params.find((p) => p.name === n)?.value ?? null }))
-    const news = now.filter((one: Held) => one.from !== one.to)
-    for (const one of news) if (one.to !== null) held.set(one.name, one.to)
-    editor.apply(head.edits ?? [], head.version, name, news)
-    if (news.length) say(`${news.map((one: Held) => one.name).join(', ')} follows from an expression: the value holds for this session and is not in the text`)
-  } catch (error) {
-    say((error as Error).message)
-  }
-}
-
-/** What waits for the hand to rest. */
-let rests: { name: string; run: () => Promise<void>; timer: number } | null = null
-const REST = 600
-function rested(): Promise<void> {
-  const one = rests
-  rests = null
-  if (one) clearTimeout(one.timer)
-  return one ? one.run() : Promise.resolve()
-}
-
-function values(list: Record<string, number>): string {
-  const one = ([n, x]: [string, number]) => {
-    const was = model.params.find((p) => p.name === n)?.value
-    return was === undefined ? `${n}: ${shown(x)}` : `${n}: ${shown(was)} → ${shown(x)}`
-  }
-  return Object.entries(list).map(one).join(', ')
-}
-
-/** Steps of the history, back or, with a negative count, again; what is under way is a step, too. */
-function turn(count: number): void {
-  if (host) return host.undo(count > 0)
-  if (link.still) return
-  if (hands.busy) {
-    hands.cancel()
-    if (count > 0) return
-  }
-  void rested()
-  // Between what was written before the key and what is written after it.
-  writing = writing.then(async () => {
-    await hands.settled()
-    const back = count > 0
-    const step = (back ? editor.steps.done : editor.steps.undone).at(-1)
-    const gone = editor.steps.go(editor.view, count)
-    say(!gone ? `Nothing to ${back ? 'undo' : 'redo'}` : `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`)
-  })
-}
-
-function revert(): void {
-  void rested()
-  writing = writing.then(async () => {
-    try {
-      await hands.settled()
-      await editor.synced()
-      const { text } = await link.tell({ kind: 'revert' })
-      editor.replace(text, false, false, 'Revert to the saved file')
-      say('Reverted to the saved file; Ctrl+Z takes it back')
-      warn('')
-    } catch (error) {
-      say((error as Error).message)
-    }
-  })
-}
-
-const hidden = new Set<string>(stored<string[]>('hidden', []))
+const changes = new Changes(link, host, say, warn)
+const saving = new Saving(link, host, shell, changes, (blob, name) => give(app, blob, name))
+const hidden = new Set<string>()
 const inspecting = new Newest<() => Promise<void>>((run) => run())
-const actions: Actions & { hidden: Set<string>; selected: () => string } = {
+
+const actions: App['actions'] = {
   still: link.still,
   hidden,
   selected: () => selected,
-  set: (name, value) => setting.push({ [name]: value }),
+  set: (name, value) => changes.set(name, value),
   typed: (text) => typed(text, link),
-  rested,
-  rest(name, run) {
-    if (rests && rests.name !== name) void rested()
-    if (rests) clearTimeout(rests.timer)
-    rests = { name, run, timer: window.setTimeout(() => void rested(), REST) }
-  },
-  write: (list, name) => edits('write', { values: list }, name ?? values(list)),
+  rested: () => changes.rested(),
+  rest: (name, run) => changes.rest(name, run),
+  write: (list, name) => changes.edits('write', { values: list }, name ?? valuesInWords(list)),
   say,
   hover(name) {
     if (view.hovered === name) return
@@ -316,8 +107,8 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   show: (place) => editor.show(place, true),
   apply: (list, version, name) => editor.apply(list, version, name),
   async rewrite(kind, fields, name) {
-    await rested()
-    await edits(kind, fields, name)
+    await changes.rested()
+    await changes.edits(kind, fields, name)
   },
   toggle(name) {
     const o = model.objects.find((k) => k.name === name)
@@ -329,6 +120,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     hide()
   },
   ghost: (on) => view.ghost(on),
+  fair: link.local ? null : (name) => void fair(name),
   isolate(name) {
     hidden.clear()
     if (name) for (const o of model.objects) if (o.name !== name) hidden.add(o.name)
@@ -352,11 +144,18 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
 /** The control polygons of the selected curve, or of those that the selected point is in. */
 function polygons(): void {
   const points = new Map([...view.items.values()].filter((i) => i.kind === 'point').map((i) => [i.object, i]))
-  const near = model.objects.filter((o) => (o.class === 'curve' || o.class === 'snake') && o.parents.length > 2 && (o.name === selected || o.parents.includes(selected)))
-  const runs = near.map((o) => o.parents.flatMap((p) => {
-    const item = points.get(p)
-    return item && view.seen(item) ? view.place(item).toArray() : []
-  }))
+  const near = model.objects.filter(
+    (o) =>
+      (o.class === 'curve' || o.class === 'snake') &&
+      o.parents.length > 2 &&
+      (o.name === selected || o.parents.includes(selected)),
+  )
+  const runs = near.map((o) =>
+    o.parents.flatMap((p) => {
+      const item = points.get(p)
+      return item && view.seen(item) ? view.place(item).toArray() : []
+    }),
+  )
   view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
 }
 on(['selection', 'rev'], polygons)
@@ -371,34 +170,33 @@ async function locate(name: string, focus: boolean): Promise<void> {
   }
 }
 
+/** What is hidden, by the name of the model. */
 function hide(): void {
-  view.hidden = hidden
-  store('hidden', [...hidden])
+  store(`hidden.${model.name}`, [...hidden])
   view.settle()
   changed('objects')
 }
 view.hidden = hidden
 
-const editor = new Editor(editorHost, link, nonce.startsWith('__') ? '' : nonce, [
-  { key: 'Mod-s', run: () => (void save(), true) },
-  { key: 'Mod-k', run: () => (openPalette(), true) },
-  { key: 'Mod-z', run: () => (turn(1), true) },
-  { key: 'Mod-Shift-z', run: () => (turn(-1), true) },
-  { key: 'Mod-y', run: () => (turn(-1), true) },
-])
-editor.steps.onHeld = ({ name, to }) => {
-  if (to === null) held.delete(name)
-  else held.set(name, to)
-  // The engine gives up all that the text does not state, and takes again what is still held.
-  writing = writing.then(async () => {
-    await editor.synced()
-    if (to === null) await link.ask('reset')
-    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
-  }).catch((error) => say(error.message))
+async function fair(object: string): Promise<void> {
+  await sheet('desk')
+  await (await rooms.load('desk')).open({ object })
 }
-header.querySelector('.history-place')!.replaceWith(link.still ? '' : historyButtons(editor.steps, turn, !host))
-editor.onTrouble = (words) => say(words)
-editor.onPending = () => showSaved()
+
+// The parts.
+
+const editor = new Editor(shell.editor, link, nonce.startsWith('__') ? '' : nonce, [
+  { key: 'Mod-s', run: () => (void saving.save(), true) },
+  { key: 'Mod-k', run: () => (app.openPalette(), true) },
+  { key: 'Mod-z', run: () => (changes.turn(1), true) },
+  { key: 'Mod-Shift-z', run: () => (changes.turn(-1), true) },
+  { key: 'Mod-y', run: () => (changes.turn(-1), true) },
+])
+changes.editor = saving.editor = editor
+editor.steps.onHeld = (held) => changes.holds(held)
+shell.historyPlace.replaceWith(link.still ? '' : historyButtons(editor.steps, (n) => changes.turn(n), !host))
+editor.onTrouble = say
+editor.onPending = () => saving.show()
 let cursorTimer = 0
 editor.onCursor = (offset) => {
   clearTimeout(cursorTimer)
@@ -410,7 +208,7 @@ editor.onCursor = (offset) => {
   }, 120)
 }
 
-const hands = new Hands(view, link, viewHost, {
+const hands = new Hands(view, link, shell.view, {
   select: (name) => actions.select(name, 'view'),
   hover: actions.hover,
   say,
@@ -421,8 +219,12 @@ const hands = new Hands(view, link, viewHost, {
   place: (at, grain) => making.place(at, grain),
   corner: (e) => orientation.click(e),
 })
-const making = new Making(right, link, {
-  say, select: (name) => actions.select(name, 'text'), apply: (list, version, name) => editor.apply(list, version, name), synced: () => editor.synced(),
+changes.hands = hands
+const making = new Making(shell.right, link, {
+  say,
+  select: (name) => actions.select(name, 'text'),
+  apply: (list, version, name) => editor.apply(list, version, name),
+  synced: () => editor.synced(),
 })
 const start = startPage({
   begin: (text, name, reach) => {
@@ -433,80 +235,134 @@ const start = startPage({
     editor.replace(text, false, false, name)
   },
   add: (kind) => void editor.synced().then(() => making.open(kind)),
+  open: (file) => void openFile(app, file).catch((error) => say((error as Error).message)),
 })
-viewHost.parentElement!.append(start)
+shell.stage.append(start)
 editor.steps.onText = () => (start.hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name))
-const board = new Board(link, editor, say)
-const desk = new Desk(link, editor, say, give)
-viewHost.parentElement!.append(board.element, desk.element)
-const sheets = new Sheets(sheetHost, link, actions)
-parametersPanel(params, actions)
-treePanel(tree, actions)
-inspectorPanel(inspector, actions)
-messagesPanel(messagesHost, actions)
-strip(footer, actions, (host) => new GivenNumbers(host, link, {
-  say, write: actions.write, typed: actions.typed,
-  reset: async () => {
-    await link.ask('reset')
-    if (held.size) await link.ask('write', { values: Object.fromEntries(held) })
+const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name))
+const sheets = new Sheets(shell.sheet, link, actions, () => tablesSheet(editor, actions))
+const section = new SectionPlane(view, shell.section, {
+  say,
+  typed: actions.typed,
+  changed: () => buildToolbar(app),
+})
+const planes = new BlockPlanes(shell.planes, view, link, { say, legend: () => analysis.legend() })
+const foreign = new Foreign(view, link, { say, legend: () => analysis.legend() })
+const analysis = new Analysis(view, link, shell.legend, {
+  say,
+  painted: () => buildToolbar(app),
+  other: () =>
+    foreign.scale
+      ? { scale: foreign.scale, name: `deviation, ${model.unit}` }
+      : planes.scale && { scale: planes.scale, name: 'scaled Jacobian' },
+})
+parametersPanel(shell.params, actions)
+treePanel(shell.tree, actions)
+inspectorPanel(shell.inspector, actions)
+messagesPanel(shell.messages, actions)
+strip(
+  shell.footer,
+  actions,
+  (place) =>
+    new GivenNumbers(place, link, {
+      say,
+      write: actions.write,
+      typed: actions.typed,
+      reset: () => changes.reset(),
+      ghost: actions.ghost,
+    }),
+)
+
+const app: App = {
+  ...{
+    shell,
+    link,
+    host,
+    view,
+    editor,
+    hands,
+    making,
+    analysis,
+    section,
+    foreign,
+    planes,
+    rooms,
+    actions,
+    changes,
+    saving,
   },
-}))
+  formats: [],
+  look(name) {
+    view.camera.look(name)
+    view.fit()
+  },
+  sheet,
+  openPalette(words = '') {
+    const objects = model.objects
+      .slice(0, 2000)
+      .map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))
+    palette([...commands(app), ...objects], words)
+  },
+  download: (kind) => download(app, kind),
+  copyLink: () => copyLink(app),
+  buildToolbar: () => buildToolbar(app),
+}
 
-function showSaved(): void {
-  const waits = editor.pending
-  if (host) {
-    saved.textContent = document.body.dataset.engine === 'ready' ? '' : 'the engine starts…'
-    return
+// Tabs over the picture.
+
+/** The state of the model when it was last seen. */
+let seen = -1
+async function sheet(name: TabName): Promise<void> {
+  const inRoom = name === 'board' || name === 'desk'
+  const { room } = document.body.dataset
+  if (inRoom) document.body.dataset.room = name
+  else delete document.body.dataset.room
+  if (inRoom && !room) seen = model.rev
+  sheets.show(inRoom ? 'model' : name)
+  shell.toolbar.hidden = shell.view.hidden = name !== 'model'
+  shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)?.removeAttribute('hidden')
+  for (const t of shell.tabs.querySelectorAll<HTMLElement>('[role=tab]')) {
+    const on = t.dataset.sheet === name
+    t.setAttribute('aria-selected', String(on))
+    t.tabIndex = on ? 0 : -1
   }
-  if (link.local && !link.still) {
-    const running = document.body.dataset.engine === 'ready'
-    saved.textContent = !running ? 'the engine starts…' : !dirty ? 'as it was' : keeps() ? 'changed, kept in this browser' : 'changed, not saved'
-    saved.dataset.state = dirty ? 'dirty' : 'saved'
-    return
+  await rooms.show(inRoom ? name : null)
+  // What was made in a room is seen whole.
+  if (room && !inRoom && seen !== model.rev) view.fit()
+}
+
+function tab(name: TabName, words: string): HTMLElement {
+  const disabled = link.still && name !== 'model' && name !== 'graph'
+  const on = name === 'model'
+  const attributes = { role: 'tab', 'aria-selected': on, 'data-sheet': name, tabindex: on ? 0 : -1, disabled }
+  return h('button', { ...attributes, onclick: () => void sheet(name) }, words)
+}
+for (const [name, words] of SHEETS) shell.tabs.append(tab(name, words))
+shell.tabs.addEventListener('keydown', (e) => {
+  const step = { ArrowRight: 1, ArrowLeft: -1 }[e.key]
+  if (!step) return
+  const all = [...shell.tabs.querySelectorAll<HTMLButtonElement>('[role=tab]:not([hidden], :disabled)')]
+  const next = all[(all.indexOf(e.target as HTMLButtonElement) + step + all.length) % all.length]
+  e.preventDefault()
+  next.focus()
+  next.click()
+})
+
+/** A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing. */
+const floats = () => view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
+
+/** Sheets that say nothing of this model have no tab; the palette still has them. */
+function fitTabs(): void {
+  const means: Record<string, boolean> = {
+    lines: view.mirrored.includes('y'),
+    hydrostatics: floats(),
+    areas: floats(),
+    tables: tablesOf(editor).length > 0,
   }
-  saved.textContent = link.still ? 'as it was' : !online ? (waits ? 'not connected: what you type is kept in this page' : 'not connected') : waits ? 'sending…' : dirty ? 'draft kept, not in the file' : 'saved'
-  saved.dataset.state = !online ? 'off' : dirty || waits ? 'dirty' : 'saved'
-}
-
-/** Whether this browser keeps what is stored: one without storage forgets. */
-function keeps(): boolean {
-  store('keeps', true)
-  return stored('keeps', false)
-}
-
-async function save(force = false): Promise<void> {
-  if (host) return host.save()
-  try {
-    await rested()
-    await writing
-    await editor.synced()
-    const answer = await link.tell({ kind: 'save', force })
-    if (link.local) return give(new Blob([answer.text], { type: 'text/plain' }), model.name)
-    if (answer.kind === 'conflict') conflict(answer.theirs)
-    else {
-      dirty = false
-      say('Saved')
-    }
-  } catch (error) {
-    say((error as Error).message)
+  for (const [name, on] of Object.entries(means)) {
+    const t = shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)!
+    t.hidden = !on && t.getAttribute('aria-selected') !== 'true'
   }
-  showSaved()
-}
-
-function conflict(text: string): void {
-  theirs = text
-  const lines = (t: string) => t.split('\n').length
-  warn(`The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
-    $('button', { onclick: () => void save(true).then(() => warn('')) }, 'Keep mine, write the file'),
-    $('button', { onclick: revert }, 'Take theirs'),
-    $('button', { onclick: () => compare() }, 'Show both'))
-}
-
-function compare(): void {
-  const dialog = $('dialog', { class: 'compare', 'aria-label': 'both texts' }, $('h3', {}, 'The file'), $('pre', {}, theirs ?? ''), $('h3', {}, 'Here'), $('pre', {}, editor.text), $('button', { onclick: () => dialog.close() }, 'Close'))
-  document.body.append(dialog)
-  dialog.addEventListener('close', () => dialog.remove())
-  dialog.showModal()
 }
 
 // What comes.
@@ -514,7 +370,11 @@ function compare(): void {
 function take(frame: Frame): void {
   const { head } = frame
   const facts: [string, keyof typeof model, Parameters<typeof changed>[0]][] = [
-    ['params', 'params', 'params'], ['objects', 'objects', 'objects'], ['diagnostics', 'faults', 'faults'], ['printed', 'printed', 'printed'], ['watched', 'watched', 'watched'],
+    ['params', 'params', 'params'],
+    ['objects', 'objects', 'objects'],
+    ['diagnostics', 'faults', 'faults'],
+    ['printed', 'printed', 'printed'],
+    ['watched', 'watched', 'watched'],
   ]
   if (head.unit !== undefined) model.unit = head.unit
   if (head.program !== undefined) model.program = head.program
@@ -531,6 +391,8 @@ function take(frame: Frame): void {
   }
   if (head.rev !== undefined && head.rev !== model.rev && head.watched === undefined && model.watched.length) measure()
   if (scene) {
+    fitTabs()
+    section.show()
     analysis.refresh()
     foreign.refresh()
   }
@@ -538,6 +400,7 @@ function take(frame: Frame): void {
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
+    void watchUsual()
   }
   document.body.dataset.state = 'alive'
 }
@@ -563,12 +426,12 @@ function measure(): void {
 
 link.onFrame = take
 link.onState = (state) => {
-  online = state === 'up'
-  if (!online) {
+  saving.online = state === 'up'
+  if (!saving.online) {
     editor.offline()
     if (!link.still) warn('The server does not answer. What you type is kept here and sent when it is back.')
   }
-  showSaved()
+  saving.show()
 }
 link.onMessage = (message) => {
   switch (message.kind) {
@@ -576,25 +439,26 @@ link.onMessage = (message) => {
       void begin(message)
       break
     case 'updates':
-      dirty = message.dirty
+      saving.dirty = message.dirty
       editor.received(message.updates, message.from)
-      board.refresh()
+      rooms.refresh()
       cell?.changed()
-      showSaved()
+      saving.show()
       break
     case 'saved':
-      dirty = !!message.dirty
-      showSaved()
+      saving.dirty = !!message.dirty
+      saving.show()
       break
     case 'conflict':
-      conflict(message.theirs)
+      saving.conflict(message.theirs)
       break
     case 'engine':
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
       else {
         warn('')
-        if (held.size) void link.ask('write', { values: Object.fromEntries(held) }).catch(() => undefined)
-        if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
+        void changes.holdAgain().catch(() => undefined)
+        if (!link.local)
+          void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
         void foreign.again()
       }
       break
@@ -604,14 +468,29 @@ link.onMessage = (message) => {
   }
 }
 
+/** Numbers that are watched at first; a model that was begun here has them with its first surface. */
+let watching = false
+async function watchUsual(): Promise<void> {
+  const kept = stored<string[] | null>(`watch.${model.name}`, null)
+  const shown = [...view.items.values()].some((i) => i.kind === 'patch')
+  if (link.still || watching || (!kept && !shown)) return
+  watching = true
+  const usual = floats()
+    ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt']
+    : ['mesh.area', 'mesh.volume']
+  await link.ask('watch', { expressions: kept ?? usual }).catch(() => (watching = false))
+}
+
 async function begin(hello: any): Promise<void> {
   warn('')
   const again = instance !== ''
   instance = hello.instance ?? 'still'
   model.name = hello.name
-  file.textContent = hello.name
+  shell.file.textContent = hello.name
   document.title = `${hello.name} · Moldloft`
-  dirty = hello.dirty
+  saving.dirty = hello.dirty
+  hidden.clear()
+  for (const name of stored<string[]>(`hidden.${hello.name}`, [])) hidden.add(name)
   editor.begin(hello.text, hello.version, again)
   editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
@@ -620,266 +499,58 @@ async function begin(hello: any): Promise<void> {
     model.watched = hello.watched
     changed('watched')
   }
-  if (!link.local && !tabs.querySelector('[data-sheet=desk]')) tabs.append(tab('desk', 'Fairing desk'))
-  if (!link.local && /\.skt$/i.test(hello.name) && !tabs.querySelector('[data-sheet=board]')) {
-    tabs.append(tab('board', 'Drawing board'))
-    if (!/^\s*SKETCH/im.test(hello.text)) sheet('board')
+  const has = (name: string) => shell.tabs.querySelector(`[data-sheet=${name}]`) !== null
+  if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'))
+  if (!link.local && /\.skt$/i.test(hello.name) && !has('board')) {
+    shell.tabs.append(tab('board', 'Drawing board'))
+    if (!/^\s*SKETCH/im.test(hello.text)) void sheet('board')
   }
-  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.')
+  if (hello.recovered)
+    say(
+      'Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.',
+    )
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
-  showSaved()
+  saving.show()
   try {
     // A file's own scene is there at once; a server's is asked for with all that is to be drawn.
     if (link.local) await link.ask('open')
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
-    // A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing.
-    const floats = view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
-    const usual = ![...view.items.values()].some((i) => i.kind === 'patch') ? [] : floats ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt'] : ['mesh.area', 'mesh.volume']
-    const watched = stored<string[]>(`watch.${model.name}`, usual)
-    if (!link.still) await link.ask('watch', { expressions: watched })
-    if (!again && !link.still) formats = (await link.ask('formats')).head.formats
+    watching = false
+    await watchUsual()
+    if (!again && !link.still) app.formats = (await link.ask('formats')).head.formats
     if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
+    if (!again) await openLink(app)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
   }
 }
 
-const planes = new BlockPlanes(planesHost, view, link, { say, legend: () => analysis.legend() })
-const foreign = new Foreign(view, link, { say, legend: () => analysis.legend() })
-const analysis = new Analysis(view, link, legend, section, {
-  say,
-  painted: () => buildToolbar(),
-  other: () => (foreign.scale ? { scale: foreign.scale, name: `deviation, ${model.unit}` } : planes.scale && { scale: planes.scale, name: 'scaled Jacobian' }),
-})
-viewHost.addEventListener('dragover', (e) => e.preventDefault())
-viewHost.addEventListener('drop', (e) => {
-  e.preventDefault()
-  if (!link.still) for (const f of e.dataTransfer?.files ?? []) void foreign.lay(f)
-})
-
-// Commands: one table for buttons, keys and the palette.
-
-/** The formats of the engine: names, and what they hold. */
-let formats: [string, string][] = []
-const openPalette = (words = '') => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))], words)
-
-const looks: [Standard, string, string][] = [
-  ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
-]
-const styles: [Style, string, string][] = [['shaded', 'Shaded with panels', 'S'], ['panels', 'Panels', 'P'], ['smooth', 'Smooth', 'A'], ['wire', 'Wireframe', 'W'], ['xray', 'X-ray', 'R']]
-const look = (name: Standard) => {
-  view.camera.look(name)
-  view.fit()
-}
-const setStyle = (s: Style) => {
-  view.style = s
-  view.settle()
-  buildToolbar()
-}
-const layer = (kind: string) => {
-  view.layers[kind] = !view.layers[kind]
-  view.settle()
-  buildToolbar()
-}
-
-async function download(kind: string): Promise<void> {
-  try {
-    const stem = model.name.replace(/\.\w+$/, '')
-    if (kind === 'png') {
-      const blob = await view.picture()
-      if (blob) give(blob, `${stem}.png`)
-      return
-    }
-    const frame = await link.ask('export', { format: kind, stem })
-    for (const part of frame.head.files) give(new Blob([frame.bytes(part).slice()]), String(part.name).split(/[/\\]/).pop() ?? 'model')
-  } catch (error) {
-    say((error as Error).message)
-  }
-}
-function give(blob: Blob, name: string): void {
-  if (host) return void host.give(blob, name)
-  const a = $('a', { download: name })
-  a.href = URL.createObjectURL(blob)
-  a.click()
-  setTimeout(() => URL.revokeObjectURL(a.href), 10_000)
-}
-
-const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['areas', 'Section areas'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
-function sheet(name: SheetName | 'board' | 'desk'): void {
-  sheets.show(name === 'board' || name === 'desk' ? 'model' : name)
-  board.show(name === 'board')
-  desk.show(name === 'desk')
-  toolbar.hidden = name !== 'model'
-  for (const t of tabs.querySelectorAll('[role=tab]')) t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
-}
-
-function commands(): Command[] {
-  return [
-    { name: link.local ? 'Download the text' : 'Save', keys: 'Ctrl+S', run: () => void save() },
-    ...(link.still ? [] : [
-      { name: 'Undo', keys: 'Ctrl+Z', run: () => turn(1) },
-      { name: 'Redo', keys: 'Ctrl+Shift+Z', run: () => turn(-1) },
-      { name: link.local ? 'Revert to the text as it came' : 'Revert to the saved file', run: revert },
-    ]),
-    { name: 'Fit the model', keys: 'F', run: () => view.fit() },
-    ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
-    { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
-    ...styles.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(n) })),
-    { name: 'Colour: patches apart', run: () => analysis.paint('patches') },
-    { name: 'Colour: of the model', run: () => analysis.paint('model') },
-    { name: 'Colour: zebra stripes', keys: 'Z', run: () => analysis.paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
-    { name: 'Colour: reflection lines', run: () => analysis.paint('reflection') },
-    { name: 'Colour: isophotes', run: () => analysis.paint('isophotes') },
-    { name: 'Colour: highlight lines', run: () => analysis.paint('highlight') },
-    { name: 'Colour: Gaussian curvature', run: () => analysis.paint('field', 'gaussian_curvature') },
-    { name: 'Colour: mean curvature', run: () => analysis.paint('field', 'mean_curvature') },
-    { name: 'Colour: largest curvature', run: () => analysis.paint('field', 'largest_curvature') },
-    { name: 'Colour: smallest curvature', run: () => analysis.paint('field', 'smallest_curvature') },
-    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => analysis.paint('field', m) })),
-    ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => analysis.paint('field', 'derivative', p.name) })),
-    ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
-    { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
-    ...(link.still || !model.program ? [] : [
-      { name: 'Add an object', keys: 'Shift+A', run: () => void making.open() },
-      { name: 'Delete the selected object', keys: 'Delete', run: () => selected && void actions.rewrite('delete', { name: selected }, `Delete ${selected}`) },
-      { name: 'Duplicate the selected object', keys: 'Ctrl+D', run: () => selected && void actions.rewrite('duplicate', { name: selected }, `Duplicate ${selected}`) },
-      { name: 'Rename the selected object', keys: 'Shift+R', run: () => inspector.querySelector<HTMLInputElement>('input.title')?.select() },
-    ]),
-    { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
-    { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
-    { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
-    { name: 'Move the selected point by keys', keys: 'G', run: () => hands.take(selected) },
-    { name: 'Measure between places', keys: 'D', run: () => {
-      hands.measuring = !hands.measuring
-      say(hands.measuring ? 'Measure: click two or three places; D or Esc ends' : '')
-      if (!hands.measuring) view.overlay('measure', null)
-      buildToolbar()
-    } },
-    { name: 'Lay a mesh or offsets over the model (STL, OBJ, PLY, OFF, GDF, table)', run: () => foreign.choose() },
-    { name: 'Remove what lies over the model', run: () => void foreign.remove().catch((e) => say(e.message)) },
-    { name: 'Curvature comb of the selected curve', keys: 'K', run: () => analysis.toggleComb(selected) },
-    ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => analysis.cut(view.clip?.axis === k ? null : k) })),
-    { name: 'Plane of a volume block, folded cells', keys: 'B', run: () => planes.toggle() },
-    ...(link.local ? [] : [{ name: 'Fairing desk', run: () => sheet('desk') }, { name: 'Fair the selected curve or surface', run: () => (sheet('desk'), selected && void desk.open({ object: selected })) }]),
-    ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
-    { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
-    { name: 'Go to the model', keys: 'Ctrl+2', run: () => canvas.focus() },
-    { name: 'Go to parameters', keys: 'Ctrl+3', run: () => params.querySelector('input')?.focus() },
-    { name: 'Go to objects', keys: 'Ctrl+4', run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus() },
-    { name: 'Format the program', keys: 'Shift+Alt+F', run: () => void editor.format() },
-    { name: 'Rename the name at the cursor', keys: 'F2', run: () => void editor.rename() },
-    { name: 'Export: picture (PNG)', run: () => void download('png') },
-    ...formats.map(([f, about]) => ({ name: `Export: ${f}, ${about}`, run: () => void download(f) })),
-    { name: 'Light or dark', run: () => themeButton.click() },
-    { name: 'Help', keys: 'F1', run: () => help(commands()) },
-  ]
-}
-
-function buildToolbar(): void {
-  const focus = (document.activeElement as HTMLElement | null)?.getAttribute('aria-label')
-  const button = (label: string, words: string, run: () => void, on = false) => $('button', { 'aria-label': words, 'aria-pressed': on, title: words, class: on ? 'on' : '', onclick: run }, label)
-  const choice = (name: string, value: string, options: [string, string][], run: (v: string) => void) => {
-    const s = $('select', { 'aria-label': name, title: name }, ...options.map(([v, words]) => $('option', { value: v, selected: v === value }, words)))
-    s.addEventListener('change', () => run(s.value))
-    return s
-  }
-  const { field, by } = analysis
-  const value = view.paint === 'field' ? (field === 'derivative' ? `d:${by}` : field) : view.paint
-  toolbar.replaceChildren(
-    link.still ? '' : button('+', 'Add an object (Shift+A)', () => void making.open()),
-    button('⤢', 'Fit the model (F)', () => view.fit()),
-    choice('view', '', [['', 'View'], ...looks.map(([n, w, k]) => [n, `${w}  ${k}`] as [string, string])], (v) => {
-      if (v) look(v as Standard)
-      buildToolbar()
-    }),
-    button(view.camera.perspective ? '◭' : '▱', 'Perspective or orthographic (O)', () => {
-      view.camera.perspective = !view.camera.perspective
-      view.fit()
-      buildToolbar()
-    }, view.camera.perspective),
-    choice('style', view.style, styles.map(([n, w]) => [n, w]), (v) => setStyle(v as Style)),
-    choice('colour', value, [
-      ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['reflection', 'Reflection lines'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
-      ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
-    ], (v) => (['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v) ? analysis.paint(v as Paint) : v.startsWith('d:') ? analysis.paint('field', 'derivative', v.slice(2)) : analysis.paint('field', v))),
-    button('•', 'Points (.)', () => layer('point'), view.layers.point),
-    button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),
-    button('≋', 'Contours (C)', () => layer('contour'), view.layers.contour),
-    button('⇔', 'Measure (D)', () => commands().find((c) => c.keys === 'D')!.run(), hands.measuring),
-  )
-  if (focus) toolbar.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focus)}"]`)?.focus()
-}
-function tab(name: SheetName | 'board' | 'desk', words: string): HTMLElement {
-  return $('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words)
-}
-for (const [name, words] of SHEETS) tabs.append(tab(name, words))
-
-paletteButton.addEventListener('click', () => openPalette())
-exportButton.addEventListener('click', () => openPalette('Export: '))
-helpButton.addEventListener('click', () => help(commands()))
-saveButton.addEventListener('click', () => void save())
-
-/** The texts of fields when the focus came to them. */
-const came = new WeakMap<HTMLInputElement, string>()
-addEventListener('focusin', (e) => {
-  if (e.target instanceof HTMLInputElement && e.target.type !== 'range') came.set(e.target, e.target.value)
-})
-addEventListener('keydown', (e) => {
-  const target = e.target as HTMLElement
-  const typing = target.closest('input, select, textarea, .cm-editor, dialog') !== null
-  const name = `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && e.key.length === 1 && /[a-z]/i.test(e.key) ? 'Shift+' : ''}${e.key.length === 1 ? e.key.toUpperCase() : e.key}`
-  if (name === 'Ctrl+K') {
-    if (e.defaultPrevented) return
-    e.preventDefault()
-    return openPalette()
-  }
-  const turns: Record<string, number> = { 'Ctrl+Z': 1, 'Ctrl+Shift+Z': -1, 'Ctrl+Y': -1 }
-  if (name in turns) {
-    // A field with something typed in it takes that back first.
-    const field = target.closest('input')
-    if (e.defaultPrevented || target.closest('dialog') || (field && (came.get(field) ?? field.value) !== field.value)) return
-    e.preventDefault()
-    return turn(turns[name])
-  }
-  const command = commands().find((c) => c.keys === name)
-  if (e.key === 'Escape' && !typing) {
-    if (hands.busy) hands.cancel()
-    else if (making.isOpen) making.close()
-    else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
-    else if (view.clip) analysis.cut(null)
-    else if (planes.shown) planes.close()
-    else actions.select('', 'view')
-    return
-  }
-  if (!command || e.defaultPrevented || hands.busy) return
-  const plain = !e.ctrlKey && !e.metaKey && !e.altKey && !/^F\d/.test(e.key)
-  if (plain && (typing || target.closest('[role=tree]'))) return
-  if (typing && target.closest('dialog')) return
-  e.preventDefault()
-  command.run()
-})
+shell.paletteButton.addEventListener('click', () => app.openPalette())
+shell.exportButton.addEventListener('click', () => app.openPalette('Export: '))
+shell.linkButton.addEventListener('click', () => void app.copyLink())
+shell.helpButton.addEventListener('click', () => help(commands(app)))
+shell.saveButton.addEventListener('click', () => void saving.save())
 addEventListener('beforeunload', (e) => {
   if (editor.pending) e.preventDefault()
 })
-
-applyTheme()
-buildToolbar()
-showSaved()
-// The engine's words for parameters come with the first scene.
+installKeys(app)
+installDrop(app, shell.view)
+themes(shell.themeButton, (dark) => view.theme(dark))
+buildToolbar(app)
+saving.show()
 let known = ''
-setInterval(() => {
+on('params', () => {
+  // The colours by parameters are in the bar.
   const now = model.params.map((p) => p.name).join()
-  if (now !== known) {
-    known = now
-    buildToolbar()
-  }
-}, 500)
+  if (now !== known) buildToolbar(app)
+  known = now
+})
 
 /** For tests: numbers of the picture, never a way to change it. */
 Object.assign(window, {
   moldloft: {
-    stamps,
+    stamps: changes.stamps,
     model,
     project: (name: string) => {
       const item = [...view.items.values()].find((i) => i.object === name && i.kind === 'point')
@@ -888,19 +559,27 @@ Object.assign(window, {
       const [x, y] = view.project(view.place(item))
       return [box.left + x, box.top + y]
     },
-    items: () => [...view.items.values()].map((i) => ({ name: i.name, object: i.object, kind: i.kind, stale: i.stale, vertices: i.position.length / 3, seen: view.seen(i) })),
-    positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
+    items: () =>
+      [...view.items.values()].map((i) => ({
+        name: i.name,
+        object: i.object,
+        kind: i.kind,
+        stale: i.stale,
+        vertices: i.position.length / 3,
+        seen: view.seen(i),
+      })),
+    positions: (object: string) =>
+      [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
-    board,
-    desk,
-    steps: () => ({ done: [...editor.steps.done], undone: [...editor.steps.undone] }),
-    settled: async () => {
-      await rested()
-      await hands.settled()
-      await editor.synced()
-      await setting.settled()
-      await writing
+    over: (name: string) => view.drawnOver(name),
+    get board() {
+      return rooms.loaded.board
     },
+    get desk() {
+      return rooms.loaded.desk
+    },
+    steps: () => ({ done: [...editor.steps.done], undone: [...editor.steps.undone] }),
+    settled: () => changes.settled(),
     camera: () => ({ azimuth: view.camera.azimuth, elevation: view.camera.elevation, reach: view.camera.reach }),
     camera_set: (azimuth: number, elevation: number) => {
       Object.assign(view.camera, { azimuth, elevation })
@@ -910,5 +589,5 @@ Object.assign(window, {
 })
 
 if (inCell) document.body.dataset.host = 'cell'
-inside()?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
+host?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
 void link.start().catch((error) => warn(error.message))

@@ -38,11 +38,51 @@ export interface MakingActions {
 /** Classes of arguments that are typed and not picked. */
 const TYPED = ['number', 'integer', 'text', 'numbers', 'vectors', 'any']
 /** First letters of new names. */
-const STEMS: Record<string, string> = { point: 'P', bead: 'b', magnet: 'm', ring: 'r', curve: 'c', snake: 'n', surface: 's', solid: 'body', plane: 'plane', frame: 'frame', set: 'part', mesh: 'mesh' }
-const GROUPS = ['parameter', 'point', 'curve', 'surface', 'bead', 'magnet', 'ring', 'snake', 'plane', 'solid', 'mesh', 'set', 'block']
+const STEMS: Record<string, string> = {
+  point: 'P',
+  bead: 'b',
+  magnet: 'm',
+  ring: 'r',
+  curve: 'c',
+  snake: 'n',
+  surface: 's',
+  solid: 'body',
+  plane: 'plane',
+  frame: 'frame',
+  set: 'part',
+  mesh: 'mesh',
+}
+const GROUPS = [
+  'parameter',
+  'point',
+  'curve',
+  'surface',
+  'bead',
+  'magnet',
+  'ring',
+  'snake',
+  'plane',
+  'solid',
+  'mesh',
+  'set',
+  'block',
+]
 const PARAMETER: Kind = {
-  name: 'param', class: 'parameter', about: 'A number with a slider.', also: 'parameter variable slider',
-  fields: ['value', 'least', 'largest'].map((name) => ({ name, help: '', class: 'number', accepts: [], many: false, least: 0, required: name === 'value', default: null, words: [] })),
+  name: 'param',
+  class: 'parameter',
+  about: 'A number with a slider.',
+  also: 'parameter variable slider',
+  fields: ['value', 'least', 'largest'].map((name) => ({
+    name,
+    help: '',
+    class: 'number',
+    accepts: [],
+    many: false,
+    least: 0,
+    required: name === 'value',
+    default: null,
+    words: [],
+  })),
 }
 
 export class Making {
@@ -56,7 +96,11 @@ export class Making {
   private readonly fault = h('p', { class: 'bad', role: 'alert', hidden: true })
   private named = h('input', { type: 'text' })
 
-  constructor(host: HTMLElement, private readonly link: Link, private readonly act: MakingActions) {
+  constructor(
+    host: HTMLElement,
+    private readonly link: Link,
+    private readonly act: MakingActions,
+  ) {
     host.prepend(this.panel)
     this.panel.addEventListener('keydown', (e) => {
       if (e.key === 'Escape') this.close()
@@ -95,7 +139,14 @@ export class Making {
   }
 
   private heading(words: string, ...more: HTMLElement[]): HTMLElement {
-    return h('header', {}, h('strong', {}, words), ...more, h('span', { class: 'grow' }), h('button', { class: 'icon', 'aria-label': 'close', onclick: () => this.close() }, '×'))
+    return h(
+      'header',
+      {},
+      h('strong', {}, words),
+      ...more,
+      h('span', { class: 'grow' }),
+      h('button', { class: 'icon', 'aria-label': 'close', onclick: () => this.close() }, '×'),
+    )
   }
 
   private list(): void {
@@ -105,13 +156,24 @@ export class Making {
     const order = (k: Kind) => (GROUPS.includes(k.class) ? GROUPS.indexOf(k.class) : GROUPS.length)
     const build = () => {
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean)
-      const found = this.kinds.filter((k) => words.every((w) => `${k.name} ${k.class} ${k.about} ${k.also}`.toLowerCase().includes(w)))
+      const found = this.kinds.filter((k) =>
+        words.every((w) => `${k.name} ${k.class} ${k.about} ${k.also}`.toLowerCase().includes(w)),
+      )
       const nearness = (k: Kind) => {
         const [name, word] = [k.name.toLowerCase(), words.join('')]
         return !word || name === word ? 0 : name.startsWith(word) ? 1 : name.includes(word) ? 2 : 3
       }
       found.sort((a, b) => nearness(a) - nearness(b) || order(a) - order(b))
-      rows.replaceChildren(...found.map((k) => h('button', { role: 'listitem', title: k.about, onclick: () => this.form(k) }, h('span', {}, k.name), h('span', { class: 'quiet' }, k.about))))
+      rows.replaceChildren(
+        ...found.map((k) =>
+          h(
+            'button',
+            { role: 'listitem', title: k.about, onclick: () => this.form(k) },
+            h('span', {}, k.name),
+            h('span', { class: 'quiet' }, k.about),
+          ),
+        ),
+      )
     }
     search.addEventListener('input', build)
     search.addEventListener('keydown', (e) => {
@@ -144,19 +206,48 @@ export class Making {
     const row = (f: Field) => {
       const words = f.words.length > 1 ? f.words : []
       const input = words.length
-        ? h('select', { 'aria-label': f.name }, h('option', { value: '' }, f.default === null ? '' : `${f.default}`), ...words.map((w) => h('option', { value: w }, w)))
-        : h('input', { type: 'text', 'aria-label': f.name, spellcheck: 'false', placeholder: f.default === null ? (this.takes(f) ? `pick ${f.many ? 'several' : f.class}` : f.class) : String(f.default) })
+        ? h(
+            'select',
+            { 'aria-label': f.name },
+            h('option', { value: '' }, f.default === null ? '' : `${f.default}`),
+            ...words.map((w) => h('option', { value: w }, w)),
+          )
+        : h('input', {
+            type: 'text',
+            'aria-label': f.name,
+            spellcheck: 'false',
+            placeholder:
+              f.default === null
+                ? this.takes(f)
+                  ? `pick ${f.many ? 'several' : f.class}`
+                  : f.class
+                : String(f.default),
+          })
       input.addEventListener('focus', () => this.activate(f))
       this.inputs.set(f.name, input)
-      return h('label', { class: 'fact', title: f.help, 'data-field': f.name }, h('span', { class: 'key' }, f.name), input)
+      return h(
+        'label',
+        { class: 'fact', title: f.help, 'data-field': f.name },
+        h('span', { class: 'key' }, f.name),
+        input,
+      )
     }
     const needed = kind.fields.filter((f) => f.required || kind === PARAMETER)
     const others = kind.fields.filter((f) => !needed.includes(f))
     this.panel.replaceChildren(
-      this.heading(kind.name, h('button', { class: 'link', onclick: () => this.list() }, 'other kinds')), h('p', { class: 'quiet' }, kind.about),
-      h('label', { class: 'fact' }, h('span', { class: 'key' }, 'name'), this.named), ...needed.map(row),
+      this.heading(kind.name, h('button', { class: 'link', onclick: () => this.list() }, 'other kinds')),
+      h('p', { class: 'quiet' }, kind.about),
+      h('label', { class: 'fact' }, h('span', { class: 'key' }, 'name'), this.named),
+      ...needed.map(row),
       ...(others.length ? [h('details', {}, h('summary', {}, `Options (${others.length})`), ...others.map(row))] : []),
-      this.fault, h('div', { class: 'buttons' }, h('button', { class: 'primary', onclick: () => void this.add() }, 'Add'), this.places() ? h('span', { class: 'quiet' }, 'or click in the picture') : ''))
+      this.fault,
+      h(
+        'div',
+        { class: 'buttons' },
+        h('button', { class: 'primary', onclick: () => void this.add() }, 'Add'),
+        this.places() ? h('span', { class: 'quiet' }, 'or click in the picture') : '',
+      ),
+    )
     const first = needed.find((f) => this.takes(f)) ?? needed[0] ?? null
     if (first) this.activate(first)
     if (chosen) this.pick(chosen)
@@ -165,13 +256,18 @@ export class Making {
 
   private activate(field: Field): void {
     this.active = field
-    for (const row of this.panel.querySelectorAll<HTMLElement>('[data-field]')) row.classList.toggle('active', row.dataset.field === field.name)
+    for (const row of this.panel.querySelectorAll<HTMLElement>('[data-field]'))
+      row.classList.toggle('active', row.dataset.field === field.name)
     if (this.takes(field)) this.act.say(`${field.name}: ${field.help} Pick in the picture or the list of objects.`)
   }
 
   /** True when the form takes coordinates from a click. */
   private places(): boolean {
-    const names = this.kind?.fields.filter((f) => f.required).map((f) => f.name).join() ?? ''
+    const names =
+      this.kind?.fields
+        .filter((f) => f.required)
+        .map((f) => f.name)
+        .join() ?? ''
     return names === 'x,y,z'
   }
 
@@ -182,11 +278,16 @@ export class Making {
     const input = this.inputs.get(this.active.name)
     if (!input || !this.takes(this.active)) return false
     if (!this.active.accepts.includes(of)) {
-      this.act.say(`${name} is a ${of}; ${this.active.name} takes ${this.active.accepts.filter((c) => !TYPED.includes(c)).join(', ')}`)
+      this.act.say(
+        `${name} is a ${of}; ${this.active.name} takes ${this.active.accepts.filter((c) => !TYPED.includes(c)).join(', ')}`,
+      )
       return true
     }
     if (this.active.many) {
-      const items = input.value.split(',').map((t) => t.trim()).filter(Boolean)
+      const items = input.value
+        .split(',')
+        .map((t) => t.trim())
+        .filter(Boolean)
       // Picked again, it is taken out.
       input.value = (items.includes(name) ? items.filter((i) => i !== name) : [...items, name]).join(', ')
     } else {

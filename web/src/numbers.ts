@@ -1,7 +1,7 @@
 // Numbers that are given: a watched number is typed or dragged, and chosen parameters follow by the least change.
 
 import { h, shown, store, stored } from './dom'
-import { Newest, Refused, type Link } from './link'
+import { type Link, Newest, Refused } from './link'
 import { model } from './state'
 
 interface Adjustment {
@@ -17,6 +17,8 @@ export interface NumberActions {
   typed(text: string): Promise<number>
   /** Takes back what was set and not written. */
   reset(): Promise<void>
+  /** Shows what was there before, while the hand moves. */
+  ghost(on: boolean): void
 }
 
 /** A drag over this many picture points is as much as the number itself. */
@@ -31,7 +33,11 @@ export class GivenNumbers {
   private found: Adjustment[] = []
   private readonly asking: Newest<number>
 
-  constructor(host: HTMLElement, private readonly link: Link, private readonly act: NumberActions) {
+  constructor(
+    host: HTMLElement,
+    private readonly link: Link,
+    private readonly act: NumberActions,
+  ) {
     host.append(this.panel)
     this.asking = new Newest(async (value) => {
       try {
@@ -55,7 +61,15 @@ export class GivenNumbers {
 
   /** The value of a watched number, as what is dragged and opened. */
   handle(expression: string, value: number): HTMLElement {
-    const button = h('button', { class: 'value mono give', 'aria-label': `give ${expression} a value`, title: 'Drag, or click to type a value: parameters follow' }, shown(value))
+    const button = h(
+      'button',
+      {
+        class: 'value mono give',
+        'aria-label': `give ${expression} a value`,
+        title: 'Drag, or click to type a value: parameters follow',
+      },
+      shown(value),
+    )
     let from: number | null = null
     let moved = false
     button.addEventListener('pointerdown', (e) => {
@@ -65,18 +79,25 @@ export class GivenNumbers {
     })
     button.addEventListener('pointermove', (e) => {
       if (from === null || (!moved && Math.abs(e.clientX - from) < 4)) return
-      if (!moved) this.start(expression, value)
+      if (!moved) {
+        this.start(expression, value)
+        this.act.ghost(true)
+      }
       moved = true
       this.dragged = button
-      this.asking.push(this.begin + ((e.clientX - from) / POINTS) * (Math.abs(this.begin) || 1) * (e.shiftKey ? 0.1 : 1))
+      this.asking.push(
+        this.begin + ((e.clientX - from) / POINTS) * (Math.abs(this.begin) || 1) * (e.shiftKey ? 0.1 : 1),
+      )
     })
     button.addEventListener('pointerup', () => {
       this.dragged = null
+      this.act.ghost(false)
       if (from !== null) moved ? void this.finish() : this.open(button, expression, value)
       from = null
     })
     button.addEventListener('pointercancel', () => {
       this.dragged = null
+      this.act.ghost(false)
       if (from !== null && moved) void this.cancel()
       from = null
     })
@@ -114,7 +135,9 @@ export class GivenNumbers {
   /** The other watched numbers that stay as they are. */
   private held(): Record<string, number> {
     const names = stored<string[]>(`held.${model.name}`, [])
-    return Object.fromEntries(names.filter((n) => n !== this.expression && n in this.heldValues).map((n) => [n, this.heldValues[n]]))
+    return Object.fromEntries(
+      names.filter((n) => n !== this.expression && n in this.heldValues).map((n) => [n, this.heldValues[n]]),
+    )
   }
   private heldValues: Record<string, number> = {}
 
@@ -124,14 +147,19 @@ export class GivenNumbers {
     this.found = []
     const chosen = this.chosen
     this.homes = Object.fromEntries(model.params.filter((p) => chosen.includes(p.name)).map((p) => [p.name, p.value]))
-    this.heldValues = Object.fromEntries(model.watched.filter((w) => typeof w.value === 'number').map((w) => [w.expression, w.value as number]))
+    this.heldValues = Object.fromEntries(
+      model.watched.filter((w) => typeof w.value === 'number').map((w) => [w.expression, w.value as number]),
+    )
   }
 
   /** Which parameters pay, and how much. */
   private pay(refused: string): void {
     const rows = this.found.filter((a) => a.after !== a.before).sort((a, b) => b.share - a.share)
     const words = rows.map((a) => `${a.name} ${shown(a.before)} → ${shown(a.after)} (${Math.round(100 * a.share)} %)`)
-    this.paid.replaceChildren(...(refused ? [h('p', { class: 'bad' }, refused)] : []), ...words.map((w) => h('div', {}, w)))
+    this.paid.replaceChildren(
+      ...(refused ? [h('p', { class: 'bad' }, refused)] : []),
+      ...words.map((w) => h('div', {}, w)),
+    )
     this.act.say(refused || words.join('   '))
   }
 
@@ -140,7 +168,10 @@ export class GivenNumbers {
     const values = Object.fromEntries(this.found.filter((a) => a.after !== a.before).map((a) => [a.name, a.after]))
     if (!Object.keys(values).length) return this.cancel()
     const now = model.watched.find((w) => w.expression === this.expression)?.value
-    await this.act.write(values, `${this.expression}: ${shown(this.begin)} → ${shown(typeof now === 'number' ? now : this.begin)}`)
+    await this.act.write(
+      values,
+      `${this.expression}: ${shown(this.begin)} → ${shown(typeof now === 'number' ? now : this.begin)}`,
+    )
   }
 
   private async cancel(): Promise<void> {
@@ -154,7 +185,12 @@ export class GivenNumbers {
     const boxes = (key: string, all: string[], on: string[]) => {
       const list = all.map((name) => {
         const box = h('input', { type: 'checkbox', checked: on.includes(name) })
-        box.addEventListener('change', () => store(`${key}.${model.name}`, list.filter((l) => l.box.checked).map((l) => l.name)))
+        box.addEventListener('change', () =>
+          store(
+            `${key}.${model.name}`,
+            list.filter((l) => l.box.checked).map((l) => l.name),
+          ),
+        )
         return { name, box, label: h('label', {}, box, name) }
       })
       return h('div', { class: 'choices' }, ...list.map((l) => l.label))
@@ -173,9 +209,15 @@ export class GivenNumbers {
     const others = model.watched.map((w) => w.expression).filter((e) => e !== expression)
     this.paid.replaceChildren()
     this.panel.replaceChildren(
-      h('h4', {}, expression), h('div', { class: 'fact' }, field, h('button', { class: 'primary', onclick: () => void give() }, 'Give')),
-      h('h4', {}, 'May change'), boxes('given', this.free, this.chosen),
-      ...(others.length ? [h('h4', {}, 'Stays'), boxes('held', others, stored<string[]>(`held.${model.name}`, []))] : []), this.paid)
+      h('h4', {}, expression),
+      h('div', { class: 'fact' }, field, h('button', { class: 'primary', onclick: () => void give() }, 'Give')),
+      h('h4', {}, 'May change'),
+      boxes('given', this.free, this.chosen),
+      ...(others.length
+        ? [h('h4', {}, 'Stays'), boxes('held', others, stored<string[]>(`held.${model.name}`, []))]
+        : []),
+      this.paid,
+    )
     const box = beside.getBoundingClientRect()
     this.panel.style.left = `${Math.max(8, Math.min(box.left, innerWidth - 300))}px`
     this.panel.hidden = false

@@ -17,7 +17,11 @@ export class Orientation {
   private over = -1
   readonly element = h('div', { class: 'orientation' }, this.cube, this.bar)
 
-  constructor(private readonly camera: Camera, private readonly look: (view: Standard) => void, private readonly height: () => number) {}
+  constructor(
+    private readonly camera: Camera,
+    private readonly look: (view: Standard) => void,
+    private readonly height: () => number,
+  ) {}
 
   /** The picture hears the pointer: a point that is under the cube can be dragged. */
   hover(e: MouseEvent): void {
@@ -47,7 +51,12 @@ export class Orientation {
 
   private outline(face: number): [number, number][] {
     const [k, sign] = [face >> 1, face % 2 ? -1 : 1]
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => {
+    return [
+      [-1, -1],
+      [1, -1],
+      [1, 1],
+      [-1, 1],
+    ].map(([a, b]) => {
       const p = [0, 0, 0]
       ;[p[k], p[(k + 1) % 3], p[(k + 2) % 3]] = [sign, a, b]
       return this.corner(p)

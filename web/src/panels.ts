@@ -1,8 +1,9 @@
 // Parameters, objects, the inspector, messages and the strip of numbers.
 
 import { h, shown, store, stored } from './dom'
+import { FIGURES, unitOf } from './figures'
 import type { GivenNumbers } from './numbers'
-import { changed, model, on, type Fault, type Obj, type Param } from './state'
+import { changed, type Fault, model, on, type Param } from './state'
 
 export interface Actions {
   set(name: string, value: number): void
@@ -26,6 +27,8 @@ export interface Actions {
   /** Shows what was there before, while the hand moves. */
   ghost(on: boolean): void
   inspect(name: string, by: string | null): Promise<any>
+  /** Opens an object on the fairing desk, where there is one. */
+  fair: ((name: string) => void) | null
   watch(expressions: string[]): void
   say(words: string): void
   still: boolean
@@ -47,8 +50,26 @@ export function stepped(value: number, low: number, high: number, whole: boolean
   return Number(value.toFixed(decimals))
 }
 
+/** The name of a part with its point, when all names begin with it. */
+export function commonPrefix(names: string[]): string {
+  const first = names[0] ?? ''
+  const prefix = first.slice(0, first.lastIndexOf('.') + 1)
+  return names.every((n) => n.startsWith(prefix)) ? prefix : ''
+}
+
 export function parametersPanel(host: HTMLElement, act: Actions): void {
-  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param; wanted: number | null; from: number }>()
+  const rows = new Map<
+    string,
+    {
+      row: HTMLElement
+      slider: HTMLInputElement
+      field: HTMLInputElement
+      reset: HTMLButtonElement
+      p: Param
+      wanted: number | null
+      from: number
+    }
+  >()
   let built = ''
   const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
   const box = h('div', { class: 'params' })
@@ -58,16 +79,27 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   function build(): void {
     box.textContent = ''
     rows.clear()
+    const prefix = commonPrefix(model.params.map((p) => p.name))
     for (const p of model.params) {
       const { low, high, stated } = rangeOf(p)
       const slider = h('input', {
-        type: 'range', min: low, max: high, step: p.whole ? 1 : 'any', 'aria-label': p.name, class: stated ? '' : 'guess', disabled: act.still,
+        type: 'range',
+        min: low,
+        max: high,
+        step: p.whole ? 1 : 'any',
+        'aria-label': p.name,
+        class: stated ? '' : 'guess',
+        disabled: act.still,
         title: stated ? `${p.name}: ${low} to ${high}` : `${p.name}: no range is declared`,
       })
       const field = h('input', { type: 'text', class: 'number', 'aria-label': `${p.name}, value`, disabled: act.still })
       const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
-      const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
-      const row = h('div', { class: 'param' }, name, field, reset, slider)
+      const name = h(
+        'button',
+        { class: 'link name', title: `${p.name}: show in the program` },
+        p.name.slice(prefix.length),
+      )
+      const row = h('div', { class: 'param' }, name, slider, field, reset)
       const entry = { row, slider, field, reset, p, wanted: null as number | null, from: p.value }
       /** Keys come one by one: what they do is written when they rest. */
       let keys = false
@@ -102,7 +134,12 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       slider.addEventListener('keydown', (event) => {
         const by = (high - low) / 100
         const moves: Record<string, number> = {
-          ArrowRight: by / 10, ArrowUp: by / 10, ArrowLeft: -by / 10, ArrowDown: -by / 10, PageUp: by * 10, PageDown: -by * 10,
+          ArrowRight: by / 10,
+          ArrowUp: by / 10,
+          ArrowLeft: -by / 10,
+          ArrowDown: -by / 10,
+          PageUp: by * 10,
+          PageDown: -by * 10,
         }
         if (!(event.key in moves) && event.key !== 'Home' && event.key !== 'End') return
         keys = true
@@ -170,140 +207,47 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   const dragging = (slider: HTMLInputElement) => held === slider
 }
 
-const GROUPS: [string, string[]][] = [
-  ['Surfaces', ['surface']], ['Bodies', ['mesh', 'solid', 'set']], ['Curves', ['curve', 'snake']], ['Points', ['point', 'bead', 'magnet', 'ring']],
-  ['Planes and frames', ['plane', 'frame']], ['Contours', ['contours']], ['Others', []],
-]
-const MOST_ROWS = 300
-
-export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string>; selected: () => string }): void {
-  const search = h('input', { type: 'search', placeholder: 'Search objects', 'aria-label': 'search objects' })
-  const tree = h('div', { role: 'tree', 'aria-label': 'objects', class: 'tree' })
-  const folded = new Set<string>(stored<string[]>('folded', ['Points']))
-  host.append(h('div', { class: 'search' }, search), tree)
-  search.addEventListener('input', () => build())
-  search.addEventListener('keydown', (event) => {
-    if (event.key === 'ArrowDown') {
-      event.preventDefault()
-      ;(tree.querySelector('[role=treeitem]') as HTMLElement | null)?.focus()
-    }
-  })
-
-  function groups(): [string, Obj[]][] {
-    const word = search.value.trim().toLowerCase()
-    const found = model.objects.filter((o) => !word || o.name.toLowerCase().includes(word) || o.kind.toLowerCase().includes(word))
-    const known = new Set(GROUPS.flatMap(([, c]) => c))
-    return GROUPS.map(([title, classes]) => [title, found.filter((o) => (classes.length ? classes.includes(o.class) : !known.has(o.class)))] as [string, Obj[]]).filter(([, all]) => all.length)
-  }
-
-  function build(): void {
-    const focused = (document.activeElement as HTMLElement | null)?.dataset?.key
-    tree.textContent = ''
-    const all = groups()
-    for (const [title, objects] of all) {
-      const open = !folded.has(title) || search.value.trim() !== ''
-      const head = h('div', { role: 'treeitem', 'aria-level': 1, 'aria-expanded': open, 'aria-setsize': all.length, tabindex: -1, class: 'group', 'data-key': `:${title}` },
-        h('span', { class: 'twist' }, open ? '▾' : '▸'), title, h('span', { class: 'count' }, objects.length))
-      head.addEventListener('click', () => fold(title))
-      tree.append(head)
-      if (!open) continue
-      const shownRows = objects.slice(0, MOST_ROWS)
-      shownRows.forEach((o, k) => tree.append(row(o, k, objects.length)))
-      if (objects.length > MOST_ROWS) tree.append(h('div', { class: 'quiet more' }, `${objects.length - MOST_ROWS} more: search`))
-    }
-    if (!all.length) tree.append(h('div', { class: 'quiet more' }, model.objects.length ? 'Nothing of that name.' : 'The program declares no objects yet.'))
-    const rows = items()
-    const again = rows.find((r) => r.dataset.key === focused) ?? rows.find((r) => r.getAttribute('aria-selected') === 'true') ?? rows[0]
-    if (again) {
-      again.tabIndex = 0
-      if (focused) again.focus()
-    }
-  }
-
-  function row(o: Obj, k: number, count: number): HTMLElement {
-    const hidden = act.hidden.has(o.name) || !o.shown
-    const eye = h('button', { class: 'icon eye', tabindex: -1, 'aria-label': `${hidden ? 'show' : 'hide'} ${o.name}`, title: hidden ? 'Show' : 'Hide' }, hidden ? '○' : '●')
-    const item = h('div', {
-      role: 'treeitem', 'aria-level': 2, 'aria-posinset': k + 1, 'aria-setsize': count, 'aria-selected': o.name === act.selected(), tabindex: -1,
-      class: `object ${o.state} ${hidden ? 'hidden' : ''}`, 'data-key': o.name,
-      title: o.state === 'ok' ? o.kind : `${o.kind}: ${o.state}`,
-    }, h('span', { class: 'label' }, o.name), h('span', { class: 'kind' }, o.state === 'ok' ? o.kind : o.state), eye)
-    eye.addEventListener('click', (event) => {
-      event.stopPropagation()
-      act.toggle(o.name)
-    })
-    item.addEventListener('click', () => act.select(o.name, 'tree'))
-    item.addEventListener('dblclick', () => void act.locate(o.name))
-    item.addEventListener('pointerenter', () => act.hover(o.name))
-    item.addEventListener('pointerleave', () => act.hover(''))
-    return item
-  }
-
-  const items = () => [...tree.querySelectorAll<HTMLElement>('[role=treeitem]')]
-  function fold(title: string): void {
-    if (!folded.delete(title)) folded.add(title)
-    store('folded', [...folded])
-    build()
-  }
-
-  let typed = ''
-  let typedAt = 0
-  tree.addEventListener('keydown', (event) => {
-    const rows = items()
-    const at = rows.indexOf(document.activeElement as HTMLElement)
-    if (at < 0) return
-    const key = rows[at].dataset.key ?? ''
-    const go = (k: number) => {
-      const to = rows[Math.max(0, Math.min(rows.length - 1, k))]
-      rows[at].tabIndex = -1
-      to.tabIndex = 0
-      to.focus()
-    }
-    const group = key.startsWith(':') ? key.slice(1) : ''
-    if (event.key === 'ArrowDown') go(at + 1)
-    else if (event.key === 'ArrowUp') go(at - 1)
-    else if (event.key === 'Home') go(0)
-    else if (event.key === 'End') go(rows.length - 1)
-    else if (event.key === 'ArrowRight' && group && folded.has(group)) fold(group)
-    else if (event.key === 'ArrowLeft' && group && !folded.has(group)) fold(group)
-    else if (event.key === 'ArrowLeft' && !group) go(rows.findLastIndex((r, k) => k < at && r.classList.contains('group')))
-    else if (event.key === 'Enter') group ? fold(group) : act.select(key, 'tree')
-    else if (event.key === ' ' && !group) act.toggle(key)
-    else if (event.key === 'i' && event.altKey && !group) act.isolate(key)
-    else if (event.key.length === 1 && !event.ctrlKey && !event.metaKey && !event.altKey && event.key !== ' ') {
-      const now = performance.now()
-      typed = now - typedAt < 600 ? typed + event.key.toLowerCase() : event.key.toLowerCase()
-      typedAt = now
-      const to = rows.findIndex((r, k) => k >= at && (r.dataset.key ?? '').toLowerCase().startsWith(typed))
-      if (to >= 0) go(to)
-    } else return
-    event.preventDefault()
-    event.stopPropagation()
-  })
-  on(['objects', 'selection'], build)
-}
-
 /** An argument of an object: its numbers, or its spelling in the program, which can be changed like typing. */
 function formRow(f: any, version: number, act: Actions, chips: (names: string[]) => HTMLElement): HTMLElement {
   const unit = f.unit ? h('span', { class: 'unit' }, f.unit) : ''
-  const row = (...value: (Node | string)[]) => h('div', { class: 'fact' }, h('span', { class: 'key', title: f.help }, f.name), h('span', { class: 'value' }, ...value))
+  const row = (...value: (Node | string)[]) =>
+    h(
+      'div',
+      { class: 'fact' },
+      h('span', { class: 'key', title: f.help }, f.name),
+      h('span', { class: 'value' }, ...value),
+    )
   const { written } = f
   if (f.numbers.length && !f.switch) {
     // One that is typed over by an expression becomes it.
-    const other = f.numbers.length === 1 && written?.text ? (text: string) => act.apply([{ from: written.place[0], to: written.place[1], insert: text }], version, `${f.name}: ${text}`) : null
+    const other =
+      f.numbers.length === 1 && written?.text
+        ? (text: string) =>
+            act.apply([{ from: written.place[0], to: written.place[1], insert: text }], version, `${f.name}: ${text}`)
+        : null
     return row(...f.numbers.map((n: any) => numberField(n, act, other)), unit)
   }
   const plain = f.objects.length ? chips(f.objects) : f.value === null ? '' : shown(f.value)
   if (!written || act.still) return row(plain, unit)
   // A text without its quotes; what is no plain text is spelled as it is.
   const quotes = f.class === 'text' && /^("[^"]*")?$/.test(written.text ?? '')
-  const before = quotes ? (written.text ?? '').slice(1, -1) : written.text ?? ''
+  const before = quotes ? (written.text ?? '').slice(1, -1) : (written.text ?? '')
   const write = (now: string) => {
     if (now === before || (!now && written.text === null)) return
     if (!now && !quotes) return act.say(`${f.name}: leave it out in the program`)
     if (quotes && /["\n]/.test(now)) return act.say('A text has no quotes in it')
     const spelled = quotes ? `"${now}"` : now
-    act.apply([{ from: written.place[0], to: written.place[1], insert: written.text === null ? `, ${f.name} = ${spelled}` : spelled }], version, `${f.name}: ${spelled}`)
+    act.apply(
+      [
+        {
+          from: written.place[0],
+          to: written.place[1],
+          insert: written.text === null ? `, ${f.name} = ${spelled}` : spelled,
+        },
+      ],
+      version,
+      `${f.name}: ${spelled}`,
+    )
   }
   if (f.switch && /^[01]?$/.test(before)) {
     const box = h('input', { type: 'checkbox', 'aria-label': f.name, checked: (before || String(f.value)) === '1' })
@@ -314,11 +258,21 @@ function formRow(f: any, version: number, act: Actions, chips: (names: string[])
   if (quotes && (words.includes(before) || (!before && words.length))) {
     const now = before || (f.value ?? '')
     const list = words.includes(now) ? words : [now, ...words]
-    const choice = h('select', { 'aria-label': f.name }, ...list.map((w) => h('option', { value: w, selected: w === now }, w || '(not given)')))
+    const choice = h(
+      'select',
+      { 'aria-label': f.name },
+      ...list.map((w) => h('option', { value: w, selected: w === now }, w || '(not given)')),
+    )
     choice.addEventListener('change', () => write(choice.value))
     return row(choice)
   }
-  const input = h('input', { type: 'text', class: 'source', 'aria-label': f.name, spellcheck: 'false', placeholder: f.value === null ? '' : shown(f.value) })
+  const input = h('input', {
+    type: 'text',
+    class: 'source',
+    'aria-label': f.name,
+    spellcheck: 'false',
+    placeholder: f.value === null ? '' : shown(f.value),
+  })
   input.value = before
   input.addEventListener('keydown', (e) => {
     if (e.key === 'Enter') input.blur()
@@ -342,7 +296,12 @@ function numberField(n: any, act: Actions, other: ((text: string) => void) | nul
     if (!text || text === now) return void (input.value = now)
     const plain = Number(text.replace('−', '-'))
     // An expression of names is written as it is; one of numbers and units is a number.
-    if (!Number.isFinite(plain) && other && /[A-Za-z_]\w*/.test(text.replace(/\d\s*(mm|cm|dm|km|m|in|ft|yd|rad|deg)\s*$/, '0'))) return other(text)
+    if (
+      !Number.isFinite(plain) &&
+      other &&
+      /[A-Za-z_]\w*/.test(text.replace(/\d\s*(mm|cm|dm|km|m|in|ft|yd|rad|deg)\s*$/, '0'))
+    )
+      return other(text)
     try {
       await act.write({ [n.path]: await act.typed(text) })
     } catch (error) {
@@ -391,8 +350,23 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
     }
     const o = found?.object
     if (now !== serial || !o) return
-    if (host.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement && document.activeElement.type === 'text') return
-    const link = (n: string) => h('button', { class: 'chip', onclick: () => act.select(n, 'tree'), onpointerenter: () => act.hover(n), onpointerleave: () => act.hover('') }, n)
+    if (
+      host.contains(document.activeElement) &&
+      document.activeElement instanceof HTMLInputElement &&
+      document.activeElement.type === 'text'
+    )
+      return
+    const link = (n: string) =>
+      h(
+        'button',
+        {
+          class: 'chip',
+          onclick: () => act.select(n, 'tree'),
+          onpointerenter: () => act.hover(n),
+          onpointerleave: () => act.hover(''),
+        },
+        n,
+      )
     const chips = (names: string[]) => {
       const box = h('span', { class: 'chips' }, ...names.slice(0, 40).map(link))
       if (names.length > 40) box.append(h('span', { class: 'quiet' }, ` and ${names.length - 40} more`))
@@ -400,35 +374,83 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
     }
     const rows: HTMLElement[] = []
     const absent: HTMLElement[] = []
-    for (const f of o.fields) (f.value === null && !f.objects.length ? absent : rows).push(formRow(f, found.version, act, chips))
-    if (absent.length) rows.push(h('details', { class: 'absent' }, h('summary', {}, `Not given (${absent.length})`), ...absent))
+    for (const f of o.fields)
+      (f.value === null && !f.objects.length ? absent : rows).push(formRow(f, found.version, act, chips))
+    if (absent.length)
+      rows.push(h('details', { class: 'absent' }, h('summary', {}, `Not given (${absent.length})`), ...absent))
     const values = o.values as any[]
-    const derivative = h('select', { 'aria-label': 'derivative by' }, h('option', { value: '' }, 'd/d …'), ...model.params.map((p) => h('option', { value: p.name, selected: p.name === by }, `d/d ${p.name}`)))
+    const derivative = h(
+      'select',
+      { 'aria-label': 'derivative by' },
+      h('option', { value: '' }, 'd/d …'),
+      ...model.params.map((p) => h('option', { value: p.name, selected: p.name === by }, `d/d ${p.name}`)),
+    )
     derivative.addEventListener('change', () => {
       by = derivative.value || null
       store('by', by)
       void build()
     })
     host.replaceChildren(
-      h('header', { class: 'inspected' }, titled(o.name, act), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
+      h(
+        'header',
+        { class: 'inspected' },
+        titled(o.name, act),
+        h('span', { class: 'kind' }, o.kind),
+        h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program'),
+      ),
       h('p', { class: 'quiet' }, o.about),
       ...(o.failure ? [h('p', { class: 'bad' }, o.failure)] : []),
       ...(o.waits ? [h('p', { class: 'bad' }, 'Waits for ', link(o.waits))] : []),
       ...rows,
       ...(values.length
-        ? [h('h4', {}, 'Values', values.length && model.params.length ? derivative : ''),
-          ...values.map((v) => h('div', { class: 'fact' }, h('span', { class: 'key' }, v.expression), h('span', { class: 'value mono' }, shown(v.value), by && v.derivative !== undefined ? h('span', { class: 'd' }, ` d/d ${by} = ${shown(v.derivative)}`) : '')))]
+        ? [
+            h('h4', {}, 'Values', values.length && model.params.length ? derivative : ''),
+            ...values.map((v) =>
+              h(
+                'div',
+                { class: 'fact' },
+                h('span', { class: 'key' }, v.expression),
+                h(
+                  'span',
+                  { class: 'value mono' },
+                  shown(v.value),
+                  by && v.derivative !== undefined
+                    ? h('span', { class: 'd' }, ` d/d ${by} = ${shown(v.derivative)}`)
+                    : '',
+                ),
+              ),
+            ),
+          ]
         : []),
-      h('h4', {}, 'Parents'), o.parents.length ? chips(o.parents) : h('span', { class: 'quiet' }, 'none'),
-      h('h4', {}, 'Children'), o.children.length ? chips(o.children) : h('span', { class: 'quiet' }, 'none'),
-      h('div', { class: 'buttons' },
+      h('h4', {}, 'Parents'),
+      o.parents.length ? chips(o.parents) : h('span', { class: 'quiet' }, 'none'),
+      h('h4', {}, 'Children'),
+      o.children.length ? chips(o.children) : h('span', { class: 'quiet' }, 'none'),
+      h(
+        'div',
+        { class: 'buttons' },
         h('button', { onclick: () => act.toggle(o.name) }, 'Hide or show'),
         h('button', { onclick: () => act.isolate(o.name) }, 'Isolate'),
-        ...(act.still || !model.program ? [] : [
-          h('button', { onclick: () => void act.rewrite('duplicate', { name: o.name }, `Duplicate ${o.name}`) }, 'Duplicate'),
-          h('button', { onclick: () => void act.rewrite('delete', { name: o.name }, `Delete ${o.name}`) }, 'Delete'),
-        ]),
-        h('button', { onclick: () => void navigator.clipboard?.writeText(o.name).then(() => act.say(`${o.name} copied`)) }, 'Copy name')),
+        ...(act.still || !model.program
+          ? []
+          : [
+              h(
+                'button',
+                { onclick: () => void act.rewrite('duplicate', { name: o.name }, `Duplicate ${o.name}`) },
+                'Duplicate',
+              ),
+              h(
+                'button',
+                { onclick: () => void act.rewrite('delete', { name: o.name }, `Delete ${o.name}`) },
+                'Delete',
+              ),
+            ]),
+        h(
+          'button',
+          { onclick: () => void navigator.clipboard?.writeText(o.name).then(() => act.say(`${o.name} copied`)) },
+          'Copy name',
+        ),
+      ),
     )
   }
   on(['selection', 'rev', 'params'], () => void build())
@@ -440,20 +462,57 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   let timer = 0
   function one(f: Fault): HTMLElement {
     const where = f.file ? `${f.file}:${f.line}` : f.line ? `line ${f.line}` : ''
-    const item = h('div', { class: `message ${f.severity}` },
-      h('button', { class: 'text' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, f.severity === 'error' ? '✕' : f.severity === 'warning' ? '!' : 'i'), h('span', { class: 'sr' }, `${f.severity}: `), f.message, where ? h('span', { class: 'where' }, where) : ''))
+    const item = h(
+      'div',
+      { class: `message ${f.severity}` },
+      h(
+        'button',
+        { class: 'text' },
+        h(
+          'span',
+          { class: 'sign', 'aria-hidden': 'true' },
+          f.severity === 'error' ? '✕' : f.severity === 'warning' ? '!' : 'i',
+        ),
+        h('span', { class: 'sr' }, `${f.severity}: `),
+        f.message,
+        where ? h('span', { class: 'where' }, where) : '',
+      ),
+    )
     item.querySelector('button')!.addEventListener('click', () => {
       if (f.place) act.show(f.place)
       if (f.object) act.select(f.object, 'message')
     })
-    const more = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '', ...f.notes, ...f.help].filter(Boolean)
+    const more = [
+      f.expected ? `expected ${f.expected}` : '',
+      f.found ? `found ${f.found}` : '',
+      ...f.notes,
+      ...f.help,
+    ].filter(Boolean)
     for (const words of more) item.append(h('div', { class: 'more' }, words))
-    if (f.edit) item.append(h('button', { class: 'fix', onclick: () => act.apply([{ from: f.edit!.place[0], to: f.edit!.place[1], insert: f.edit!.insert }], undefined, f.edit!.title) }, `Fix: ${f.edit.title}`))
+    if (f.edit)
+      item.append(
+        h(
+          'button',
+          {
+            class: 'fix',
+            onclick: () =>
+              act.apply(
+                [{ from: f.edit!.place[0], to: f.edit!.place[1], insert: f.edit!.insert }],
+                undefined,
+                f.edit!.title,
+              ),
+          },
+          `Fix: ${f.edit.title}`,
+        ),
+      )
     return item
   }
   function build(): void {
     const all = model.faults.slice(0, 200)
-    log.replaceChildren(...all.map(one), ...model.printed.slice(0, 200).map((line) => h('div', { class: 'message printed' }, line)))
+    log.replaceChildren(
+      ...all.map(one),
+      ...model.printed.slice(0, 200).map((line) => h('div', { class: 'message printed' }, line)),
+    )
     if (!log.childElementCount) log.append(h('div', { class: 'message quiet' }, 'No messages: the model is in order.'))
   }
   on(['faults', 'printed'], () => {
@@ -464,25 +523,26 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   })
 }
 
-/** Numbers of the whole model: the power of the unit of length, and what they are in full. */
-const KNOWN: Record<string, [number, string]> = {
-  'mesh.area': [2, 'area of one side of all panels'], 'mesh.volume': [3, 'volume that the panels enclose'],
-  'hydrostatics.volume': [3, 'immersed volume, both sides'], 'hydrostatics.wetted_area': [2, 'wetted area, both sides'], 'hydrostatics.waterplane_area': [2, 'area of the waterplane, both sides'],
-  'hydrostatics.lcb': [1, 'longitudinal centre of buoyancy'], 'hydrostatics.vcb': [1, 'vertical centre of buoyancy'], 'hydrostatics.draft': [1, 'draught'], 'hydrostatics.kmt': [1, 'transverse metacentre above the keel'], 'hydrostatics.kb': [1, 'centre of buoyancy above the keel'],
-  'hydrostatics.cb': [0, 'block coefficient'], 'hydrostatics.cp': [0, 'prismatic coefficient'],
-}
-
 export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement) => GivenNumbers): void {
   const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
-  const add = h('input', { type: 'text', placeholder: '+ number to watch', 'aria-label': 'watch an expression', class: 'add', list: 'watchable', disabled: act.still })
+  const add = h('input', {
+    type: 'text',
+    placeholder: '+ number to watch',
+    'aria-label': 'watch an expression',
+    class: 'add',
+    list: 'watchable',
+    disabled: act.still,
+  })
   const list = h('datalist', { id: 'watchable' })
-  for (const [word, [, about]] of Object.entries(KNOWN)) list.append(h('option', { value: word, label: about }))
+  for (const [word, [, about]] of Object.entries(FIGURES)) list.append(h('option', { value: word, label: about }))
   const numbers = given(host)
   const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
   host.append(box, add, list, setMark)
   let marked = new Map<string, number>()
   setMark.addEventListener('click', () => {
-    marked = new Map(model.watched.filter((w) => typeof w.value === 'number').map((w) => [w.expression, w.value as number]))
+    marked = new Map(
+      model.watched.filter((w) => typeof w.value === 'number').map((w) => [w.expression, w.value as number]),
+    )
     act.say('Changes are shown since now')
     build()
   })
@@ -491,25 +551,48 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
     act.watch([...model.watched.map((w) => w.expression), add.value.trim()])
     add.value = ''
   })
-  const unit = (expression: string) => {
-    const power = KNOWN[expression]?.[0] ?? 0
-    return power && model.unit ? `${model.unit}${['', '', '²', '³'][power]}` : ''
-  }
   function build(): void {
     // A number that is dragged keeps its element.
     if (numbers.busy) return numbers.follow()
-    box.replaceChildren(...model.watched.map((w) => {
-      const was = marked.get(w.expression)
-      const value = typeof w.value === 'number' ? w.value : null
-      if (value !== null && was === undefined) marked.set(w.expression, value)
-      const delta = value !== null && was !== undefined && value !== was ? value - was : 0
-      const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
-      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? (KNOWN[w.expression] ? `${w.expression}: ${KNOWN[w.expression][1]}` : w.expression) },
-        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), value !== null && !act.still && model.params.length ? numbers.handle(w.expression, value) : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
-        value !== null && unit(w.expression) ? h('span', { class: 'unit' }, unit(w.expression)) : '',
-        delta ? h('span', { class: `delta ${delta > 0 ? 'up' : 'down'}` }, `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`) : '',
-        act.still ? '' : h('button', { class: 'icon', 'aria-label': `stop watching ${w.expression}`, onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)) }, '×'))
-    }))
+    box.replaceChildren(
+      ...model.watched.map((w) => {
+        const was = marked.get(w.expression)
+        const value = typeof w.value === 'number' ? w.value : null
+        if (value !== null && was === undefined) marked.set(w.expression, value)
+        const delta = value !== null && was !== undefined && value !== was ? value - was : 0
+        const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
+        return h(
+          'span',
+          {
+            class: `number-box ${w.error ? 'bad' : ''}`,
+            title: w.error ?? (FIGURES[w.expression] ? `${w.expression}: ${FIGURES[w.expression][1]}` : w.expression),
+          },
+          h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')),
+          value !== null && !act.still && model.params.length
+            ? numbers.handle(w.expression, value)
+            : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+          value !== null && unitOf(w.expression) ? h('span', { class: 'unit' }, unitOf(w.expression)) : '',
+          delta
+            ? h(
+                'span',
+                { class: `delta ${delta > 0 ? 'up' : 'down'}` },
+                `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`,
+              )
+            : '',
+          act.still
+            ? ''
+            : h(
+                'button',
+                {
+                  class: 'icon',
+                  'aria-label': `stop watching ${w.expression}`,
+                  onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)),
+                },
+                '×',
+              ),
+        )
+      }),
+    )
   }
   on('watched', build)
 }

@@ -73,7 +73,13 @@ function meets(all: Float64Array, k: number, o: Triple, inverse: Triple, most: n
 }
 
 /** The nearest triangle that a ray meets, from either side, of those that `kept` keeps by their way along it. */
-export function hit(of: Triangles, o: Triple, d: Triple, most = Infinity, kept: (t: number) => boolean = () => true): Hit | null {
+export function hit(
+  of: Triangles,
+  o: Triple,
+  d: Triple,
+  most = Infinity,
+  kept: (t: number) => boolean = () => true,
+): Hit | null {
   const { position, triangle } = of
   if (triangle.length === 0) return null
   const { runs, groups } = boxes(of)

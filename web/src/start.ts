@@ -12,28 +12,64 @@ export interface StartActions {
   begin(text: string, name: string, reach?: number): void
   /** Opens the form of a kind, or the list of all. */
   add(kind?: string): void
+  /** Opens a program of a file. */
+  open(file: File): void
 }
 
 const TEMPLATES: [string, string, string][] = [
-  ['Hull', 'Sections, a loft, hydrostatics', hull], ['Bottle', 'A spline turned about an axis, with a wall', bottle], ['Propeller', 'Blades of sections on cylinders', propeller],
-  ['Wing', 'Tapered and swept, four spacings of panels', wing], ['Bracket', 'A plate and a web with bolt holes', bracket],
+  ['Hull', 'Sections, a loft, hydrostatics', hull],
+  ['Bottle', 'A spline turned about an axis, with a wall', bottle],
+  ['Propeller', 'Blades of sections on cylinders', propeller],
+  ['Wing', 'Tapered and swept, four spacings of panels', wing],
+  ['Bracket', 'A plate and a web with bolt holes', bracket],
 ]
 /** Units and how many metres they are worth to a first view. */
-const UNITS: Record<string, [string, number]> = { m: ['metres', 1], mm: ['millimetres', 0.05], ft: ['feet', 0.5], in: ['inches', 0.5] }
+const UNITS: Record<string, [string, number]> = {
+  m: ['metres', 1],
+  mm: ['millimetres', 0.05],
+  ft: ['feet', 0.5],
+  in: ['inches', 0.5],
+}
 
 /** Shown while the program is empty. */
 export function startPage(act: StartActions): HTMLElement {
-  const unit = h('select', { 'aria-label': 'unit of length' }, ...Object.entries(UNITS).map(([u, [words]]) => h('option', { value: u }, words)))
+  const unit = h(
+    'select',
+    { 'aria-label': 'unit of length' },
+    ...Object.entries(UNITS).map(([u, [words]]) => h('option', { value: u }, words)),
+  )
   const mirrored = h('input', { type: 'checkbox' })
   const empty = () => {
-    act.begin(`Model info(${mirrored.checked ? 'symmetry = "y", ' : ''}units = "${unit.value}");\n`, 'New model', 10 / UNITS[unit.value][1])
+    act.begin(
+      `Model info(${mirrored.checked ? 'symmetry = "y", ' : ''}units = "${unit.value}");\n`,
+      'New model',
+      10 / UNITS[unit.value][1],
+    )
     act.add('AbsPoint')
   }
-  const card = (title: string, words: string, run: () => void) => h('button', { class: 'template', onclick: run }, h('strong', {}, title), h('span', { class: 'quiet' }, words))
-  return h('section', { class: 'start', 'aria-label': 'start', hidden: true },
+  const card = (title: string, words: string, run: () => void) =>
+    h('button', { class: 'template', onclick: run }, h('strong', {}, title), h('span', { class: 'quiet' }, words))
+  const chosen = h('input', { type: 'file', accept: '.sdl,.ms2', 'aria-label': 'open a program', hidden: true })
+  chosen.addEventListener('change', () => chosen.files?.[0] && act.open(chosen.files[0]))
+  return h(
+    'section',
+    { class: 'start', 'aria-label': 'start', hidden: true },
     h('h2', {}, 'A new model'),
-    h('div', { class: 'fact' }, h('label', {}, 'in ', unit), h('label', {}, mirrored, ' mirrored in y = 0'), h('button', { class: 'primary', onclick: empty }, 'Begin with points')),
+    h(
+      'div',
+      { class: 'fact' },
+      h('label', {}, 'in ', unit),
+      h('label', {}, mirrored, ' mirrored in y = 0'),
+      h('button', { class: 'primary', onclick: empty }, 'Begin with points'),
+      h('button', { onclick: () => chosen.click() }, 'Open a file…'),
+      chosen,
+    ),
     h('h2', {}, 'Or from an example'),
-    h('div', { class: 'templates' }, ...TEMPLATES.map(([title, words, text]) => card(title, words, () => act.begin(text, `Begin from ${title}`)))),
-    h('p', { class: 'quiet' }, 'Or type on the left. Ctrl+Z takes back what was begun.'))
+    h(
+      'div',
+      { class: 'templates' },
+      ...TEMPLATES.map(([title, words, text]) => card(title, words, () => act.begin(text, `Begin from ${title}`))),
+    ),
+    h('p', { class: 'quiet' }, 'Or type on the left. Ctrl+Z takes back what was begun.'),
+  )
 }

@@ -4,7 +4,18 @@ import type { Link } from './link'
 import { model } from './state'
 
 /** Metres of units of length. */
-const METRES: Record<string, number> = { mm: 1e-3, cm: 1e-2, dm: 0.1, m: 1, km: 1e3, in: 0.0254, '"': 0.0254, ft: 0.3048, "'": 0.3048, yd: 0.9144 }
+const METRES: Record<string, number> = {
+  mm: 1e-3,
+  cm: 1e-2,
+  dm: 0.1,
+  m: 1,
+  km: 1e3,
+  in: 0.0254,
+  '"': 0.0254,
+  ft: 0.3048,
+  "'": 0.3048,
+  yd: 0.9144,
+}
 const RADIANS: Record<string, number> = { rad: 1, deg: Math.PI / 180, '°': Math.PI / 180 }
 
 /** Parts of a text: what is in front of a unit, and the unit's factor. */
@@ -18,7 +29,11 @@ export function parted(text: string, unit: string): { words: string; factor: num
   if (!(unit in METRES)) throw new Error(`The model states no unit, so ${name} cannot be converted`)
   // Whole powers of ten stay exact.
   const factor = METRES[name] / METRES[unit]
-  return { words: front.trim(), factor: Math.abs(factor - Number(factor.toPrecision(12))) < 1e-15 * factor ? Number(factor.toPrecision(12)) : factor }
+  return {
+    words: front.trim(),
+    factor:
+      Math.abs(factor - Number(factor.toPrecision(12))) < 1e-15 * factor ? Number(factor.toPrecision(12)) : factor,
+  }
 }
 
 /** The number that a text means; an error says why it is none. */

@@ -1,19 +1,43 @@
 // The picture of the model: what the engine sends, and nothing computed from it but colours.
 
 import {
-  BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points, PointsMaterial,
-  type Ray, Matrix4, Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  type InterleavedBufferAttribute,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  Plane,
+  Points,
+  PointsMaterial,
+  type Ray,
+  Raycaster,
+  Scene,
+  ShaderMaterial,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from 'three'
-import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js'
 import { Camera } from './camera'
-import { coloured, hex, HUES, scale, type Scale } from './colour'
+import { Cap } from './cap'
+import { coloured, HUES, hex, type Scale, scale } from './colour'
+import { creases, isTriangulation } from './creases'
 import type { Frame, Part } from './frame'
-import { hit, type Hit } from './pick'
+import { type Hit, hit } from './pick'
 
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
 export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
+
+/** Edges of triangulations are looked for when nothing has come for this long, in ms. */
+const CREASE_DELAY = 120
 
 const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3, reflection: 4 }
 
@@ -78,7 +102,14 @@ export interface Drawn {
   group: Group
   geometry: BufferGeometry
   mesh: Mesh | null
-  lines: { edge: LineSegments | null; rim: LineSegments2 | null; curve: LineSegments2 | null }
+  lines: {
+    edge: LineSegments | null
+    rim: LineSegments2 | null
+    crease: LineSegments2 | null
+    curve: LineSegments2 | null
+  }
+  /** True where the sides of panels are no lines of the shape. */
+  triangulated: boolean
   box: Box3
 }
 
@@ -102,11 +133,21 @@ export class View {
   paint: Paint = 'patches'
   fieldScale: Scale | null = null
   mirror = true
-  layers: Record<string, boolean> = { patch: true, curve: true, point: true, wire: true, contour: true, grid: true, frame: true }
+  layers: Record<string, boolean> = {
+    patch: true,
+    curve: true,
+    point: true,
+    wire: true,
+    contour: true,
+    grid: true,
+    frame: true,
+  }
   hidden = new Set<string>()
   selected = ''
   hovered = ''
   onFrame: () => void = () => {}
+  /** Picture points at the top that are covered. */
+  covered: () => number = () => 0
   /** The axes across which the model is mirrored. */
   mirrored = ''
   private readonly renderer: WebGLRenderer
@@ -116,12 +157,20 @@ export class View {
   private readonly extras = new Group()
   private readonly others = new Group()
   private readonly cut = new Group()
-  private readonly dots: Points
+  /** The hatched face of a section. */
+  readonly cap: Cap
+  private readonly cloud: Points
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
   private readonly uniforms = {
-    mode: { value: 0 }, towards: { value: new Vector3() }, upward: { value: new Vector3() }, right: { value: new Vector3() },
-    lit: { value: 1 }, centre: { value: new Vector3() }, size: { value: 1 }, stripes: { value: 16 },
+    mode: { value: 0 },
+    towards: { value: new Vector3() },
+    upward: { value: new Vector3() },
+    right: { value: new Vector3() },
+    lit: { value: 1 },
+    centre: { value: new Vector3() },
+    size: { value: 1 },
+    stripes: { value: 16 },
   }
   private readonly materials = new Map<string, ShaderMaterial>()
   private readonly lineMaterials = new Map<string, LineMaterial | LineBasicMaterial>()
@@ -132,11 +181,12 @@ export class View {
   readonly silent = new URLSearchParams(location.search).has('norender')
 
   constructor(host: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true })
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true, preserveDrawingBuffer: true })
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
-    this.scene.add(this.model, this.image, this.extras, this.others, this.cut)
+    this.cap = new Cap(this.renderer.getPixelRatio())
+    this.scene.add(this.model, this.image, this.extras, this.others, this.cut, this.cap.group)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
       vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
@@ -144,9 +194,9 @@ export class View {
       fragmentShader: `varying vec3 vTint; void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
         gl_FragColor = vec4(r > 0.34 ? vec3(1.0) : vTint, 1.0); }`,
     })
-    this.dots = new Points(new BufferGeometry(), material)
-    this.dots.frustumCulled = false
-    this.scene.add(this.dots)
+    this.cloud = new Points(new BufferGeometry(), material)
+    this.cloud.frustumCulled = false
+    this.scene.add(this.cloud)
     new ResizeObserver(() => this.resize(host)).observe(host)
     this.resize(host)
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault())
@@ -177,6 +227,7 @@ export class View {
     for (const item of head.items ?? []) this.put(frame, item)
     if (!head.items && !head.all && head.mirror === undefined) return false
     this.settle()
+    this.crease()
     return true
   }
 
@@ -185,9 +236,27 @@ export class View {
     let item = this.items.get(key)
     if (!item) {
       item = {
-        key, name: head.name, object: head.object, kind: head.kind, stale: '', colour: [], hue: 0, origin: new Vector3(),
-        position: new Float32Array(), normal: null, triangle: new Uint32Array(), edge: new Uint32Array(), rim: new Uint32Array(),
-        field: null, components: 1, group: new Group(), geometry: new BufferGeometry(), mesh: null, lines: { edge: null, rim: null, curve: null }, box: new Box3(),
+        key,
+        name: head.name,
+        object: head.object,
+        kind: head.kind,
+        stale: '',
+        colour: [],
+        hue: 0,
+        origin: new Vector3(),
+        position: new Float32Array(),
+        normal: null,
+        triangle: new Uint32Array(),
+        edge: new Uint32Array(),
+        rim: new Uint32Array(),
+        field: null,
+        components: 1,
+        group: new Group(),
+        geometry: new BufferGeometry(),
+        mesh: null,
+        lines: { edge: null, rim: null, crease: null, curve: null },
+        triangulated: false,
+        box: new Box3(),
       }
       this.items.set(key, item)
     }
@@ -235,7 +304,9 @@ export class View {
     if (item.kind === 'patch') {
       if (resized) {
         g.setIndex(new BufferAttribute(item.triangle, 1))
-        for (const o of [item.mesh, item.lines.edge, item.lines.rim]) if (o) item.group.remove(o)
+        for (const o of [item.mesh, item.lines.edge, item.lines.rim, item.lines.crease]) if (o) item.group.remove(o)
+        item.lines.crease = null
+        item.triangulated = isTriangulation(item.triangle, item.edge, item.rim)
         item.mesh = new Mesh(g, this.material('', 0, 1))
         const edges = new BufferGeometry()
         edges.setAttribute('position', g.getAttribute('position'))
@@ -247,12 +318,31 @@ export class View {
         if (item.lines.edge) item.lines.edge.geometry.boundingSphere = null
         this.refat(item.lines.rim!, item.rim, item.position)
       }
+      if (item.triangulated) this.uncreased.add(item)
     } else if (resized || !item.lines.curve) {
       if (item.lines.curve) item.group.remove(item.lines.curve)
       item.lines.curve = this.fat(item.edge, item.position, item.kind)
       item.group.add(item.lines.curve)
     } else this.refat(item.lines.curve, item.edge, item.position)
     if (!item.group.parent) this.model.add(item.group)
+  }
+
+  /** Edges of triangulations wait until nothing moves: they are looked for among all sides. */
+  private readonly uncreased = new Set<Drawn>()
+  private creasing = 0
+  private crease(): void {
+    clearTimeout(this.creasing)
+    if (!this.uncreased.size) return
+    this.creasing = window.setTimeout(() => {
+      for (const item of this.uncreased) {
+        if (!this.items.has(item.key)) continue
+        if (item.lines.crease) item.group.remove(item.lines.crease)
+        item.lines.crease = this.fat(creases(item.position, item.triangle, item.edge), item.position, 'rim')
+        item.group.add(item.lines.crease)
+      }
+      this.uncreased.clear()
+      this.settle()
+    }, CREASE_DELAY)
   }
 
   private segments(index: Uint32Array, position: Float32Array): Float32Array {
@@ -291,9 +381,22 @@ export class View {
     let found = this.materials.get(key)
     if (!found) {
       found = new ShaderMaterial({
-        uniforms: { ...this.uniforms, colour: { value: new Color(...hex(colour)) }, tinted: { value: tint }, grey: { value: grey }, opacity: { value: opacity } },
-        vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, clipping: true,
-        transparent: opacity < 1, depthWrite: opacity >= 1, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+        uniforms: {
+          ...this.uniforms,
+          colour: { value: new Color(...hex(colour)) },
+          tinted: { value: tint },
+          grey: { value: grey },
+          opacity: { value: opacity },
+        },
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        side: DoubleSide,
+        clipping: true,
+        transparent: opacity < 1,
+        depthWrite: opacity >= 1,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
       })
       this.materials.set(key, found)
     }
@@ -303,8 +406,21 @@ export class View {
   private line(kind: string): LineMaterial | LineBasicMaterial {
     let found = this.lineMaterials.get(kind)
     if (!found) {
-      const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2, foreign: 0.8 }
-      if (kind === 'edge' || kind === 'ghost') found = new LineBasicMaterial({ transparent: true, opacity: kind === 'edge' ? 0.22 : 0.5 })
+      const widths: Record<string, number> = {
+        rim: 1.4,
+        curve: 1.6,
+        wire: 2.4,
+        contour: 1.4,
+        grid: 1,
+        frame: 1.6,
+        chosen: 3,
+        hover: 2.6,
+        extra: 1.4,
+        stale: 1.2,
+        foreign: 0.8,
+      }
+      if (kind === 'edge' || kind === 'ghost')
+        found = new LineBasicMaterial({ transparent: true, opacity: kind === 'edge' ? 0.22 : 0.5 })
       else found = new LineMaterial({ linewidth: widths[kind] ?? 1.4 })
       if (found instanceof LineMaterial) found.resolution.copy(this.resolution)
       this.lineMaterials.set(kind, found)
@@ -317,14 +433,26 @@ export class View {
   private ink(): void {
     const d = this.dark
     const inks: Record<string, number> = {
-      edge: d ? 0xdfe6ee : 0x1b2530, rim: d ? 0xc9d3de : 0x2b3541, curve: d ? 0x7fb0e6 : 0x2a5d9c, wire: d ? 0xe6edf5 : 0x1b2533, contour: d ? 0xe2b66b : 0x8a5a12,
-      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6, foreign: d ? 0x9aa7b4 : 0x4a5560, ghost: d ? 0xaab4be : 0x6d7883,
+      edge: d ? 0xdfe6ee : 0x1b2530,
+      rim: d ? 0xc9d3de : 0x2b3541,
+      curve: d ? 0x7fb0e6 : 0x2a5d9c,
+      wire: d ? 0xe6edf5 : 0x1b2533,
+      contour: d ? 0xe2b66b : 0x8a5a12,
+      grid: d ? 0x8a97a5 : 0x7a8794,
+      frame: d ? 0xa0acb8 : 0x5c6875,
+      chosen: 0xe8711a,
+      hover: 0xf09a52,
+      extra: 0xc2412d,
+      stale: d ? 0x727d89 : 0xa3acb6,
+      foreign: d ? 0x9aa7b4 : 0x4a5560,
+      ghost: d ? 0xaab4be : 0x6d7883,
     }
     for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
   }
 
   theme(dark: boolean): void {
     this.dark = dark
+    this.cap.theme(dark)
     this.ink()
     this.settle()
   }
@@ -341,7 +469,7 @@ export class View {
       item.group.visible = seen
       if (seen) this.bounds.union(item.box)
       if (item.kind === 'point') {
-        if (seen) this.dotItems.push(item)
+        if (seen && this.kept(item)) this.dotItems.push(item)
         continue
       }
       const marked = item.object === this.selected ? 'chosen' : item.object === this.hovered ? 'hover' : ''
@@ -350,14 +478,21 @@ export class View {
         const tinted = this.paint === 'field' && item.field ? 1 : 0
         const own = (item.colour[0] << 16) | (item.colour[1] << 8) | item.colour[2]
         const colour = this.paint === 'field' ? 0xb9bfc6 : this.paint === 'model' ? own : HUES[item.hue % HUES.length]
-        if (!item.geometry.getAttribute('tint')) item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
+        if (!item.geometry.getAttribute('tint'))
+          item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
         item.mesh.material = this.material('', grey, opacity, tinted, colour)
         item.mesh.visible = this.style !== 'wire'
-        item.lines.edge!.visible = this.style !== 'smooth'
+        const panels = this.style === 'panels' || this.style === 'wire'
+        item.lines.edge!.visible = panels || (this.style !== 'smooth' && !item.triangulated)
+        if (item.lines.crease) {
+          item.lines.crease.visible = this.style !== 'smooth' && !this.uncreased.has(item)
+          item.lines.crease.material = this.line(marked || 'rim') as LineMaterial
+        }
         item.lines.edge!.material = this.line('edge') as LineBasicMaterial
         item.lines.rim!.visible = this.style !== 'smooth' || !!marked
         item.lines.rim!.material = this.line(marked || 'rim') as LineMaterial
-      } else if (item.lines.curve) item.lines.curve.material = this.line(marked || (item.stale ? 'stale' : item.kind)) as LineMaterial
+      } else if (item.lines.curve)
+        item.lines.curve.material = this.line(marked || (item.stale ? 'stale' : item.kind)) as LineMaterial
     }
     ;(this.line('edge') as LineBasicMaterial).opacity = this.style === 'panels' || this.style === 'wire' ? 0.6 : 0.2
     this.placeDots()
@@ -369,6 +504,21 @@ export class View {
     return (this.layers[item.kind] ?? true) && !this.hidden.has(item.object)
   }
 
+  /** Draws the points that a section keeps. */
+  dots(): void {
+    this.dotItems = [...this.items.values()].filter((i) => i.kind === 'point' && this.seen(i) && this.kept(i))
+    this.placeDots()
+    this.draw()
+  }
+
+  /** Whether a section keeps a point. */
+  private kept(item: Drawn): boolean {
+    const { clip } = this
+    if (!clip) return true
+    const x = item.position[clip.axis] + item.origin.getComponent(clip.axis)
+    return (clip.flip ? 1 : -1) * (x - clip.value) >= 0
+  }
+
   private placeDots(): void {
     const n = this.dotItems.length
     const [position, tint, big] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)]
@@ -378,7 +528,7 @@ export class View {
       tint.set(marked ? hex(0xe8711a) : item.stale ? hex(0x9aa3ad) : hex(this.dark ? 0xf0c46a : 0x7a4d0b), 3 * k)
       big[k] = marked ? 1.6 : 1
     })
-    const g = this.dots.geometry
+    const g = this.cloud.geometry
     g.dispose()
     g.setAttribute('position', new BufferAttribute(position, 3))
     g.setAttribute('tint', new BufferAttribute(tint, 3))
@@ -408,13 +558,19 @@ export class View {
     }
   }
 
+  /** The signs of the coordinates of what is drawn: of the model itself, and of its mirror images. */
+  images(): [number, number, number][] {
+    const images = this.image.visible ? this.image.children : []
+    return [[1, 1, 1], ...images.map((i) => i.scale.toArray())]
+  }
+
   private twins(image: Group): void {
     for (const item of this.items.values()) {
       if (!item.group.visible || item.kind === 'point' || item.kind === 'frame') continue
       const twin = new Group()
       twin.position.copy(item.group.position)
       for (const child of item.group.children) {
-        if (!child.visible || (child as any).isLineSegments2 && item.kind === 'patch') continue
+        if (!child.visible || ((child as any).isLineSegments2 && item.kind === 'patch')) continue
         const copy = child.clone() as any
         twin.add(copy)
       }
@@ -437,7 +593,8 @@ export class View {
       const sizes = new Float32Array(values.length / part.components)
       for (let k = 0; k < sizes.length; k++) {
         if (part.components === 1) sizes[k] = values[k]
-        else sizes[k] = Math.hypot(...Array.from({ length: part.components }, (_, c) => values[k * part.components + c]))
+        else
+          sizes[k] = Math.hypot(...Array.from({ length: part.components }, (_, c) => values[k * part.components + c]))
       }
       sized.push({ item, sizes })
       all.push(sizes)
@@ -457,7 +614,9 @@ export class View {
     const total = fielded.reduce((n, i) => n + i.field!.length / 3, 0)
     const step = Math.max(1, Math.ceil(total / 600))
     let most = 0
-    for (const i of fielded) for (let k = 0; k + 2 < i.field!.length; k += 3) most = Math.max(most, Math.hypot(i.field![k], i.field![k + 1], i.field![k + 2]))
+    for (const i of fielded)
+      for (let k = 0; k + 2 < i.field!.length; k += 3)
+        most = Math.max(most, Math.hypot(i.field![k], i.field![k + 1], i.field![k + 2]))
     if (!(most > 0) || !Number.isFinite(most)) return []
     const factor = this.bounds.getSize(new Vector3()).length() / 8 / most
     const runs: number[][] = []
@@ -470,7 +629,11 @@ export class View {
         const tip = from.clone().add(along)
         runs.push([...from.toArray(), ...tip.toArray()])
         // Two strokes of the head, across the direction of view.
-        const across = along.clone().cross(this.camera.towards).normalize().multiplyScalar(0.12 * length)
+        const across = along
+          .clone()
+          .cross(this.camera.towards)
+          .normalize()
+          .multiplyScalar(0.12 * length)
         const back = tip.clone().addScaledVector(along, -0.25)
         runs.push([...back.clone().add(across).toArray(), ...tip.toArray(), ...back.sub(across).toArray()])
       }
@@ -479,7 +642,15 @@ export class View {
   }
 
   /** Meshes and points of other programs over the model, coloured by their distance from it. */
-  foreign(all: { name: string; position: Float32Array; triangle: Uint32Array; edge: Uint32Array; deviation: Float32Array | null }[]): Scale | null {
+  foreign(
+    all: {
+      name: string
+      position: Float32Array
+      triangle: Uint32Array
+      edge: Uint32Array
+      deviation: Float32Array | null
+    }[],
+  ): Scale | null {
     this.others.clear()
     const known = all.map((o) => o.deviation).filter((d) => d !== null)
     const span = known.length ? scale(known, true) : null
@@ -487,7 +658,8 @@ export class View {
       const g = new BufferGeometry()
       g.setAttribute('position', new BufferAttribute(one.position, 3))
       const tint = new Float32Array(one.position.length)
-      for (let k = 0; k < tint.length / 3; k++) tint.set(one.deviation && span ? coloured(one.deviation[k], span) : [0.5, 0.5, 0.5], 3 * k)
+      for (let k = 0; k < tint.length / 3; k++)
+        tint.set(one.deviation && span ? coloured(one.deviation[k], span) : [0.5, 0.5, 0.5], 3 * k)
       g.setAttribute('tint', new BufferAttribute(tint, 3))
       if (one.triangle.length) {
         g.setIndex(new BufferAttribute(one.triangle, 1))
@@ -495,7 +667,15 @@ export class View {
         this.others.add(new Mesh(g, this.material('', 0, 1, 1)))
       } else {
         g.setAttribute('color', new BufferAttribute(tint, 3))
-        const points = new Points(g, new PointsMaterial({ size: 7 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: true, depthTest: false }))
+        const points = new Points(
+          g,
+          new PointsMaterial({
+            size: 7 * this.renderer.getPixelRatio(),
+            sizeAttenuation: false,
+            vertexColors: true,
+            depthTest: false,
+          }),
+        )
         this.others.add(points)
       }
       if (one.edge.length) this.others.add(this.fat(one.edge, one.position, 'foreign'))
@@ -505,7 +685,9 @@ export class View {
   }
 
   /** Panels that lie in the model, coloured by numbers at their corners. */
-  plane(of: { position: Float32Array; triangle: Uint32Array; edge: Uint32Array; value: Float32Array } | null): Scale | null {
+  plane(
+    of: { position: Float32Array; triangle: Uint32Array; edge: Uint32Array; value: Float32Array } | null,
+  ): Scale | null {
     this.cut.clear()
     let span: Scale | null = null
     if (of) {
@@ -520,7 +702,10 @@ export class View {
       const edges = new BufferGeometry()
       edges.setAttribute('position', g.getAttribute('position'))
       edges.setIndex(new BufferAttribute(of.edge, 1))
-      this.cut.add(new Mesh(g, this.material('plane', 0, 1, 1)), new LineSegments(edges, this.line('edge') as LineBasicMaterial))
+      this.cut.add(
+        new Mesh(g, this.material('plane', 0, 1, 1)),
+        new LineSegments(edges, this.line('edge') as LineBasicMaterial),
+      )
     }
     this.draw()
     return span
@@ -535,7 +720,8 @@ export class View {
     const facing = this.camera.towards.toArray().map(Math.abs)
     // The ground, unless it is seen too flatly.
     const axis = facing[2] > 0.3 ? 2 : facing.indexOf(Math.max(...facing))
-    const level = Math.abs(this.camera.target.getComponent(axis)) < this.camera.reach ? 0 : this.camera.target.getComponent(axis)
+    const level =
+      Math.abs(this.camera.target.getComponent(axis)) < this.camera.reach ? 0 : this.camera.target.getComponent(axis)
     const along = (level - ray.origin.getComponent(axis)) / ray.direction.getComponent(axis)
     const place = ray.at(along, new Vector3())
     return place.setComponent(axis, level)
@@ -554,7 +740,10 @@ export class View {
     const [o, d] = [turned(ray.origin), turned(ray.direction)]
     const { clip } = this
     const kept = clip
-      ? (t: number) => (clip.flip ? 1 : -1) * (ray.origin.getComponent(clip.axis) + t * ray.direction.getComponent(clip.axis) - clip.value) >= 0
+      ? (t: number) =>
+          (clip.flip ? 1 : -1) *
+            (ray.origin.getComponent(clip.axis) + t * ray.direction.getComponent(clip.axis) - clip.value) >=
+          0
       : undefined
     let best = before
     for (const item of this.items.values()) {
@@ -578,7 +767,8 @@ export class View {
       const of = (i: Drawn) => (i.kind === 'patch' ? i.rim : i.edge)
       const flat = new Float32Array(3 * all.reduce((n, i) => n + of(i).length, 0))
       let at = 0
-      for (const i of all) for (const v of of(i)) for (let c = 0; c < 3; c++) flat[at++] = i.position[3 * v + c] + i.origin.getComponent(c)
+      for (const i of all)
+        for (const v of of(i)) for (let c = 0; c < 3; c++) flat[at++] = i.position[3 * v + c] + i.origin.getComponent(c)
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(flat, 3))
       const lines = new LineSegments(geometry, this.line('ghost') as LineBasicMaterial)
@@ -593,13 +783,15 @@ export class View {
   overlay(name: string, runs: number[][] | null, colour = 0xc2412d, width = 1.5): void {
     const old = this.extras.children.find((c) => c.name === name)
     if (old) this.extras.remove(old)
-    if (runs && runs.length) {
+    if (runs?.length) {
       const flat: number[] = []
       for (const run of runs) for (let k = 0; k + 5 < run.length; k += 3) flat.push(...run.slice(k, k + 6))
       if (flat.length) {
         const geometry = new LineSegmentsGeometry()
         geometry.setPositions(flat)
         const material = new LineMaterial({ linewidth: width, color: colour, depthTest: false, transparent: true })
+        // A section takes nothing of what is drawn over the model.
+        material.clipping = false
         material.resolution.copy(this.resolution)
         const lines = new LineSegments2(geometry, material)
         lines.name = name
@@ -610,11 +802,22 @@ export class View {
     this.draw()
   }
 
+  /** The places of what is drawn besides under a name: ends of segments, three numbers each; null where nothing is. */
+  drawnOver(name: string): number[] | null {
+    const lines = this.extras.children.find((c) => c.name === name) as LineSegments2 | LineSegments | undefined
+    if (!lines) return null
+    if (!(lines instanceof LineSegments2)) return Array.from(lines.geometry.getAttribute('position').array)
+    const ends = lines.geometry.getAttribute('instanceStart') as InterleavedBufferAttribute
+    return Array.from(ends.data.array)
+  }
+
   get box(): Box3 {
     return this.bounds
   }
 
+  /** Shows all in what the bars over the picture leave free. */
   fit(): void {
+    this.camera.inset = this.covered() / this.resolution.y
     this.camera.fit(this.bounds, this.resolution.x / this.resolution.y)
     this.draw()
   }
@@ -663,7 +866,10 @@ export class View {
   ray(x: number, y: number): Raycaster {
     this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
     const caster = new Raycaster()
-    caster.setFromCamera(new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2), this.camera.three)
+    caster.setFromCamera(
+      new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2),
+      this.camera.three,
+    )
     return caster
   }
 
@@ -693,8 +899,7 @@ export class View {
     const { ray } = this.ray(x, y)
     let found: Met | null = null
     if (this.style !== 'wire') {
-      found = this.met(ray, [1, 1, 1], null)
-      if (this.image.visible) for (const image of this.image.children) found = this.met(ray, image.scale.toArray(), found)
+      for (const signs of this.images()) found = this.met(ray, signs, found)
     }
     if (line && (!found || line.depth <= found.hit.t * (1 + 1e-3) + 1e-9)) return line
     if (!found) return null
@@ -703,7 +908,9 @@ export class View {
     if (item.field && this.paint === 'field') {
       const { field, components, triangle } = item
       const { at, weights } = found.hit
-      value = Array.from({ length: components }, (_, c) => weights.reduce((sum, w, k) => sum + w * field[triangle[at + k] * components + c], 0))
+      value = Array.from({ length: components }, (_, c) =>
+        weights.reduce((sum, w, k) => sum + w * field[triangle[at + k] * components + c], 0),
+      )
     }
     return { object: item.object, kind: item.kind, point: ray.at(found.hit.t, new Vector3()), value }
   }
@@ -720,7 +927,11 @@ export class View {
       const { origin, position, edge } = item
       const flat = new Float64Array((2 * position.length) / 3)
       for (let k = 0; 3 * k < position.length; k++) {
-        const [px, py, pz] = [position[3 * k] + origin.x, position[3 * k + 1] + origin.y, position[3 * k + 2] + origin.z]
+        const [px, py, pz] = [
+          position[3 * k] + origin.x,
+          position[3 * k + 1] + origin.y,
+          position[3 * k + 2] + origin.z,
+        ]
         const scale = 1 / (m[3] * px + m[7] * py + m[11] * pz + m[15])
         flat[2 * k] = w + w * scale * (m[0] * px + m[4] * py + m[8] * pz + m[12])
         flat[2 * k + 1] = h - h * scale * (m[1] * px + m[5] * py + m[9] * pz + m[13])

@@ -28,7 +28,10 @@ export interface Carried {
   data: string
 }
 
-const scope = self as unknown as { postMessage(message: unknown, moved?: Transferable[]): void; onmessage: ((e: MessageEvent) => void) | null }
+const scope = self as unknown as {
+  postMessage(message: unknown, moved?: Transferable[]): void
+  onmessage: ((e: MessageEvent) => void) | null
+}
 
 let engine: Engine | null = null
 let module: WebAssembly.Module | null = null

@@ -33,9 +33,7 @@ function plain(document) {
 
 // The page for a webview: scripts of the extension and WebAssembly, a worker of a blob, no other address.
 function html(webview, found, document) {
-  const assets = fs.readdirSync(path.join(found.page, "assets"));
   const uri = (...names) => webview.asWebviewUri(vscode.Uri.file(path.join(...names))).toString();
-  const asset = (ending) => uri(found.page, "assets", assets.find((name) => name.endsWith(ending)));
   const nonce = require("crypto").randomBytes(18).toString("base64url");
   const source = webview.cspSource;
   const policy = [
@@ -62,12 +60,12 @@ function html(webview, found, document) {
     <meta name="viewport" content="width=device-width, initial-scale=1" />
     <meta name="nonce" content="" />
     <title>Moldloft</title>
-    <link rel="stylesheet" href="${asset(".css")}" />
+    <link rel="stylesheet" href="${uri(found.page, "page.css")}" />
   </head>
   <body>
     <div id="app"></div>
     <script type="application/json" id="moldloft-model" nonce="${nonce}">${asData(data)}</script>
-    <script type="module" nonce="${nonce}" src="${asset(".js")}"></script>
+    <script type="module" nonce="${nonce}" src="${uri(found.page, "page.js")}"></script>
   </body>
 </html>`;
 }

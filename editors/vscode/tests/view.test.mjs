@@ -87,8 +87,8 @@ const { view, read } = require("../src/view.js");
 
 function folder() {
   const made = mkdtempSync(join(tmpdir(), "moldloft-view-"));
-  mkdirSync(join(made, "page", "assets"), { recursive: true });
-  for (const name of ["index.html", "worker.js", "engine.wasm.xz", "assets/index-1.js", "assets/index-1.css"]) writeFileSync(join(made, "page", name), "");
+  mkdirSync(join(made, "page"), { recursive: true });
+  for (const name of ["index.html", "worker.js", "engine.wasm.xz", "page.js", "page.css"]) writeFileSync(join(made, "page", name), "");
   return made;
 }
 

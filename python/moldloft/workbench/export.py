@@ -14,7 +14,7 @@ from typing import Any
 from moldloft import _core
 from moldloft.errors import Error
 from moldloft.workbench.hub import head_of
-from moldloft.workbench.page import engine_packed, page_files, worker_script
+from moldloft.workbench.page import engine_packed, page_parts, worker_script
 from moldloft.workbench.text import applied, read
 
 __all__ = ["exported_page", "page_of", "with_values"]
@@ -200,12 +200,12 @@ def _carried(
 
 def _assembled(name: str, data: str, engine: bytes | None) -> str:
     """The built page as one file. Text of a model is escaped data that cannot end its element."""
-    files = page_files()
-    index = files["/index.html"].decode()
-    (script,) = [text.decode() for path, text in files.items() if path.endswith(".js")]
-    styles = "\n".join(text.decode() for path, text in files.items() if path.endswith(".css"))
-    module, style = r"<script type=\"module\"[^>]*></script>", r"<link rel=\"stylesheet\"[^>]*>"
-    index = re.sub(rf"\s*(?:{module}|{style})", "", index)
+    index, script, styles = page_parts()
+    module, sheet = (
+        r"<script type=\"module\"[^>]*></script>",
+        r"<link rel=\"(?:stylesheet|modulepreload)\"[^>]*>",
+    )
+    index = re.sub(rf"\s*(?:{module}|{sheet})", "", index)
     script = re.sub(r"</(script)", r"<\\/\1", script, flags=re.I).replace("<!--", "<\\!--")
     policy = _POLICY.format(engine="" if engine is None else _ENGINE_POLICY)
     policy = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'

@@ -6,7 +6,7 @@ from importlib import resources
 
 from moldloft.errors import Error
 
-__all__ = ["NO_ENGINE", "engine_packed", "page_files", "worker_script"]
+__all__ = ["NO_ENGINE", "engine_packed", "page_files", "page_parts", "worker_script"]
 
 _NO_PAGE = (
     "the page of the workbench is not built: run `make web` in the clone (it needs Node.js 20 or "
@@ -39,6 +39,17 @@ def page_files() -> dict[str, bytes]:
     for entry in (root / "assets").iterdir():
         files[f"/assets/{entry.name}"] = entry.read_bytes()
     return files
+
+
+def page_parts() -> tuple[str, str, str]:
+    """The page for one file: its frame, its script and its style.
+
+    A file that is opened from the disk loads no other, so that all chunks are in the script.
+    """
+    index = page_files()["/index.html"].decode()
+    root = _FOLDER / "page"
+    script, style = ((root / f"page.{kind}").read_text(encoding="utf-8") for kind in ("js", "css"))
+    return index, script, style
 
 
 def engine_packed() -> bytes | None:

@@ -13,6 +13,8 @@ __all__ = ["Axes", "snapped"]
 
 #: Sine of the angle below which two directions have no crossing worth the name.
 _PARALLEL = 0.1
+#: Sine of the angle below which a line is along an axis.
+_ALONG = 0.02
 #: Part of a line's length around its middle that is the middle.
 _MIDDLE = 0.04
 
@@ -58,15 +60,17 @@ def snapped(
 ) -> dict[str, Any]:
     """The snap for a pointer position: the nearest of the strongest kind within reach.
 
-    In this order: a point; the crossing of an axis through the start with one through any other
-    point, or of two through woken ones; the middle of a line; a line; an axis through the start
-    or a woken point.
+    In this order: a point; the crossing of a direction through the start with one through any
+    other point, or of two through woken ones; the middle of a line; a line; a direction through the
+    start or a woken point. Directions are the axes, the lines that end at a woken point, through
+    that point as extensions, and through the start as parallels.
 
     Returns
     -------
     dict
-        ``at``, ``why`` (``"point"``, ``"cross"``, ``"mid"``, ``"line"``, ``"axis"``), the ``point``
-        or ``line`` with the ``part`` of its length, ``axes`` and the points ``of`` them.
+        ``at``, ``why`` (``"point"``, ``"cross"``, ``"mid"``, ``"line"``, ``"axis"``,
+        ``"extension"``, ``"parallel"``), the ``point`` or ``line`` with the ``part`` of its length,
+        ``axes`` (a line by its number) and the points ``of`` them.
     """
     found = session.snap(name, [at[0], at[1]], reach)
     if found is not None and found[1] is not None and found[3] is None:
@@ -79,8 +83,13 @@ def snapped(
         for ray in _rays(point, through, directions, at)
         if ray.off <= reach
     ]
+    ways = _lines_at(session, name, places, directions, woken)
     strong = [r for r in _rays(0, start, directions, at) if r.off <= reach] if start else []
     lively = [r for r in rays if r.point in woken]
+    for point, lines in ways.items():
+        lively += [r for r in _rays(point, places[point], lines, at, "extension") if r.off <= reach]
+        if start:
+            strong += [r for r in _rays(0, start, lines, at, "parallel") if r.off <= reach]
     crossings = []
     for one in [*strong, *lively]:
         for two in rays if one in strong else lively:
@@ -107,18 +116,19 @@ def snapped(
         if abs(along) > reach:
             of = [ray.point] if ray.point else []
             foot = [u + c * along, v + s * along]
-            return {"at": foot, "why": "axis", "axes": [ray.axis], "of": of}
+            return {"at": foot, "why": ray.why, "axes": [ray.axis], "of": of}
     return {}
 
 
 class _Ray(NamedTuple):
-    """An axis through a point of the drawing, or through the start (0), near the pointer."""
+    """A direction through a point of the drawing, or through the start (0), near the pointer."""
 
     off: float
     axis: str
     point: int
     through: Place
     along: Place
+    why: str
 
 
 def _drawn(session: _core.SketchSession, name: str) -> dict[int, Place]:
@@ -139,10 +149,36 @@ def _ends(session: _core.SketchSession, name: str, line: int) -> tuple[int, int]
     raise ValueError(f"there is no line {line}")
 
 
-def _rays(point: int, through: Place, directions: dict[str, Place], at: Place) -> list[_Ray]:
+def _lines_at(
+    session: _core.SketchSession,
+    name: str,
+    places: dict[int, Place],
+    axes: dict[str, Place],
+    woken: Sequence[int],
+) -> dict[int, dict[str, Place]]:
+    """For each woken point the directions of the lines that end there, but for those along axes."""
+    found: dict[int, dict[str, Place]] = {p: {} for p in woken if p in places}
+    for text in session.text(name).splitlines():
+        words = text.split()
+        if words[:1] != ["LINE"] or words[2:3] != ["FROM"]:
+            continue
+        ends = int(words[3]), int(words[5])
+        (a, b), (c, d) = places[ends[0]], places[ends[1]]
+        way = _unit((c - a, d - b))
+        if any(abs(way[0] * e[1] - way[1] * e[0]) < _ALONG for e in axes.values()):
+            continue
+        for end in ends:
+            if end in found:
+                found[end][f"line {words[1]}"] = way
+    return found
+
+
+def _rays(
+    point: int, through: Place, directions: dict[str, Place], at: Place, why: str = "axis"
+) -> list[_Ray]:
     off = (at[0] - through[0], at[1] - through[1])
     return [
-        _Ray(abs(off[0] * d[1] - off[1] * d[0]), axis, point, through, d)
+        _Ray(abs(off[0] * d[1] - off[1] * d[0]), axis, point, through, d, why)
         for axis, d in directions.items()
     ]
 

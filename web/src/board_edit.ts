@@ -1,0 +1,40 @@
+// Commands for what is chosen on the drawing board.
+
+import { type Drawn, letter } from './board_paint'
+
+/** Marks of what is chosen: `p3` is point 3, `l7` line 7. */
+export const labels = (chosen: Iterable<string>, kind: 'p' | 'l'): number[] =>
+  [...chosen].filter((c) => c[0] === kind).map((c) => Number(c.slice(1)))
+
+const written = (x: number) => Number(x.toPrecision(12))
+
+/**
+ * Commands that draw the chosen lines and points again, moved on the page, and the marks of the copies.
+ *
+ * Types that were given go with their lines; guesses are made anew. Lines with a common end keep it.
+ */
+export function duplicated(
+  drawn: Drawn,
+  chosen: Iterable<string>,
+  [du, dv]: [number, number],
+): { commands: string[]; chosen: string[] } {
+  const all = [...chosen]
+  const lines = drawn.lines.filter((l) => labels(all, 'l').includes(l[0]))
+  const ends = new Set([...labels(all, 'p'), ...lines.flatMap((l) => [l[1], l[2]])])
+  let point = Math.max(0, ...drawn.points.map((p) => p[0]))
+  let line = Math.max(0, ...drawn.lines.map((l) => l[0]))
+  const copies = new Map<number, number>()
+  const commands: string[] = []
+  for (const [label, u, v] of drawn.points) {
+    if (!ends.has(label)) continue
+    copies.set(label, ++point)
+    commands.push(`POINT ${point} AT ${written(u + du)} ${written(v + dv)}`)
+  }
+  const made: string[] = [...copies.values()].map((p) => `p${p}`)
+  for (const [, p, q, type, by] of lines) {
+    const given = by === 'user' && type ? ` TYPE ${letter(type, drawn.section)}` : ''
+    commands.push(`LINE ${++line} FROM ${copies.get(p)} TO ${copies.get(q)}${given}`)
+    made.push(`l${line}`)
+  }
+  return { commands, chosen: made }
+}

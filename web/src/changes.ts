@@ -1,0 +1,165 @@
+// What hands change: values that are set while they move, and what is written into the text when they rest.
+
+import { shown } from './dom'
+import type { Editor } from './editor'
+import type { Hands } from './hands'
+import type { Held } from './history'
+import type { Host } from './host'
+import { type Link, Newest, Refused } from './link'
+import { model } from './state'
+
+/** A hand that has not moved for this long rests, in ms. */
+const REST = 600
+
+/** The values of a step of the history, in words. */
+export function valuesInWords(list: Record<string, number>): string {
+  const one = ([n, x]: [string, number]) => {
+    const was = model.params.find((p) => p.name === n)?.value
+    return was === undefined ? `${n}: ${shown(x)}` : `${n}: ${shown(was)} → ${shown(x)}`
+  }
+  return Object.entries(list).map(one).join(', ')
+}
+
+export class Changes {
+  editor!: Editor
+  hands!: Hands
+  /** For tests: when frames came, how long they took. */
+  readonly stamps: { kind: string; from: number; to: number }[] = []
+  /** Values of parameters that the text computes from others, while they are held. */
+  private readonly held = new Map<string, number>()
+  /** One after the other: the engine must have what the last one wrote before it writes the next. */
+  private writing: Promise<void> = Promise.resolve()
+  /** What waits for the hand to rest. */
+  private rests: { name: string; run: () => Promise<void>; timer: number } | null = null
+  private readonly setting: Newest<Record<string, number>>
+
+  constructor(
+    private readonly link: Link,
+    private readonly host: Host | null,
+    private readonly say: (words: string) => void,
+    private readonly warn: (words: string) => void,
+  ) {
+    this.setting = new Newest<Record<string, number>>(
+      async (values) => {
+        const from = performance.now()
+        try {
+          await link.ask('set', { values })
+          this.stamps.push({ kind: 'set', from, to: performance.now() })
+        } catch (error) {
+          if (error instanceof Refused && error.message !== 'superseded') say(error.message)
+        }
+      },
+      (a, b) => ({ ...a, ...b }),
+    )
+  }
+
+  /** Sets a value without writing it. */
+  set(name: string, value: number): void {
+    this.setting.push({ [name]: value })
+  }
+
+  /** Runs after all that is being written. */
+  after(run: () => Promise<void>): Promise<void> {
+    this.writing = this.writing.then(run).catch((error) => this.say((error as Error).message))
+    return this.writing
+  }
+
+  /** Has the engine change the text: a step of the history. */
+  edits(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
+    return this.after(async () => {
+      await this.editor.synced()
+      await this.setting.settled()
+      const { head } = await this.link.ask(kind, fields)
+      const now = (head.kept ?? []).map((n: string) => ({
+        name: n,
+        from: this.held.get(n) ?? null,
+        to: model.params.find((p) => p.name === n)?.value ?? null,
+      }))
+      const news = now.filter((one: Held) => one.from !== one.to)
+      for (const one of news) if (one.to !== null) this.held.set(one.name, one.to)
+      this.editor.apply(head.edits ?? [], head.version, name, news)
+      const names = news.map((one: Held) => one.name).join(', ')
+      if (names)
+        this.say(`${names} follows from an expression: the value holds for this session and is not in the text`)
+    })
+  }
+
+  /** The last of a name runs when the hand rests. */
+  rest(name: string, run: () => Promise<void>): void {
+    if (this.rests && this.rests.name !== name) void this.rested()
+    if (this.rests) clearTimeout(this.rests.timer)
+    this.rests = { name, run, timer: window.setTimeout(() => void this.rested(), REST) }
+  }
+
+  /** What waits for the hand to rest runs now. */
+  rested(): Promise<void> {
+    const one = this.rests
+    this.rests = null
+    if (one) clearTimeout(one.timer)
+    return one ? one.run() : Promise.resolve()
+  }
+
+  /** The values that hold without being in the text are given to an engine that has forgotten them. */
+  async holdAgain(): Promise<void> {
+    if (this.held.size) await this.link.ask('write', { values: Object.fromEntries(this.held) })
+  }
+
+  /** Takes back what was set and not written. */
+  async reset(): Promise<void> {
+    await this.link.ask('reset')
+    await this.holdAgain()
+  }
+
+  /** A held value goes with a step that was taken back or done again. */
+  holds({ name, to }: Held): void {
+    if (to === null) this.held.delete(name)
+    else this.held.set(name, to)
+    // The engine gives up all that the text does not state, and takes again what is still held.
+    void this.after(async () => {
+      await this.editor.synced()
+      if (to === null) await this.link.ask('reset')
+      await this.holdAgain()
+    })
+  }
+
+  /** Steps of the history, back or, with a negative count, again; what is under way is a step, too. */
+  turn(count: number): void {
+    if (this.host) return this.host.undo(count > 0)
+    if (this.link.still) return
+    if (this.hands.busy) {
+      this.hands.cancel()
+      if (count > 0) return
+    }
+    void this.rested()
+    // Between what was written before the key and what is written after it.
+    void this.after(async () => {
+      await this.hands.settled()
+      const back = count > 0
+      const { steps, view } = this.editor
+      const step = (back ? steps.done : steps.undone).at(-1)
+      const gone = steps.go(view, count)
+      const words = `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`
+      this.say(gone ? words : `Nothing to ${back ? 'undo' : 'redo'}`)
+    })
+  }
+
+  revert(): void {
+    void this.rested()
+    void this.after(async () => {
+      await this.hands.settled()
+      await this.editor.synced()
+      const { text } = await this.link.tell({ kind: 'revert' })
+      this.editor.replace(text, false, false, 'Revert to the saved file')
+      this.say('Reverted to the saved file; Ctrl+Z takes it back')
+      this.warn('')
+    })
+  }
+
+  async settled(): Promise<void> {
+    await this.rested()
+    await this.hands.settled()
+    await this.editor.synced()
+    await this.setting.settled()
+    await this.writing
+  }
+}

@@ -1,0 +1,117 @@
+// Files and links that leave the page, and files that are dropped on it.
+
+import type { App } from './app'
+import { h } from './dom'
+import { LONGEST_LINK, packed, unpacked } from './share'
+import { model } from './state'
+
+/** Endings of programs and model files, whose text takes the place of the program. */
+const PROGRAM = /\.(sdl|skt|ms2)$/i
+
+/** Formats that hold no surfaces. */
+const FLAT = new Set(['svg', 'png', 'sdl', 'ms2'])
+
+/** Offers a file for download. */
+export function give(app: Pick<App, 'host'>, blob: Blob, name: string): void {
+  if (app.host) return void app.host.give(blob, name)
+  const a = h('a', { download: name })
+  a.href = URL.createObjectURL(blob)
+  a.click()
+  setTimeout(() => URL.revokeObjectURL(a.href), 10_000)
+}
+
+/** Makes a file of the model in a format of the engine, or of the picture as it is seen. */
+export async function download(app: App, kind: string): Promise<void> {
+  try {
+    const stem = model.name.replace(/\.\w+$/, '')
+    if (kind === 'picture') {
+      const blob = await app.view.picture()
+      if (blob) give(app, blob, `${stem}.png`)
+      return
+    }
+    app.shell.say(`Making ${kind}…`)
+    await app.changes.settled()
+    const frame = await app.link.ask('export', { format: kind, stem })
+    const names = frame.head.files.map((part: any) => {
+      const name = String(part.name).split(/[/\\]/).pop() ?? stem
+      give(app, new Blob([frame.bytes(part).slice()]), name)
+      return name
+    })
+    const { mirrored } = app.view
+    const half = mirrored && !FLAT.has(kind) ? `: the model's own side, which is mirrored in ${mirrored}` : ''
+    app.shell.say(names.length ? `${names.join(', ')} made${half}` : `${kind}: the model has nothing to write`)
+  } catch (error) {
+    app.shell.say((error as Error).message)
+  }
+}
+
+export async function copyLink(app: App): Promise<void> {
+  try {
+    const address = `${location.href.split('#')[0]}#${await packed({ name: model.name, text: app.editor.text })}`
+    if (address.length > LONGEST_LINK) {
+      const [is, may] = [address.length, LONGEST_LINK].map((n) => Math.ceil(n / 1000))
+      return app.shell.say(`The link would have ${is} 000 characters, and may have ${may} 000: export the file instead`)
+    }
+    try {
+      await navigator.clipboard.writeText(address)
+      app.shell.say(`Link copied: ${address.length} characters hold the text, but none of the files that it reads`)
+    } catch {
+      // Without leave to use the clipboard the address is shown, chosen.
+      const field = h('input', { type: 'text', readonly: true, 'aria-label': 'link', size: 40 })
+      field.value = address
+      const close = h('button', { onclick: () => app.shell.warn('') }, 'Close')
+      app.shell.warn('The link that holds the model: ', field, close)
+      field.select()
+    }
+  } catch (error) {
+    app.shell.say((error as Error).message)
+  }
+}
+
+/** Takes the model of the address that the page was opened with, if it holds one: a step of the history. */
+export async function openLink(app: App): Promise<void> {
+  try {
+    const held = await unpacked(location.hash)
+    if (!held) return
+    history.replaceState(null, '', location.pathname + location.search)
+    if (held.text === app.editor.text || app.link.still) return
+    const take = () => {
+      app.editor.replace(held.text, false, false, `Open the link of ${held.name}`)
+      app.shell.warn('')
+    }
+    const empty = app.editor.text.trim() === ''
+    if (app.link.local || empty) return take()
+    app.shell.warn(
+      `The link holds ${held.name}. It takes the place of the program here; Ctrl+Z brings that back. `,
+      h('button', { class: 'primary', onclick: take }, 'Open it'),
+      h('button', { onclick: () => app.shell.warn('') }, 'Keep the program'),
+    )
+  } catch (error) {
+    app.shell.warn((error as Error).message, h('button', { onclick: () => app.shell.warn('') }, 'Close'))
+  }
+}
+
+/** A file that was chosen or dropped: a program is opened, another one is laid over the model. */
+export async function openFile(app: App, file: File): Promise<void> {
+  if (!PROGRAM.test(file.name)) return app.foreign.lay(file)
+  const ending = (name: string) => name.split('.').pop()!.toLowerCase()
+  if (ending(file.name) !== ending(model.name))
+    return app.shell.say(`${file.name} is another kind of model than ${model.name}: moldloft view ${file.name}`)
+  const text = await file.text()
+  app.editor.replace(text, false, false, `Open ${file.name}`)
+  app.shell.say(`${file.name} has taken the place of the program; Ctrl+Z brings it back`)
+}
+
+export function installDrop(app: App, host: HTMLElement): void {
+  host.addEventListener('dragover', (e) => {
+    e.preventDefault()
+    host.classList.add('dropping')
+  })
+  for (const end of ['dragleave', 'drop']) host.addEventListener(end, () => host.classList.remove('dropping'))
+  host.addEventListener('drop', (e) => {
+    e.preventDefault()
+    if (app.link.still) return
+    for (const file of e.dataTransfer?.files ?? [])
+      void openFile(app, file).catch((error) => app.shell.say(error.message))
+  })
+}

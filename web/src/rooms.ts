@@ -1,0 +1,61 @@
+// The drawing board and the fairing desk: loaded when they are first shown.
+
+import type { Board } from './board'
+import type { Desk } from './desk'
+import type { Editor } from './editor'
+import type { Link } from './link'
+
+export type RoomName = 'board' | 'desk'
+
+export class Rooms {
+  private board: Promise<Board> | null = null
+  private desk: Promise<Desk> | null = null
+  private shown: RoomName | null = null
+  /** Those that are there. */
+  readonly loaded: { board?: Board; desk?: Desk } = {}
+
+  constructor(
+    private readonly stage: HTMLElement,
+    private readonly link: Link,
+    private readonly editor: Editor,
+    private readonly say: (words: string) => void,
+    private readonly give: (blob: Blob, name: string) => void,
+  ) {}
+
+  private place<R extends { element: HTMLElement }>(room: R): R {
+    this.stage.append(room.element)
+    return room
+  }
+
+  load(name: 'board'): Promise<Board>
+  load(name: 'desk'): Promise<Desk>
+  load(name: RoomName): Promise<Board | Desk>
+  load(name: RoomName): Promise<Board | Desk> {
+    if (name === 'board') {
+      this.board ??= import('./board').then(({ Board }) => {
+        this.loaded.board = this.place(new Board(this.link, this.editor, this.say))
+        return this.loaded.board
+      })
+      return this.board
+    }
+    this.desk ??= import('./desk').then(({ Desk }) => {
+      this.loaded.desk = this.place(new Desk(this.link, this.editor, this.say, this.give))
+      return this.loaded.desk
+    })
+    return this.desk
+  }
+
+  /** Shows one room, or none. */
+  async show(name: RoomName | null): Promise<void> {
+    this.shown = name
+    if (name) await this.load(name)
+    // Meanwhile another one may have been chosen.
+    if (this.board) (await this.board).show(this.shown === 'board')
+    if (this.desk) (await this.desk).show(this.shown === 'desk')
+  }
+
+  /** The text is another one. */
+  refresh(): void {
+    void this.board?.then((b) => b.refresh())
+  }
+}
