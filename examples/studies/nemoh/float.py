@@ -30,13 +30,15 @@ def prepare(model: moldloft.Model, folder: Path) -> dict[str, float]:
 
 
 def heave_period(file: Path) -> float:
-    """The natural period of heave in s, where w^2 (m + A33(w)) = C33, by `RadiationCoefficients.tec`.
+    """The natural period of heave in s, where w^2 (m + A33(w)) = C33.
 
-    It has a zone for each motion, a line for each frequency.
+    `RadiationCoefficients.tec` has a zone for each motion, a line for each frequency.
     """
     mass, stiffness = (float(word) for word in (file.parents[1] / "body.txt").read_text().split())
     zones = re.split(r"(?i)^ *zone.*$", file.read_text(), flags=re.M)[1:]
-    heave = np.array([[float(word) for word in line.split()] for line in zones[2].split("\n")[1:-1]])
+    heave = np.array(
+        [[float(word) for word in line.split()] for line in zones[2].split("\n")[1:-1]]
+    )
     frequency, added = heave[:, 0], heave[:, ADDED]
     excess = frequency**2 * (mass + added) - stiffness
     above = int(np.searchsorted(excess > 0, True))

@@ -158,8 +158,8 @@ class Analysis:
     """``file.py:function``; called with the model and the case's folder before the commands, it
     writes further files there; what it returns are words for the template by name, or None."""
     template: str = ""
-    """A folder whose files are copied; ``{name}`` and ``{name:format}`` of inputs, outputs and the
-    words of `prepare` are replaced in texts."""
+    """A folder whose files are copied; ``{name}`` and ``{name:format}`` of parameters, inputs,
+    outputs and the words of `prepare` are replaced in texts."""
     files: tuple[str, ...] = ()
     """Further files and folders beside the study whose contents decide the numbers."""
     results: Mapping[str, Pattern] = field(default_factory=dict)

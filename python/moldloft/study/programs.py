@@ -105,7 +105,8 @@ def run_program(
     keep = analysis["keep"] == "all"
     try:
         stem = Path(request["model"]).stem
-        words: dict[str, float | str] = {**request["inputs"], **found}
+        words: dict[str, float | str] = {n: float(p.value) for n, p in model.params.items()}
+        words |= {**request["inputs"], **found}
         if analysis["prepare"]:
             words |= _prepared(model, analysis["prepare"], place, folder, function)
         if analysis["template"]:
@@ -193,8 +194,9 @@ def _filled(text: str, words: Mapping[str, float | str], where: str) -> str:
         name, form = match[1], match[2]
         if name not in words:
             near = nearest(name, list(words))
-            if near:
-                raise SolverError(f"`{where}`: `{{{name}}}` is unknown; did you mean `{near}`?")
+            if near or form:
+                hint = f"; did you mean `{near}`?" if near else ""
+                raise SolverError(f"`{where}`: `{{{name}}}` is unknown{hint}")
             return match[0]
         found = words[name]
         if not form:
@@ -330,15 +332,17 @@ def _of_table(text: str, name: str, pattern: Mapping[str, Any]) -> str:
     Lines above the header, comments and rules are passed over.
     """
     header: list[str] | None = None
+    separator = ""
     rows = []
     for number, line in enumerate(text.splitlines(), start=1):
-        words = _words(line)
         if header is None:
-            words = words[1:] if words[:1] in (["#"], ["%"]) else words
-            words = [w.lstrip("#%").strip() for w in words[:1]] + words[1:]
-            header = words if pattern["column"] in words else None
+            title = line.strip().lstrip("#%")
+            for separator in (",", ";", ""):
+                if pattern["column"] in (words := _words(title, separator)):
+                    header = words
+                    break
         elif line.strip() and line.lstrip()[0] not in "#%" and set(line) - set(" \t-=+|"):
-            rows.append((number, words))
+            rows.append((number, _words(line, separator)))
     if header is None:
         raise SolverError(f"`{name}`: `{pattern['file']}` has no column `{pattern['column']}`")
     try:
@@ -350,15 +354,15 @@ def _of_table(text: str, name: str, pattern: Mapping[str, Any]) -> str:
             f"`{name}`: line {number} of `{pattern['file']}` has {len(row)} words, its header "
             f"{len(header)}"
         )
-    return row[header.index(pattern["column"])]
+    word: str = row[header.index(pattern["column"])]
+    return word
 
 
-def _words(line: str) -> list[str]:
-    for separator in (",", ";"):
-        if separator in line:
-            row = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
-            return [word.strip() for word in row]
-    return line.split()
+def _words(line: str, separator: str) -> list[str]:
+    if not separator:
+        return line.split()
+    rows = csv.reader([line], delimiter=separator, skipinitialspace=True)
+    return [word.strip() for row in rows for word in row]
 
 
 def _of_json(text: str, name: str, pattern: Mapping[str, Any]) -> Any:
