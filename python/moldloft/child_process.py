@@ -54,9 +54,12 @@ class ChildProcess:
         The module's full name.
     quiet
         True to discard its standard error.
+    grace
+        Seconds from SIGTERM, which lets the process end what it has begun, to its kill; 0: killed
+        at once.
     """
 
-    def __init__(self, module: str, *, quiet: bool = False) -> None:
+    def __init__(self, module: str, *, quiet: bool = False, grace: float = 0.0) -> None:
         self._process = subprocess.Popen(
             [sys.executable, "-m", module],
             stdin=subprocess.PIPE,
@@ -65,6 +68,8 @@ class ChildProcess:
         )
         self.answered = False
         """True if it has answered a request."""
+        self._grace = grace
+        self._killed_at = math.inf
 
     @property
     def alive(self) -> bool:
@@ -92,7 +97,7 @@ class ChildProcess:
 
         def end() -> None:
             late.set()
-            self._process.kill()
+            self._stop()
 
         timer = threading.Timer(seconds, end)
         timer.daemon = True
@@ -116,10 +121,23 @@ class ChildProcess:
         self.end()
         return ProcessEnd(self._process.returncode, late.is_set(), asked)
 
-    def end(self) -> None:
-        """Ends the process and closes its pipes; one that is already ending keeps its status."""
+    def terminate(self) -> None:
+        """Lets the process end what it has begun; :meth:`end` waits for that."""
+        if self._grace > 0 and math.isinf(self._killed_at):
+            self._killed_at = time.monotonic() + self._grace
+            self._process.terminate()
+
+    def _stop(self) -> None:
+        self.terminate()
+        if self._grace > 0:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(max(self._killed_at - time.monotonic(), 0.0))
         self._process.kill()
         self._process.wait()
+
+    def end(self) -> None:
+        """Ends the process and closes its pipes; one that is already ending keeps its status."""
+        self._stop()
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with broken_pipes_raise(), contextlib.suppress(OSError):

@@ -6,16 +6,8 @@ of JSON.
 
 from __future__ import annotations
 
-import contextlib
-import csv
-import io
-import json
 import math
 import os
-import re
-import shutil
-import signal
-import subprocess
 import sys
 import time
 from collections.abc import Mapping
@@ -26,19 +18,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
-from moldloft.formats import format_named
+from moldloft.study.programs import SolverError, finite, run_program
 
 if TYPE_CHECKING:
     from moldloft.models import Model
 
-__all__ = ["DONE", "REFUSED", "SOLVER_FAILED", "SolverError", "evaluate", "number"]
+__all__ = ["DONE", "REFUSED", "SOLVER_FAILED", "evaluate", "number"]
 
 DONE = "done"
 REFUSED = "refused"
 SOLVER_FAILED = "solver failed"
-
-#: Files of a solver beyond this are not read: a number is looked for, not a field.
-MAX_RESULT_BYTES = 64 << 20
 
 #: A constraint counts as held within this fraction of its limit's size (rounding).
 CONSTRAINT_ROUNDING = 1e-12
@@ -46,10 +35,6 @@ CONSTRAINT_ROUNDING = 1e-12
 #: The models of this process by the digest of their files.
 _models: dict[str, Model] = {}
 _modules: dict[str, Any] = {}
-
-
-class SolverError(Error):
-    """An analysis failed: it ended with an error, ran too long or wrote no number."""
 
 
 def evaluate(request: Mapping[str, Any]) -> dict[str, Any]:
@@ -102,8 +87,10 @@ def _outputs(request: Mapping[str, Any]) -> dict[str, float]:
     if request["derivatives"] and request["outputs"]:
         found |= _derivatives(model, request["outputs"], list(inputs))
     for analysis in request["analyses"]:
-        run = _of_python if analysis["python"] else _of_command
-        found |= run(model, analysis, request, found)
+        if analysis["python"]:
+            found |= _of_python(model, analysis, request)
+        else:
+            found |= run_program(model, analysis, request, found, _function)
     return found
 
 
@@ -197,7 +184,7 @@ def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) ->
 
 
 def _of_python(
-    model: Model, analysis: Mapping[str, Any], request: Mapping[str, Any], _: Mapping[str, float]
+    model: Model, analysis: Mapping[str, Any], request: Mapping[str, Any]
 ) -> dict[str, float]:
     place, _, name = analysis["python"].rpartition(":")
     function = _function(str(Path(request["folder"]) / place), name)
@@ -219,14 +206,8 @@ def _of_python(
             value = float(np.asarray(found[key]).reshape(-1)[0])
         except (KeyError, TypeError, ValueError, IndexError):
             raise SolverError(f"`{analysis['python']}` returned no number `{key}`") from None
-        numbers[key] = _finite(value, key, analysis["python"])
+        numbers[key] = finite(value, key, analysis["python"])
     return numbers
-
-
-def _finite(value: float, name: str, source: str) -> float:
-    if not math.isfinite(value):
-        raise SolverError(f"`{name}` of `{source}` is {value}, expected a finite number")
-    return value
 
 
 def _function(place: str, name: str) -> Any:
@@ -247,152 +228,3 @@ def _function(place: str, name: str) -> Any:
     if not callable(function):
         raise SolverError(f"`{place}` has no function `{name}`")
     return function
-
-
-def _of_command(
-    model: Model,
-    analysis: Mapping[str, Any],
-    request: Mapping[str, Any],
-    found: Mapping[str, float],
-) -> dict[str, float]:
-    """Writes the case's folder, runs the command in it, and reads its numbers."""
-    place = Path(request["place"]) / analysis["name"]
-    if place.exists():
-        shutil.rmtree(place)
-    place.mkdir(parents=True)
-    keep = analysis["keep"] == "all"
-    try:
-        stem = Path(request["model"]).stem
-        words = {**request["inputs"], **found}
-        if analysis["template"]:
-            _fill(Path(request["folder"]) / analysis["template"], place, words)
-        for name in analysis["formats"]:
-            row = format_named(name)
-            model.write(place / row.file_name(stem), format=row.name)
-        command = [
-            word.replace("{model}", stem).replace("{folder}", request["folder"])
-            for word in analysis["command"]
-        ]
-        _run(command, place, analysis["seconds"])
-        return {key: _result(place, key, p) for key, p in analysis["results"].items()}
-    except BaseException:
-        keep = analysis["keep"] != "none"
-        raise
-    finally:
-        if not keep:
-            shutil.rmtree(place, ignore_errors=True)
-
-
-def _fill(template: Path, place: Path, words: Mapping[str, float]) -> None:
-    if not template.is_dir():
-        raise SolverError(f"the template `{template}` is not a folder")
-    for source in sorted(template.rglob("*")):
-        target = place / source.relative_to(template)
-        if source.is_dir():
-            target.mkdir(parents=True, exist_ok=True)
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        data = source.read_bytes()
-        try:
-            text = data.decode()
-        except UnicodeDecodeError:
-            target.write_bytes(data)
-            continue
-        for name, value in words.items():
-            text = text.replace("{" + name + "}", repr(value))
-        target.write_text(text, encoding="utf-8")
-
-
-def _run(command: list[str], place: Path, seconds: float) -> None:
-    log = place / "command.log"
-    with log.open("wb") as out:
-        try:
-            process = subprocess.Popen(
-                command,
-                cwd=place,
-                stdin=subprocess.DEVNULL,
-                stdout=out,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
-        except OSError as error:
-            raise SolverError(
-                f"cannot run `{command[0]}`: {(error.strerror or str(error)).lower()}"
-            ) from None
-        try:
-            status = process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            _end(process)
-            raise SolverError(f"`{command[0]}` took longer than {seconds:g} s") from None
-        except BaseException:
-            _end(process)
-            raise
-    if status:
-        last = log.read_bytes()[-400:].decode("utf-8", "replace").strip().splitlines()
-        said = f": {last[-1]}" if last else ""
-        raise SolverError(f"`{command[0]}` ended with status {status}{said}")
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ends a command and its child processes."""
-    if hasattr(os, "killpg"):
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-    else:
-        process.kill()
-    process.wait()
-
-
-def _result(place: Path, name: str, pattern: Mapping[str, Any]) -> float:
-    file = place / pattern["file"]
-    try:
-        if file.stat().st_size > MAX_RESULT_BYTES:
-            raise SolverError(f"`{pattern['file']}` is larger than {MAX_RESULT_BYTES >> 20} MiB")
-        text = file.read_bytes().decode("utf-8", "replace")
-    except OSError as error:
-        raise SolverError(
-            f"`{name}`: the command wrote no `{pattern['file']}` ({error.strerror})"
-        ) from None
-    word: Any
-    if pattern["pattern"]:
-        matches = list(re.finditer(pattern["pattern"], text, re.MULTILINE))
-        if not matches:
-            raise SolverError(
-                f"`{name}`: `{pattern['file']}` has no match of `{pattern['pattern']}`"
-            )
-        word = matches[-1][1] if matches[-1].re.groups else matches[-1][0]
-    elif pattern["column"]:
-        word = _of_csv(text, name, pattern)
-    else:
-        word = _of_json(text, name, pattern)
-    try:
-        value = float(word)
-    except (TypeError, ValueError):
-        raise SolverError(
-            f"`{name}` in `{pattern['file']}`: expected a number, found `{word}`"
-        ) from None
-    return _finite(value, name, pattern["file"])
-
-
-def _of_csv(text: str, name: str, pattern: Mapping[str, Any]) -> str:
-    rows = [[word.strip() for word in row] for row in csv.reader(io.StringIO(text)) if row]
-    if not rows or pattern["column"] not in rows[0]:
-        raise SolverError(f"`{name}`: `{pattern['file']}` has no column `{pattern['column']}`")
-    column = rows[0].index(pattern["column"])
-    try:
-        word: str = rows[1:][pattern["row"]][column]
-        return word
-    except IndexError:
-        raise SolverError(f"`{name}`: `{pattern['file']}` has no row {pattern['row']}") from None
-
-
-def _of_json(text: str, name: str, pattern: Mapping[str, Any]) -> Any:
-    try:
-        value = json.loads(text)
-        for word in pattern["key"].split("."):
-            value = value[int(word)] if isinstance(value, list) else value[word]
-    except (ValueError, KeyError, IndexError, TypeError):
-        raise SolverError(
-            f"`{name}`: `{pattern['file']}` has no value `{pattern['key']}`"
-        ) from None
-    return value

@@ -7,16 +7,20 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from moldloft.budget import parsed
 from moldloft.errors import Error
+from moldloft.formats import format_named
 from moldloft.spelling import nearest
 from moldloft.storage import read_text
+from moldloft.writing import Writable
 
 __all__ = [
     "Analysis",
@@ -63,6 +67,10 @@ FOR_SEVERAL = ("nsga2", "tpe")
 """The optimisers that take several objectives."""
 
 
+#: Arguments of `Model.write` that a study states otherwise.
+NO_OPTIONS = ("self", "path", "format")
+
+
 class StudyError(Error):
     """An invalid definition of a study; the message gives the position and the expected value."""
 
@@ -107,11 +115,23 @@ class Pattern:
     pattern: str = ""
     """A regular expression whose first group is the number; the last match counts."""
     column: str = ""
-    """Or a column of a CSV file, by its header."""
+    """Or a column of a table, by its header: words between commas, semicolons or blanks."""
     row: int = -1
     """The row of that column, from 0; negative ones count from the end."""
     key: str = ""
     """Or the dotted path of a value in a JSON file."""
+    dataset: str = ""
+    """Or the path of a data set in an HDF5 file."""
+    index: tuple[int, ...] = ()
+    """The index of the number in that data set, from 0 in each dimension."""
+    python: str = ""
+    """Or ``file.py:function``; called with the path of the file, it returns the number."""
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The keys that state where the number is; one is right."""
+        named = ("pattern", "column", "key", "dataset", "python")
+        return tuple(name for name in named if getattr(self, name))
 
 
 @dataclass(frozen=True)
@@ -123,16 +143,29 @@ class Analysis:
     """``file.py:function``; called with the model, it returns a mapping of numbers by name."""
     outputs: tuple[str, ...] = ()
     """The names of those numbers."""
-    command: tuple[str, ...] = ()
-    """Or the words of a command, run in the case's folder; ``{model}`` is the stem of its files."""
-    formats: tuple[str, ...] = ()
-    """Formats that the model is written as before the command runs."""
+    command: tuple[tuple[str, ...], ...] = ()
+    """Or commands, each by its words, run one after the other in the case's folder; ``{model}`` is
+    the stem of its files, ``{folder}`` the study's folder."""
+    stdin: str = ""
+    """The file in the case's folder that the commands read as standard input."""
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """Variables of the environment of the commands, beside those of the study."""
+    formats: Mapping[str, str] = field(default_factory=dict)
+    """Formats that the model is written as before, with their files; ``""``: named like it."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Options of :meth:`moldloft.Model.write` for these, such as ``immersed``."""
+    prepare: str = ""
+    """``file.py:function``; called with the model and the case's folder before the commands, it
+    writes further files there; what it returns are words for the template by name, or None."""
     template: str = ""
-    """A folder whose files are copied; ``{name}`` of inputs and outputs is replaced in texts."""
+    """A folder whose files are copied; ``{name}`` and ``{name:format}`` of parameters, inputs,
+    outputs and the words of `prepare` are replaced in texts."""
+    files: tuple[str, ...] = ()
+    """Further files and folders beside the study whose contents decide the numbers."""
     results: Mapping[str, Pattern] = field(default_factory=dict)
     """Numbers that are read afterwards, by name."""
     seconds: float = DEFAULT_SECONDS
-    """Time limit of the command."""
+    """Time limit of all commands together."""
     keep: str = "failed"
     """Which folders stay: ``"failed"``, ``"all"`` or ``"none"``."""
 
@@ -140,6 +173,12 @@ class Analysis:
     def names(self) -> tuple[str, ...]:
         """The names of all its numbers."""
         return (*self.outputs, *self.results)
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Its Python functions."""
+        found = (self.python, self.prepare, *(p.python for p in self.results.values()))
+        return tuple(each for each in found if each)
 
 
 @dataclass(frozen=True)
@@ -243,6 +282,9 @@ class Study:
             raise StudyError("a study needs an input: `[inputs]` names parameters or literals")
         if not self.names:
             raise StudyError("a study needs an output: `[outputs]` names expressions")
+        taken = [each.name for each in self.analyses]
+        if len(set(taken)) < len(taken):
+            raise StudyError("two analyses have one name, and so one folder")
         seen: set[str] = set()
         for name in (*(i.name for i in self.inputs), *self.names):
             if name in seen:
@@ -514,14 +556,20 @@ def _goal(table: Table) -> Goal:
 
 
 def _analysis(name: str, table: Table) -> Analysis:
-    results = table.table("results")
+    results, options = table.table("results"), table.table("options")
+    environment = table.table("environment")
     found = Analysis(
         name,
         table.take("python", "text", ""),
         table.take("outputs", "texts", ()),
-        table.take("command", "texts", ()),
-        table.take("formats", "texts", ()),
+        _commands(table),
+        table.take("stdin", "text", ""),
+        {k: _checked(v, "text", environment.at(k)) for k, v in environment.data.items()},
+        _formats(table),
+        _options(options),
+        table.take("prepare", "text", ""),
         table.take("template", "text", ""),
+        table.take("files", "texts", ()),
         {key: _pattern(Table(t, results.at(key))) for key, t in results.data.items()},
         _positive(table.take("seconds", "number", DEFAULT_SECONDS), table.at("seconds")),
         _choice(table.take("keep", "text", "failed"), ("failed", "all", "none"), table.at("keep")),
@@ -529,8 +577,10 @@ def _analysis(name: str, table: Table) -> Analysis:
     table.end()
     if bool(found.python) == bool(found.command):
         raise StudyError(f"`{table.where}` needs either `python` or `command`")
-    if found.python and ":" not in found.python:
-        raise StudyError(f"`{table.at('python')}` is `file.py:function`, found `{found.python}`")
+    for function in found.functions:
+        place, _, called = function.rpartition(":")
+        if not place or not called.isidentifier():
+            raise StudyError(f"`{table.where}`: expected `file.py:function`, found `{function}`")
     if found.python and not found.outputs:
         raise StudyError(f"`{table.at('outputs')}` is missing: the names of the numbers returned")
     if found.command and not found.results:
@@ -538,15 +588,65 @@ def _analysis(name: str, table: Table) -> Analysis:
     return found
 
 
+def _commands(table: Table) -> tuple[tuple[str, ...], ...]:
+    where, value = table.at("command"), table.take("command", "any", ())
+    rows = value if isinstance(value, list) and value and isinstance(value[0], list) else [value]
+    if value == ():
+        return ()
+    commands = tuple(_checked(row, "texts", where) for row in rows)
+    if not all(commands):
+        raise StudyError(f"`{where}` has no word: a command is a list of texts")
+    return commands
+
+
+def _formats(table: Table) -> dict[str, str]:
+    """Names of formats, or a table of their files."""
+    where, value = table.at("formats"), table.take("formats", "any", [])
+    if isinstance(value, dict):
+        found = {name: _checked(file, "text", f"{where}.{name}") for name, file in value.items()}
+    else:
+        found = dict.fromkeys(_checked(value, "texts", where), "")
+    for name in found:
+        try:
+            format_named(name)
+        except Error as error:
+            raise StudyError(f"`{where}`: {error}") from None
+    return found
+
+
+def _options(table: Table) -> dict[str, Any]:
+    known = [name for name in signature(Writable.write).parameters if name not in NO_OPTIONS]
+    for name, value in table.data.items():
+        _choice(name, known, table.where)
+        if not isinstance(value, (bool, int, float, str)):
+            _checked(value, "texts", table.at(name))
+    return table.data
+
+
 def _pattern(table: Table) -> Pattern:
     found = Pattern(
         table.need("file", "text"),
         table.take("pattern", "text", ""),
         table.take("column", "text", ""),
-        int(table.take("row", "number", -1)),
+        _whole(table.take("row", "number", -1), table.at("row")),
         table.take("key", "text", ""),
+        table.take("dataset", "text", ""),
+        tuple(_whole(k, table.at("index")) for k in table.take("index", "numbers", ())),
+        table.take("python", "text", ""),
     )
     table.end()
-    if sum(map(bool, (found.pattern, found.column, found.key))) != 1:
-        raise StudyError(f"`{table.where}` needs one of `pattern`, `column`, `key`")
+    if len(found.sources) != 1:
+        raise StudyError(
+            f"`{table.where}` needs one of `pattern`, `column`, `key`, `dataset`, `python`"
+        )
+    try:
+        re.compile(found.pattern)
+    except re.error as error:
+        raise StudyError(f"`{table.at('pattern')}` is no regular expression: {error}") from None
     return found
+
+
+def _whole(value: float, where: str) -> int:
+    if value != int(value):
+        raise StudyError(f"`{where}` is a whole number, found {value:g}")
+    return int(value)

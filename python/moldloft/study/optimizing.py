@@ -17,6 +17,7 @@ from moldloft.study.definition import BY_GRADIENTS, OPTIMISERS, Bound, Study, St
 from moldloft.study.fronts import front
 from moldloft.study.plans import ranges
 from moldloft.study.running import Cases, outcome
+from moldloft.study.sources import check_programs
 from moldloft.study.store import Outcome, Store
 from moldloft.study.workers import end_workers, evaluate_apart
 
@@ -205,6 +206,7 @@ def optimize(
     if study.goal is None:
         raise StudyError("`[optimize]` is missing: it names the objective")
     prepared, bounds = _prepared(study)
+    check_programs(study)
     method = METHODS[study.goal.method]()
     with Cases(prepared) as cases, Store(store, writing=True) as kept:
         points = Points(cases, kept, ranges(study, cases.model), study.goal.evaluations, processes)

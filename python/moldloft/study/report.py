@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
@@ -77,10 +78,9 @@ def _standard(values: Floats) -> Floats:
 
 def failures(results: Results) -> dict[str, int]:
     """The number of failures by id, the most frequent first."""
-    ids = results.id[(results.state != "done") & (results.state != "pending")].astype(str)
-    names, numbers = np.unique(ids, return_counts=True)
-    order = np.argsort(-numbers, kind="stable")
-    return {str(names[k]): int(numbers[k]) for k in order}
+    failed = ~results.done & (results.state != "pending")
+    found = Counter(results.id[failed].tolist())
+    return dict(sorted(found.items(), key=lambda pair: (-pair[1], pair[0])))
 
 
 def html(

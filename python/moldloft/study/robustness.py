@@ -63,8 +63,9 @@ def validity(results: Results) -> Validity | None:
     Validity or None
         None before a case was evaluated.
     """
-    valid = int(np.isin(results.state.astype(str), (DONE, SOLVER_FAILED)).sum())
-    cases = valid + int((results.state == REFUSED).sum())
+    counts = results.counts
+    valid = counts.get(DONE, 0) + counts.get(SOLVER_FAILED, 0)
+    cases = valid + counts.get(REFUSED, 0)
     if not cases:
         return None
     z, p = NORMAL_95 / math.sqrt(cases), valid / cases

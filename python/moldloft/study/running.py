@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import math
@@ -31,6 +32,7 @@ from moldloft.storage import digest, read_bytes
 from moldloft.study.cases import SOLVER_FAILED, number
 from moldloft.study.definition import Study, StudyError
 from moldloft.study.plans import points
+from moldloft.study.sources import check_programs, source_files
 from moldloft.study.store import Outcome, Results, Store
 from moldloft.study.workers import CRASHED, TIMED_OUT, end_workers, evaluate_apart
 
@@ -72,6 +74,7 @@ class Cases:
         self.model = load(study.model, library=study.library)
         self._check()
         self.digest = self._bundle_digest()
+        self._place = study.folder.absolute() / f"{study.model.stem}.cases"
         self._snapshot: tempfile.TemporaryDirectory[str] | None = None
         self._fixed = self._common()
 
@@ -104,11 +107,6 @@ class Cases:
 
     def _common(self) -> dict[str, Any]:
         study = self.study
-        sources = [
-            digest(read_bytes(study.folder / each.python.rpartition(":")[0]))
-            for each in study.analyses
-            if each.python and (study.folder / each.python.rpartition(":")[0]).is_file()
-        ]
         return {
             "outputs": dict(study.outputs),
             "derivatives": study.derivatives,
@@ -123,7 +121,7 @@ class Cases:
                 for b in study.constraints
             ],
             "analyses": [_plain(asdict(each)) for each in study.analyses],
-            "sources": sources,
+            "sources": [(f.name, digest(read_bytes(f))) for f in source_files(study)],
         }
 
     @property
@@ -149,7 +147,7 @@ class Cases:
             "library": list(study.library),
             "inputs": {name: float(v) for name, v in zip(self.names, point, strict=True)},
             "folder": str(study.folder.absolute()),
-            "place": str(study.folder.absolute() / f"{study.model.stem}.cases" / key[:16]),
+            "place": str(self._place / key[:16]),
             "seconds": study.seconds,
             "memory": study.memory,
         }
@@ -169,7 +167,9 @@ class Cases:
         return Path(self._snapshot.name) / self._model_at
 
     def close(self) -> None:
-        """Removes the snapshot."""
+        """Removes the snapshot, and the folder of the cases where none stayed."""
+        with contextlib.suppress(OSError):
+            self._place.rmdir()
         if self._snapshot is not None:
             self._snapshot.cleanup()
             self._snapshot = None
@@ -257,6 +257,8 @@ def sweep(
         if retry:
             kept.forget(retry)
         plan = points(study, cases.model)
+        if executor is None:
+            check_programs(study)
         plan = plan[part[0] - 1 :: part[1]]
         keys = [cases.key(point) for point in plan]
         kept.begin(

@@ -12,8 +12,10 @@ import io
 import json
 import os
 import sqlite3
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -33,6 +35,12 @@ __all__ = ["Outcome", "Results", "Store"]
 
 #: The layout of the file; others are refused.
 SCHEMA_VERSION = 1
+
+#: Rows that are tuples of Python at a time while a table is read.
+ROWS_AT_ONCE = 65_536
+
+DONE = "done"
+"""The state of a case whose numbers are there."""
 
 PENDING = "pending"
 """The state of a case that was not evaluated."""
@@ -312,30 +320,50 @@ class Store:
         with self._named():
             columns = [row[1] for row in self._db.execute("PRAGMA table_info(results)")]
             names = [n for n in columns if n.startswith(("in ", "out "))]
-            selected = "".join(f", {_column('', n)}" for n in names)
-            rows = self._db.execute(
-                f"SELECT state, id, message, seconds{selected} FROM cases"
-                " LEFT JOIN results USING (key) ORDER BY position"
+            keys = _keys(self._db.execute("SELECT key FROM cases ORDER BY position"))
+            # The rows of results are in the order of their keys: no join of a million texts.
+            known = _keys(self._db.execute("SELECT key FROM results ORDER BY key"))
+            selected = ", ".join(_column("", n) for n in ("seconds", *names))
+            numbers = _numbers(
+                self._db.execute(f"SELECT {selected} FROM results ORDER BY key"), 1 + len(names)
+            )
+            texts = self._db.execute(
+                f"SELECT key, state, id, message FROM results WHERE state <> '{DONE}'"
+                " OR id <> '' OR message <> ''"
             ).fetchall()
-            keys = [key for (key,) in self._db.execute("SELECT key FROM cases ORDER BY position")]
+        # Sorted texts are found faster.
+        order = np.argsort(keys)
+        row = np.empty(len(keys), dtype=np.int64)
+        row[order] = np.minimum(np.searchsorted(known, keys[order]), max(len(known) - 1, 0))
+        has = known[row] == keys if len(known) else np.zeros(len(keys), dtype=bool)
+        states, ids, messages = words = [
+            np.full(len(known) + 1, word, dtype=object) for word in (DONE, "", "")
+        ]
+        if texts:
+            failed, *found = zip(*texts, strict=True)
+            at = np.searchsorted(known, np.array(failed, dtype=known.dtype))
+            for column, said in zip(words, found, strict=True):
+                column[at] = said
+        # The row behind the last is that of a case without a result.
+        states[-1] = PENDING
+        numbers = np.concatenate([numbers, np.full((1, 1 + len(names)), np.nan)])
+        row = np.where(has, row, len(known))
+        values = {name: numbers[row, k] for k, name in enumerate(names, start=1)}
         facts = self.facts()
         objectives = json.loads(facts.get("objectives", "{}"))
         held, best = (
-            np.isin(keys, json.loads(facts.get(name, "[]"))) if objectives else None
+            np.isin(keys, np.array(json.loads(facts.get(name, "[]")), dtype=keys.dtype))
+            if objectives
+            else None
             for name in ("feasible", "front")
         )
-        turned = list(zip(*rows, strict=True)) if rows else [()] * (4 + len(names))
-        texts = [np.array([t or "" for t in column], dtype=object) for column in turned[:3]]
-        texts[0][texts[0] == ""] = PENDING
-        numbers = [np.array(column, dtype=np.float64) for column in turned[3:]]
-        values = dict(zip(names, numbers[1:], strict=True))
         return Results(
             {n.removeprefix("in "): v for n, v in values.items() if n.startswith("in ")},
             {n.removeprefix("out "): v for n, v in values.items() if n.startswith("out ")},
-            texts[0],
-            texts[1],
-            texts[2],
-            numbers[0],
+            states[row],
+            ids[row],
+            messages[row],
+            numbers[row, 0],
             objectives,
             held,
             best if len(objectives) > 1 else None,
@@ -362,6 +390,19 @@ class Store:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _keys(rows: sqlite3.Cursor) -> NDArray[np.bytes_]:
+    found = np.array([key for (key,) in rows], dtype=np.bytes_)
+    return found if found.size else np.empty(0, dtype="S1")
+
+
+def _numbers(rows: sqlite3.Cursor, columns: int) -> Floats:
+    """Rows of numbers; NULL is NaN. Tuples of few rows at a time: they are large."""
+    parts = [np.empty((0, columns))]
+    while part := rows.fetchmany(ROWS_AT_ONCE):
+        parts.append(np.array(part, dtype=np.float64))
+    return np.concatenate(parts)
 
 
 class _Named:
@@ -412,16 +453,15 @@ class Results:
     def __len__(self) -> int:
         return len(self.state)
 
-    @property
+    @cached_property
     def counts(self) -> dict[str, int]:
         """The number of cases in each state."""
-        names, numbers = np.unique(self.state.astype(str), return_counts=True)
-        return dict(zip(names.tolist(), numbers.tolist(), strict=True))
+        return dict(sorted(Counter(self.state.tolist()).items()))
 
-    @property
+    @cached_property
     def done(self) -> NDArray[np.bool_]:
         """Mask of the completed cases, ``(cases,)``."""
-        found: NDArray[np.bool_] = self.state == "done"
+        found: NDArray[np.bool_] = self.state == DONE
         return found
 
     def columns(self) -> dict[str, Any]:

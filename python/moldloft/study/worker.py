@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+import os
+import signal
+from typing import Any, NoReturn
 
 from moldloft.budget import limits
 from moldloft.child_process import bounded, serve
@@ -20,5 +22,15 @@ def _evaluated(request: dict[str, Any]) -> dict[str, Any]:
     return evaluate(request)
 
 
+def _stopped(*_: object) -> NoReturn:
+    """A program that runs for the case is ended on the way out."""
+    raise SystemExit(1)
+
+
 if __name__ == "__main__":
-    serve(_evaluated, IDLE_SECONDS)
+    signal.signal(signal.SIGTERM, _stopped)
+    try:
+        serve(_evaluated, IDLE_SECONDS)
+    except SystemExit:
+        # Destructors of libraries are not waited for.
+        os._exit(1)

@@ -26,6 +26,9 @@ CRASHED = "crashed"
 #: Time that a worker may take to begin: import of the package.
 STARTUP_SECONDS = 60.0
 
+#: Time that a worker has for ending the program that it runs.
+GRACE_SECONDS = 2.0
+
 
 def _case(end: ProcessEnd, seconds: float) -> dict[str, Any]:
     """The answer for a case over which its process ended."""
@@ -104,7 +107,7 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
         if worker is not None and not worker.alive:
             worker.end()
             continue
-        worker = worker or ChildProcess("moldloft.study.worker")
+        worker = worker or ChildProcess("moldloft.study.worker", grace=GRACE_SECONDS)
         with _guard:
             _busy.add(worker)
         seconds, old = float(request["seconds"]), worker.answered
@@ -131,6 +134,8 @@ def end_workers() -> None:
     """Ends all worker processes of this process, busy ones too."""
     with _guard:
         if _owner == os.getpid():
+            for worker in (*_idle, *_busy):
+                worker.terminate()
             for worker in (*_idle, *_busy):
                 worker.end()
         _idle.clear()
