@@ -45,17 +45,15 @@ thread_local! {
 /// Size of the stack of a thread that works alone: that of a main thread.
 const STACK_BYTES: usize = 16 << 20;
 
-/// Does work with all its parallel loops on one thread, a new one: what is kept by thread is found again.
-///
-/// # Panics
-/// When the system has no thread.
-pub fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+/// Does work with all its parallel loops on one thread, a new one: data kept by thread are found again.
+/// `None` when the system refuses a thread.
+pub fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> Option<R> {
     let builder = ThreadPoolBuilder::new().num_threads(1).stack_size(STACK_BYTES);
-    let alone = builder.build().expect("a thread can be started");
-    alone.install(|| {
+    let alone = builder.build().ok()?;
+    Some(alone.install(|| {
         ALONE.set(true);
         work()
-    })
+    }))
 }
 
 /// Does work with its parallel loops on threads of this process.
@@ -121,6 +119,7 @@ mod tests {
             let outer = (0..8u32).into_par_iter().flat_map_iter(|_| inner().collect::<Vec<_>>());
             outer.collect::<Vec<_>>()
         });
+        let threads = threads.expect("a thread");
         assert_eq!(threads.len(), 64);
         assert!(threads.iter().all(|id| *id == threads[0] && *id != std::thread::current().id()));
     }

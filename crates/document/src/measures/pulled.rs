@@ -42,7 +42,7 @@ impl Document {
         let seeds = self.seeds(by)?;
         let (mesh, others) = self.split(outputs)?;
         let sums = outputs.first().map_or(0, |output| output.weights.len());
-        on_one_thread(|| {
+        let pulled = on_one_thread(|| {
             Tape::clear();
             let inputs: Vec<Rev> = by.iter().map(|_| Tape::input(0.0)).collect();
             let mut adjoints = vec![Adjoints::new(); sums];
@@ -60,7 +60,8 @@ impl Document {
             let finite = rows.iter().flatten().all(|x| x.is_finite());
             let sound = finite && adjoints.iter().all(Adjoints::are_sound);
             Ok(sound.then_some(rows))
-        })
+        });
+        pulled.unwrap_or(Ok(None))
     }
 
     /// The weights of vertices, those that follow from measures of the mesh included; and the other outputs.
