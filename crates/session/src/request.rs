@@ -148,13 +148,6 @@ pub enum Ask {
         /// The curves.
         names: Vec<String>,
     },
-    /// Sections of all that is shown with planes of one coordinate.
-    Section {
-        /// 0, 1 or 2.
-        axis: usize,
-        /// The coordinate.
-        value: f64,
-    },
     /// Volume blocks with their quality, the cells that are folded, and a plane of one of them.
     Blocks {
         /// The block of the plane; none without one.
