@@ -47,7 +47,6 @@ QUESTIONS: list[dict[str, Any]] = [
     {"kind": "section_areas", "count": 11},
     {"kind": "field", "field": "gaussian_curvature"},
     {"kind": "field", "field": "warp"},
-    {"kind": "section", "axis": 0, "value": 0.5},
     {"kind": "export", "format": "gdf", "stem": "model"},
     {"kind": "export", "format": "svg", "stem": "model"},
     {"kind": "export", "format": "png", "stem": "model"},

@@ -568,7 +568,7 @@ export class Desk {
       : ''
     this.start.replaceChildren(
       again,
-      h('h3', {}, 'What is to be faired?'),
+      h('h3', {}, 'Fair a curve, a surface or a table'),
       h(
         'p',
         { class: 'quiet' },

@@ -11,14 +11,7 @@ import {
 } from '@codemirror/autocomplete'
 import { collab, getSyncedVersion, receiveUpdates, sendableUpdates } from '@codemirror/collab'
 import { defaultKeymap, indentLess, indentMore, toggleComment } from '@codemirror/commands'
-import {
-  bracketMatching,
-  foldGutter,
-  indentOnInput,
-  StreamLanguage,
-  type StreamParser,
-  syntaxHighlighting,
-} from '@codemirror/language'
+import { bracketMatching, foldGutter, indentOnInput, StreamLanguage, syntaxHighlighting } from '@codemirror/language'
 import { type Diagnostic, lintGutter, setDiagnostics } from '@codemirror/lint'
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search'
 import {
@@ -45,7 +38,9 @@ import {
 import { classHighlighter } from '@lezer/highlight'
 import { h } from './dom'
 import { type Held, holding, keptSteps, Steps, stepOf } from './history'
+import { programParser, sketchParser, type Words } from './language'
 import type { Link } from './link'
+import { model } from './state'
 
 export interface Edit {
   from: number
@@ -72,49 +67,6 @@ const marks = StateField.define<DecorationSet>({
   },
   provide: (f) => EditorView.decorations.from(f),
 })
-
-type Words = Record<string, Set<string>>
-
-/** The language's words come from the engine's own tables. */
-function parser(words: Words): StreamParser<{ text: boolean }> {
-  return {
-    startState: () => ({ text: false }),
-    token(stream, state) {
-      if (state.text) {
-        while (!stream.eol()) {
-          const c = stream.next()
-          if (c === '\\') stream.next()
-          else if (c === '"') {
-            state.text = false
-            break
-          }
-        }
-        return 'string'
-      }
-      if (stream.eatSpace()) return null
-      if (stream.match('#')) {
-        stream.skipToEnd()
-        return 'comment'
-      }
-      if (stream.match('"')) {
-        state.text = true
-        return 'string'
-      }
-      if (stream.match(/^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/)) return 'number'
-      const word = stream.match(/^[A-Za-z_]\w*/) as RegExpMatchArray | null
-      if (word) {
-        const name = word[0]
-        if (words.keyword?.has(name)) return 'keyword'
-        if (words.kind?.has(name)) return 'typeName'
-        if (words.function?.has(name)) return stream.match(/^\s*\(/, false) ? 'macroName' : 'variableName'
-        return 'variableName'
-      }
-      stream.next()
-      return null
-    },
-    languageData: { commentTokens: { line: '#' }, closeBrackets: { brackets: ['(', '[', '{', '"'] } },
-  }
-}
 
 export class Editor {
   readonly view: EditorView
@@ -166,7 +118,7 @@ export class Editor {
         syntaxHighlighting(classHighlighter),
         EditorState.tabSize.of(4),
         EditorView.lineWrapping,
-        this.language.of(StreamLanguage.define(parser({}))),
+        this.language.of(StreamLanguage.define(programParser({}))),
         this.shared.of([]),
         EditorState.readOnly.of(this.link.still),
         EditorView.contentAttributes.of({
@@ -221,7 +173,9 @@ export class Editor {
   words(words: Record<string, string[]>): void {
     const sets: Words = {}
     for (const [kind, list] of Object.entries(words)) sets[kind] = new Set(list)
-    this.view.dispatch({ effects: this.language.reconfigure(StreamLanguage.define(parser(sets))) })
+    const sketch = /\.skt$/i.test(model.name)
+    const language = sketch ? StreamLanguage.define(sketchParser) : StreamLanguage.define(programParser(sets))
+    this.view.dispatch({ effects: this.language.reconfigure(language) })
   }
 
   // The text and the hub.

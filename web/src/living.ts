@@ -34,7 +34,6 @@ const NEWEST = new Set([
   'hover',
   'complete',
   'inspect',
-  'section',
   'field',
   'combs',
   'deviation',

@@ -513,7 +513,7 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
       ...all.map(one),
       ...model.printed.slice(0, 200).map((line) => h('div', { class: 'message printed' }, line)),
     )
-    if (!log.childElementCount) log.append(h('div', { class: 'message quiet' }, 'No messages: the model is in order.'))
+    if (!log.childElementCount) log.append(h('div', { class: 'message quiet' }, 'No problems'))
   }
   on(['faults', 'printed'], () => {
     // Half-typed texts are red in the editor at once, and here after a rest.

@@ -38,7 +38,7 @@ export class Saving {
     }
     const waits = this.editor.pending
     if (!this.online) return waits ? 'not connected: what you type is kept in this page' : 'not connected'
-    return waits ? 'sending…' : this.dirty ? 'draft kept, not in the file' : 'saved'
+    return waits ? 'sending…' : this.dirty ? 'unsaved changes (draft kept)' : 'saved'
   }
 
   show(): void {

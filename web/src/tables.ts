@@ -1,6 +1,7 @@
 // Arrays of the program as tables: a column for each, a plot beside, and every cell an edit of the text.
 
 import { ensureSyntaxTree } from '@codemirror/language'
+import type { Text } from '@codemirror/state'
 import { arraysOf, grouped, rowEdits, type WrittenArray } from './arrays'
 import { h, s, shown } from './dom'
 import type { Editor } from './editor'
@@ -15,12 +16,19 @@ export interface TableActions {
 const PARSING = 200
 const [WIDTH, HEIGHT, MARGIN] = [220, 64, 4]
 
+/** Those of the text that was looked through last: a slide asks at every frame. */
+let known: { doc: Text; tables: WrittenArray[][] } | null = null
+
 /** The tables of the text as it is now. */
 export function tablesOf(editor: Editor): WrittenArray[][] {
   const { state } = editor.view
+  if (known?.doc === state.doc) return known.tables
   const tree = ensureSyntaxTree(state, state.doc.length, PARSING)
-  const skipped = (at: number) => /comment|string/.test(tree?.resolveInner(at, 1).name ?? '')
-  return grouped(arraysOf(editor.text, skipped))
+  // Without it, what is in a comment cannot be told from the program.
+  if (!tree) return []
+  const skipped = (at: number) => /comment|string/.test(tree.resolveInner(at, 1).name)
+  known = { doc: state.doc, tables: grouped(arraysOf(editor.text, skipped)) }
+  return known.tables
 }
 
 /** A column over the first one, or over its number. */

@@ -78,7 +78,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
         h(
           'div',
           { class: 'quiet more' },
-          model.objects.length ? 'Nothing of that name.' : 'The program declares no objects yet.',
+          model.objects.length ? 'No matches.' : 'The program declares no objects yet.',
         ),
       )
     const rows = items()

@@ -36,6 +36,8 @@ import { type Hit, hit } from './pick'
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
 export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
 
+/** More points than these are drawn smaller: they hide less of the shape. */
+const CROWD = 120
 /** Edges of triangulations are looked for when nothing has come for this long, in ms. */
 const CREASE_DELAY = 120
 
@@ -521,12 +523,13 @@ export class View {
 
   private placeDots(): void {
     const n = this.dotItems.length
+    const usual = n > CROWD ? 0.65 : 1
     const [position, tint, big] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)]
     this.dotItems.forEach((item, k) => {
       for (let c = 0; c < 3; c++) position[3 * k + c] = item.position[c] + item.origin.getComponent(c)
       const marked = item.object === this.selected || item.object === this.hovered
       tint.set(marked ? hex(0xe8711a) : item.stale ? hex(0x9aa3ad) : hex(this.dark ? 0xf0c46a : 0x7a4d0b), 3 * k)
-      big[k] = marked ? 1.6 : 1
+      big[k] = marked ? 1.6 : usual
     })
     const g = this.cloud.geometry
     g.dispose()

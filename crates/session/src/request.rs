@@ -150,13 +150,6 @@ pub enum Ask {
         /// The curves.
         names: Vec<String>,
     },
-    /// Section of all shown objects by a plane of constant coordinate.
-    Section {
-        /// 0, 1 or 2.
-        axis: usize,
-        /// The coordinate.
-        value: f64,
-    },
     /// Volume blocks with their quality, folded cells, and one grid plane.
     Blocks {
         /// The block of the grid plane, if one is requested.

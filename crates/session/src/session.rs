@@ -15,8 +15,7 @@ use moldloft_document::{Adjustable, CompletionKind, Document, WantedNumber, Worl
 use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
 use moldloft_mesh::{closure, qualities};
 use moldloft_num::{Order, Vec3};
-use moldloft_panel::ContourCutter;
-use moldloft_registry::{Family, Value as Quantity};
+use moldloft_registry::Value as Quantity;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -297,7 +296,6 @@ impl Session {
                 frame.put("field", parts);
             }
             Ask::Combs { names } => self.combs(&names, frame),
-            Ask::Section { axis, value } => self.section(axis, value, frame)?,
             Ask::Blocks { block, axis, index } => {
                 let plane = block.map(|block| GridPlane { block, axis, index });
                 volume::put(&mut self.document, plane.as_ref(), frame)?;
@@ -530,35 +528,6 @@ impl Session {
             }));
         }
         frame.put("combs", combs);
-    }
-
-    fn section(&mut self, axis: usize, value: f64, frame: &mut ReplyFrame) -> Answer {
-        if axis > 2 {
-            return Err("a section is across x, y or z: axis 0, 1 or 2".to_string().into());
-        }
-        let mut lines = Vec::new();
-        let family = Family::coordinate(axis);
-        let graph = self.document.graph();
-        for object in graph.objects().filter(|o| o.head.shown()) {
-            let found = match object.value() {
-                Some(Quantity::Surface(surface)) => {
-                    ContourCutter::new(surface, &object.head).section(&family, value)
-                }
-                Some(Quantity::Body(body)) => moldloft_panel::body_section(body, &family, value),
-                _ => continue,
-            };
-            for line in found {
-                let again = line.points.first().filter(|_| line.closed);
-                let points = line.points.iter().chain(again);
-                let flat: Vec<f32> = points.flat_map(|p| p.to_array().map(|x| x as f32)).collect();
-                let mut part = frame.floats("line", &flat);
-                part["object"] = (&*object.name).into();
-                part["closed"] = line.closed.into();
-                lines.push(part);
-            }
-        }
-        frame.put("lines", lines);
-        Ok(())
     }
 
     fn section_areas(&mut self, count: usize, frame: &mut ReplyFrame) -> Answer {

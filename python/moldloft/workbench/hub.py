@@ -31,7 +31,7 @@ __all__ = ["Hub", "Tab"]
 
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
-    "set", "solve_for", "drag_to", "sync", "hover", "complete", "inspect", "section", "field",
+    "set", "solve_for", "drag_to", "sync", "hover", "complete", "inspect", "field",
     "combs", "deviation", "measure", "blocks",
 }  # fmt: skip
 

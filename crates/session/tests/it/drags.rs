@@ -120,7 +120,6 @@ fn what_cannot_be_dragged_says_so() {
         (json!({"kind": "drag_to", "target": [0, 0, 0], "basis": []}), "nothing is dragged"),
         (json!({"kind": "nonsense"}), "unknown variant"),
         (json!({"kind": "set", "values": {"Q.x": 1}}), "Q.x"),
-        (json!({"kind": "section", "axis": 7, "value": 0}), "axis 0, 1 or 2"),
         (json!({"kind": "export", "format": "exe", "stem": "../../x"}), "exe"),
     ] {
         let reply = ask(&mut s, request.clone());
