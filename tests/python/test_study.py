@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -524,3 +524,60 @@ def test_a_cluster_gives_the_same_table(tmp_path):
     ):
         executor = executor_of(client)
         assert study.sweep(definition, tmp_path / "c.sqlite", executor=executor).csv() == serial
+
+
+class OtherVersion(ThreadPoolExecutor):
+    """An executor whose workers take the request of another version for theirs."""
+
+    def submit(self, function, request):
+        return super().submit(function, {**request, "version": "0.0.9"})
+
+
+def test_workers_of_another_version_end_the_run(tmp_path):
+    definition = study.read(write(tmp_path, "[plan]\ncount = 8\n"))
+    store = tmp_path / "s.sqlite"
+    with OtherVersion(2) as pool:
+        with pytest.raises(study.StudyError, match=r"has Moldloft .*, the study 0\.0\.9"):
+            study.sweep(definition, store, executor=pool)
+        assert known(store) == 0
+    assert study.sweep(definition, store).counts == {"done": 8}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_full_disk_is_said_and_costs_nothing_that_was_stored(tmp_path):
+    """No file may grow past 100 kB: the store is full on the way."""
+    import resource
+
+    path = write(tmp_path, "[plan]\nmethod = 'sobol'\ncount = 400\n")
+    store = tmp_path / "box.sqlite"
+
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+    full = command("sweep", path, "-q", preexec_fn=small)
+    assert full.returncode == 1 and "Traceback" not in full.stderr, full.stderr
+    assert "box.sqlite`: " in full.stderr
+    before = known(store)
+    assert before < 400
+    count: list[int] = []
+    results = study.sweep(study.read(path), store, progress=lambda n, left, _: count.append(left))
+    assert results.counts == {"done": 400} and count[0] == 400 - before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_full_disk_of_a_page_leaves_no_part_of_it(tmp_path):
+    import resource
+
+    path = write(tmp_path, "[plan]\ncount = 200\n")
+    study.sweep(study.read(path), tmp_path / "box.sqlite")
+
+    page = tmp_path / "box.html"
+    full = command(
+        "show",
+        path,
+        "--html",
+        page,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000)),
+    )
+    assert full.returncode == 1 and "box.html" in full.stderr and "Traceback" not in full.stderr
+    assert not page.exists()

@@ -34,7 +34,7 @@ from moldloft.study.definition import Study, StudyError
 from moldloft.study.plans import points
 from moldloft.study.sources import check_programs, source_files
 from moldloft.study.store import Outcome, Results, Store
-from moldloft.study.workers import CRASHED, TIMED_OUT, end_workers, evaluate_apart
+from moldloft.study.workers import CRASHED, OTHER_VERSION, TIMED_OUT, end_workers, evaluate_apart
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -141,6 +141,7 @@ class Cases:
         return {
             **self._fixed,
             "key": key,
+            "version": _core.__version__,
             "digest": self.digest,
             "model": str(self.snapshot),
             "root": self._snapshot.name if self._snapshot else "",
@@ -245,7 +246,7 @@ def sweep(
     Raises
     ------
     StudyError
-        For a definition that the model does not fit.
+        For a definition that the model does not fit, and when a worker has another version.
     BusyError
         If another process runs the study.
 
@@ -328,6 +329,8 @@ def _answers(
                         "message": f"the worker was lost {lost + 1} times "
                         f"({type(error).__name__}: {error})",
                     }
+                if answer.get("id") == OTHER_VERSION:
+                    raise StudyError(answer["message"])
                 yield request, answer
     finally:
         for future in under_way:

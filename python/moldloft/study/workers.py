@@ -10,18 +10,23 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
+import socket
 import tempfile
 import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from moldloft import _core
 from moldloft.child_process import ChildProcess, ProcessEnd
 
-__all__ = ["CRASHED", "TIMED_OUT", "end_workers", "evaluate_apart", "install"]
+__all__ = ["CRASHED", "OTHER_VERSION", "TIMED_OUT", "end_workers", "evaluate_apart", "install"]
 
 TIMED_OUT = "timed out"
 CRASHED = "crashed"
+
+OTHER_VERSION = "other-version"
+"""The id of the answer of a machine with another version of the package: its numbers may differ."""
 
 #: Time that a worker may take to begin: import of the package.
 STARTUP_SECONDS = 60.0
@@ -94,6 +99,13 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
         As for that function; ``state`` may also be ``"timed out"`` or ``"crashed"``.
     """
     global _owner
+    if request["version"] != _core.__version__:
+        return {
+            "state": CRASHED,
+            "id": OTHER_VERSION,
+            "message": f"a worker ({socket.gethostname()}) has Moldloft {_core.__version__}, the "
+            f"study {request['version']}; install the same version on all machines",
+        }
     if request["digest"] in _installed:
         request = {**request, **_installed[request["digest"]]}
     while True:

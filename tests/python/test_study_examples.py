@@ -1,0 +1,112 @@
+"""The examples of studies: a bulb, a propeller blade, a platform; small unless there is time."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import os
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import moldloft
+from conftest import ROOT
+from moldloft import study
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+EXAMPLES = ROOT / "examples" / "studies"
+
+
+def module(name: str) -> ModuleType:
+    """The Python file of an example."""
+    spec = importlib.util.spec_from_file_location(f"study_{name}", EXAMPLES / f"{name}.py")
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
+
+
+def best_of(name: str, tmp_path, evaluations: int, **goal) -> study.Optimum:
+    """The optimum, of all evaluations when there is time."""
+    definition = study.read(EXAMPLES / f"{name}.toml")
+    limit = definition.goal.evaluations if SOAK else evaluations
+    definition = replace(
+        definition, goal=replace(definition.goal, evaluations=limit, **goal), folder=EXAMPLES
+    )
+    return study.optimize(definition, tmp_path / "s.sqlite")
+
+
+def test_bulb(tmp_path):
+    """A bulb of radius 1.3 m saves a third of the wave resistance."""
+    bulb = module("bulb")
+    model = moldloft.load(EXAMPLES / "bulb.sdl")
+    # The parabolic hull of the model, whose volume is 4/9 of its box.
+    model.set({"radius": 0.3, "bulb_length": 4})
+    volume = float(model.eval("hull.volume")) * 2
+    assert abs(volume / (4 / 9 * 60 * 6 * 3.75) - 1) < 2e-3
+    bare = bulb.resistance(model)
+    optimum = {"radius": 1.3, "bulb_length": 9.68, "bulb_x": -0.85, "depth": 2.9}
+    model.set(optimum)
+    found = bulb.resistance(model)
+    assert abs(found["resistance"] - 41.62) < 0.05
+    assert found["wave"] < 0.67 * bare["wave"] and found["resistance"] < bare["resistance"]
+    if SOAK:
+        best = best_of("bulb", tmp_path, 0)
+        assert best.converged and best.feasible
+        assert best.outputs["resistance"] < found["resistance"] + 0.02
+
+
+def test_blade_elements_keep_momentum():
+    """Thrust of lightly loaded rings is that of their momentum; more is lost than an ideal disc."""
+    blade = module("blade")
+    r = (blade.EDGES[1:] + blade.EDGES[:-1]) / 2
+    chord = np.interp(r, blade.R_R, blade.C_D)
+    for pitch in (0.9, 1.1, 1.4):
+        for camber in (0.0, 0.02, 0.04):
+            for advance in (0.5, 0.7, 0.8):
+                found = blade.of_rings(r, pitch + 0 * r, camber + 0 * r, chord, advance)
+                load = 8 * found["kt"] / (math.pi * advance**2)
+                ideal = 2 / (1 + math.sqrt(1 + load))
+                assert 0 < found["efficiency"] < ideal, (pitch, camber, advance)
+    # No camber, and each section along its way: no lift, and the drag alone.
+    still = blade.of_rings(r, 0.8 + 0 * r, 0 * r, chord, 0.8)
+    assert still["lift"] < 0.02 and abs(still["kt"]) < 0.01
+    # Fine rings change little.
+    edges = np.linspace(0.2, 1, 401)
+    fine = (edges[1:] + edges[:-1]) / 2
+    coarse = blade.of_rings(r, 1.1 + 0 * r, 0.02 + 0 * r, chord, 0.8)
+    many = blade.of_rings(
+        fine, 1.1 + 0 * fine, 0.02 + 0 * fine, np.interp(fine, blade.R_R, blade.C_D), 0.8
+    )
+    assert abs(many["kt"] / coarse["kt"] - 1) < 5e-3
+
+
+def test_blade(tmp_path):
+    """At the thrust of a blade of constant pitch and camber it needs less torque."""
+    best = best_of("blade", tmp_path, 60)
+    assert abs(best.outputs["kt"] - 0.2) < (1e-6 if SOAK else 5e-3)
+    assert best.outputs["lift"] < 0.4 * (1 + 1e-3)
+    blade = module("blade")
+    r = (blade.EDGES[1:] + blade.EDGES[:-1]) / 2
+    chord = np.interp(r, blade.R_R, blade.C_D)
+    low, high = 0.8, 1.6
+    for _ in range(40):
+        pitch = (low + high) / 2
+        plain = blade.of_rings(r, pitch + 0 * r, 0.01 + 0 * r, chord, 0.8)
+        low, high = (pitch, high) if plain["kt"] < best.outputs["kt"] else (low, pitch)
+    if SOAK:
+        assert best.converged and best.outputs["efficiency"] > plain["efficiency"]
+
+
+def test_platform(tmp_path):
+    """The heave period by Capytaine, and the least volume that has 20 s."""
+    pytest.importorskip("capytaine")
+    heave = module("heave")
+    model = moldloft.load(ROOT / "examples" / "platform" / "platform.sdl")
+    model.set({"leg_radius": 7, "pontoon_radius": 4.5, "spacing": 90, "draft": 32.5})
+    assert abs(heave.heave_period(model) - 20.515) < 5e-3
+    if SOAK:
+        best = best_of("platform", tmp_path, 0)
+        assert best.feasible and best.outputs["volume"] < 39_550
+        assert 20 - 1e-4 <= best.outputs["heave_period"] < 20.1
