@@ -110,9 +110,8 @@ optimised: ## rebuilds the package in .venv as users get it, for benchmarks
 	@rm -f $(VENV)/.installed
 	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
 
-# Tests without browsers, builds, other programs' solvers and random campaigns, a few of each part of the package.
-QUICK := api array_language bad_input contours degenerate_kinds docstrings errors formats hulls model_files offsets panels \
-	parts profiles searches sketch solve_for types usage_mistakes
+# 339 tests of each part of the package, 100 s of processor time: without browsers, builds, solvers and random campaigns.
+QUICK := api contours docstrings errors formats model_files offsets panels parts searches types usage_mistakes
 
 quick: $(VENV)/.with-tests ## format, lints and some tests, two minutes; CRATE=name adds the tests of a crate
 	@cargo fmt --all --check

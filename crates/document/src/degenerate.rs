@@ -31,7 +31,7 @@ pub fn remark<T: Scalar>(
             Some((
                 "zero-length",
                 "the curve has no length: all of it is one point",
-                "the points that it is made of lie in one place; a point is taken wherever a curve of no length is",
+                "its points coincide; a point can be used wherever a curve is expected",
             ))
         }
         Value::Surface(surface) if has_no_area(surface) => Some((
@@ -47,7 +47,7 @@ pub fn remark<T: Scalar>(
         Value::Body(body) if is_flat(body) => Some((
             "zero-area",
             "the body has no area: its triangles are lines or points",
-            "the points that it is made of lie in one place, or on a line",
+            "its points coincide or are collinear",
         )),
         _ => None,
     }

@@ -560,8 +560,8 @@ impl Document {
                 object.name
             );
             let mut diagnostic = Diagnostic::error("half-weight", message)
-                .help(format!("`images = \"{planes}\"` counts the mirror images, too"))
-                .help("`images = \"\"` says that it is there once")
+                .help(format!("`images = \"{planes}\"` includes the mirror images"))
+                .help("`images = \"\"` states a single weight")
                 .object(&*object.name);
             if let Some(span) = self.declared_at(evaluation, object) {
                 diagnostic = diagnostic.at(span);

@@ -21,7 +21,7 @@ pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static s
         return Some((
             "unlike-neighbours",
             "points do not fit their neighbours: wrong digits, or breaks that are meant",
-            "`moldloft fair` finds them in a file of the points; what is meant belongs in `breaks`",
+            "`moldloft fair` finds them in a file of the points; intended ones belong in `breaks`",
         ));
     }
     (of("fairest_used") >= EVERYWHERE).then_some((

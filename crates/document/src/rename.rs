@@ -224,7 +224,7 @@ impl Document {
                 .maybe_help(graph.nearest_name(name).map(|n| format!("did you mean `{n}`?"))));
         };
         let elsewhere = |why: &str| {
-            Err(Diagnostic::error("not-here", format!("`{name}` cannot be changed by itself"))
+            Err(Diagnostic::error("not-here", format!("`{name}` cannot be changed separately"))
                 .found(why.to_string())
                 .help("edit the text"))
         };

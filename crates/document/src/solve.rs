@@ -339,7 +339,7 @@ impl SolveReport {
             ),
             SolveStatus::Stuck => (
                 "the search comes no nearer to a solution".to_string(),
-                "there may be none; otherwise start nearer to it".to_string(),
+                "there may be no solution; otherwise start nearer to it".to_string(),
             ),
             SolveStatus::TooManySteps => (
                 format!("{} steps do not lead to a solution", self.iterations),

@@ -80,7 +80,7 @@ impl fmt::Display for FloatError {
             Self::NoCentre => {
                 write!(f, "trim and heel need a centre of gravity to come to rest")
             }
-            Self::HalfHeels => write!(f, "one side of a body cannot heel by itself"),
+            Self::HalfHeels => write!(f, "half a body cannot heel"),
             Self::NoBody => write!(f, "the panels enclose no body that could float"),
             Self::Sinks { mass, most, rim: None } => write!(
                 f,

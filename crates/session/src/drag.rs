@@ -364,7 +364,7 @@ fn norm(v: &[f64]) -> f64 {
 fn place(document: &mut Document, expression: &str) -> Result<Vec3, String> {
     let value = document.eval(expression);
     position(value.map_err(|d| d.first().map_or("no value".into(), |d| d.message.clone()))?)
-        .ok_or_else(|| format!("`{expression}` is not at a place"))
+        .ok_or_else(|| format!("`{expression}` is not a position"))
 }
 
 fn directions(

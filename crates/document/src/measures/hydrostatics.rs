@@ -108,13 +108,13 @@ impl Document {
             let (id, message, help) = match inner.open {
                 true => (
                     "inner-plate",
-                    format!("`{skin}` lies inside the body of `{around}`, {place}"),
-                    "hide it (visible = 0), or tag it as what is no skin",
+                    format!("`{skin}` is inside the body of `{around}`, {place}"),
+                    "hide it (visible = 0), or tag it as not part of the skin",
                 ),
                 false => (
                     "bodies-overlap",
                     format!(
-                        "the bodies of `{skin}` and `{around}` overlap, {place}: what they share counts twice"
+                        "the bodies of `{skin}` and `{around}` overlap, {place}: their common volume counts twice"
                     ),
                     "cut both along their intersection (IntSnake), or move one of them",
                 ),
