@@ -103,10 +103,10 @@ def page_of(
         asked(kind="text", text=text)
     elif values:
         asked(kind="set", values=dict(values))
-    objects = head_of(asked(kind="sync")).get("objects", [])
-    shown = any(o["class"] in ("surface", "mesh") for o in objects)
     frames = {"open": asked(kind="sync", tab=1)}
-    afloat = "y" in head_of(frames["open"]).get("mirror", "")
+    first = head_of(frames["open"])
+    shown = any(o["class"] in ("surface", "mesh") for o in first.get("objects", []))
+    afloat = "y" in first.get("mirror", "")
     watched = (_WATCHED_AFLOAT if afloat else _WATCHED) if shown else []
     hello = {
         "kind": "hello",
