@@ -344,7 +344,7 @@ def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHan
     panel = page.get_by_role("region", name="add an object")
     panel.get_by_role("listitem").filter(has_text="CLoftSurf").first.click()
     for station in range(0, 21, 2):
-        page.get_by_role("treeitem", name=f"hull_station_{station} ").click()
+        page.get_by_role("treeitem", name=f"hull_station_{station} NetCurve").click()
     panel.get_by_role("button", name="Add", exact=True).click()
     d.until(lambda: any(i["kind"] == "patch" for i in d.hand("items()")))
     page.get_by_role("button", name="Export").click()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from conftest import Run
+import moldloft
+from conftest import SAILBOAT, Run
+from moldloft.workbench.export import exported_page
 from page_in_browser import HULL, PAGE, PLATE, Bench, needs_page
 
 pytestmark = needs_page
@@ -346,6 +349,17 @@ def test_files_are_dropped_on_the_picture(bench: Callable[..., Bench], tmp_path:
     b.page.evaluate(DROP, ["table.csv", "0,0,0.5\n3,0,0.5\n0,4,0.5\n"])
     b.page.locator(".status").get_by_text("rms 0.5").wait_for()
     assert not b.faults
+
+
+def test_a_page_in_a_file_has_the_usual_numbers() -> None:
+    page = exported_page(SAILBOAT / "hull.sdl", living=False).decode()
+    found = re.search(r'id="moldloft-model">(.*?)</script>', page, re.DOTALL)
+    assert found
+    watched = {w["expression"]: w["value"] for w in json.loads(found.group(1))["hello"]["watched"]}
+    figures = moldloft.load(SAILBOAT / "hull.sdl").hydrostatics()
+    assert watched["hydrostatics.volume"] == pytest.approx(figures.volume, rel=1e-12)
+    assert watched["hydrostatics.lcb"] == pytest.approx(figures.lcb, rel=1e-12)
+    assert len(watched) == 4
 
 
 def test_the_first_view_loads_a_small_base() -> None:

@@ -81,7 +81,7 @@ def undone(b: Bench, chance: random.Random) -> None:
 def looked(b: Bench, chance: random.Random) -> None:
     """Sheets, colours and sections while the model changes."""
     if chance.random() < 0.5:
-        tabs = b.page.locator(".tabs [role=tab]")
+        tabs = b.page.locator(".tabs [role=tab]:visible")
         tabs.nth(chance.randrange(tabs.count())).click()
         b.page.get_by_role("tab", name="Model").click()
     else:

@@ -6,7 +6,7 @@ import base64
 import html
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path, PurePath
 from typing import Any
@@ -103,11 +103,10 @@ def page_of(
         asked(kind="text", text=text)
     elif values:
         asked(kind="set", values=dict(values))
-    objects = head_of(asked(kind="sync")).get("objects", [])
-    shown = any(o["class"] in ("surface", "mesh") for o in objects)
     frames = {"open": asked(kind="sync", tab=1)}
-    afloat = "y" in head_of(frames["open"]).get("mirror", "")
-    watched = (_WATCHED_AFLOAT if afloat else _WATCHED) if shown else []
+    first = head_of(frames["open"])
+    shown = any(o["class"] in ("surface", "mesh") for o in first.get("objects", []))
+    afloat = "y" in first.get("mirror", "")
     hello = {
         "kind": "hello",
         "name": name,
@@ -115,7 +114,7 @@ def page_of(
         "version": 0,
         "dirty": False,
         "words": head_of(asked(kind="words"))["words"],
-        "watched": head_of(asked(kind="watch", expressions=watched))["watched"],
+        "watched": _usual(asked, afloat) if shown else [],
     }
     data = {
         "hello": hello,
@@ -124,6 +123,16 @@ def page_of(
         "cell": cell and engine is not None,
     }
     return _assembled(name, json.dumps(data), engine).encode()
+
+
+def _usual(asked: Callable[..., bytes], afloat: bool) -> list[dict[str, Any]]:
+    """The numbers that a page watches at first: of what floats, if it does."""
+    found: list[dict[str, Any]] = []
+    for expressions in ([_WATCHED_AFLOAT] if afloat else []) + [_WATCHED]:
+        found = head_of(asked(kind="watch", expressions=expressions))["watched"]
+        if all("error" not in each for each in found):
+            break
+    return found
 
 
 def _asked(session: _core.Session, **request: object) -> bytes:
