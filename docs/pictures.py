@@ -42,6 +42,18 @@ PLOTS = {
     "fairing-lines": ("lines.csv --tol 0.006", 1000),
 }
 
+#: Models as drawn and at the optimum of a study, beside each other.
+STUDIES = {
+    "study-bulb": (
+        "studies/bulb.sdl",
+        {"radius": 1.3, "bulb_length": 9.68, "bulb_x": -0.85, "depth": 2.9},
+    ),
+    "study-platform": (
+        "platform/platform.sdl",
+        {"leg_radius": 7, "pontoon_radius": 4.5, "spacing": 90, "draft": 32.5},
+    ),
+}
+
 #: Variables of the deformed hull.
 DEFORMED = {"beam_fore": 0.3, "beam_mid": 0.2, "keel_fore": -0.2, "keel_aft": 0.15}
 
@@ -66,14 +78,18 @@ def plotted(arguments: str, width: int) -> bytes:
 
 
 def deformed() -> bytes:
-    """A hull's mesh as drawn and as deformed, beside each other, in 256 colours."""
+    """A hull's mesh as drawn and as deformed."""
     sys.path.insert(0, str(EXAMPLES / "studies"))
     from deformed_hull import deformation
 
     with tempfile.TemporaryDirectory() as folder:
-        model = deformation(Path(folder)).model()
+        return beside(deformation(Path(folder)).model(), DEFORMED)
+
+
+def beside(model: moldloft.Model, changed: dict[str, float]) -> bytes:
+    """A model as drawn and with other values, beside each other, in 256 colours."""
     both = Image.new("RGB", (1200, 420))
-    for k, values in enumerate(({}, DEFORMED)):
+    for k, values in enumerate(({}, changed)):
         model.set(values)
         with Image.open(io.BytesIO(model.picture(600, 420))) as drawn:
             both.paste(drawn.convert("RGB"), (600 * k, 0))
@@ -139,11 +155,14 @@ def dragged() -> bytes:
 
 def main() -> None:
     """Draws the pictures that are named, or all."""
-    named = sys.argv[1:] or [*MODELS, *PLOTS, "deformation", "drag"]
+    named = sys.argv[1:] or [*MODELS, *PLOTS, *STUDIES, "deformation", "drag"]
     for name in named:
         if name in MODELS:
             place, size = MODELS[name]
             data = moldloft.load(EXAMPLES / place).picture(*size)
+        elif name in STUDIES:
+            place, values = STUDIES[name]
+            data = beside(moldloft.load(EXAMPLES / place), values)
         elif name == "deformation":
             data = deformed()
         elif name == "drag":

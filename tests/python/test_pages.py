@@ -368,7 +368,8 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
 
     images = DOCS / "images"
     drawn = runpy.run_path(str(DOCS / "pictures.py"))
-    names = {f"{name}.png" for name in (*drawn["MODELS"], *drawn["PLOTS"], "deformation")}
+    names = {f"{name}.png" for kind in ("MODELS", "PLOTS", "STUDIES") for name in drawn[kind]}
+    names.add("deformation.png")
     desk = (DOCS / "desk_pictures.py").read_text(encoding="utf-8")
     names |= {f"{name}.png" for name in re.findall(r'picture\(page, "([\w-]+)"\)', desk)}
     for folder in ("implicit", "sketch"):

@@ -123,6 +123,23 @@ def test_generations_are_the_same_on_any_number_of_processes(tmp_path):
     assert tables[0] == tables[1]
 
 
+def test_an_optimum_at_the_end_of_a_range_is_within_it(tmp_path):
+    """0.6 + (1.8 - 0.6) is above 1.8 by rounding."""
+    (tmp_path / "n.sdl").write_text("param float a = 1 in [0.6, 1.8]; AbsPoint P(a, 0, 0);")
+    for method in ("slsqp", "cobyqa"):
+        definition = study.Study(
+            model=tmp_path / "n.sdl",
+            inputs=(study.Input("a"),),
+            outputs={"x": "P.x"},
+            goal=study.Goal((study.Objective("x", maximise=True),), method, 40),
+            folder=tmp_path,
+        )
+        best = study.optimize(definition, tmp_path / f"{method}.sqlite")
+        assert abs(best.inputs["a"] - 1.8) < 1e-4
+        with study.Store(tmp_path / f"{method}.sqlite") as store:
+            assert set(store.results().counts) == {"done"}
+
+
 def test_a_warm_start_is_the_best_of_the_store(tmp_path):
     plan = study.Plan("grid", levels=4)
     path = tmp_path / "s.sqlite"

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["METHODS"]
 
-#: Equalities count as held by population methods within this fraction of their size: a
-#: population meets no equality exactly.
-POPULATION_EQUALITY = 1e-6
+#: Constraints count as held by population methods, and at the end of the others, within this
+#: fraction of their size: a population meets no equality exactly.
+HELD = 1e-6
 
 #: Points that Optuna is asked for at a time.
 BATCH = 4
@@ -57,6 +57,11 @@ def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
         constraints=constraints,
         options=options,
     )
+    over = float(search.violations(search.constraints(found.x)[None]).max(initial=0.0))
+    if found.success and over > max(goal.tolerance, HELD):
+        # COBYQA may end with the smallest step at a point outside the limits.
+        said = f"the optimiser ended where a constraint is violated by {over:.2g} of its limit"
+        return said, False
     return str(found.message), bool(found.success)
 
 
@@ -162,7 +167,7 @@ def _nsga2(goal: Goal, search: Search, module: Any) -> tuple[str, bool]:
         infills = algorithm.ask()
         objectives, constraints = search.values(infills.get("X"))
         over = search.violations(constraints)
-        over = np.where(over <= POPULATION_EQUALITY, 0.0, over)
+        over = np.where(over <= HELD, 0.0, over)
         evaluator().eval(static(problem, F=objectives, G=over), infills)
         algorithm.tell(infills=infills)
     return f"{limit} generations of {count}", True
@@ -190,7 +195,7 @@ def _tpe(goal: Goal, search: Search, optuna: Any) -> tuple[str, bool]:
             for trial, values, above in zip(trials, objectives, over, strict=True):
                 # Optuna counts a value above 0 as a violation.
                 for bound, excess in zip(search.bounds, above, strict=True):
-                    held = excess <= POPULATION_EQUALITY
+                    held = excess <= HELD
                     trial.set_constraint(bound.name, 0.0 if held else float(excess))
                 asked.tell(trial, values.tolist())
     finally:

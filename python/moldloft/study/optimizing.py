@@ -72,7 +72,7 @@ class Points:
     ) -> None:
         self.cases = cases
         self.store = store
-        self.low = box[:, 0]
+        self.low, self.high = box.T
         self.scale = np.where(box[:, 1] > box[:, 0], box[:, 1] - box[:, 0], 1.0)
         self.most = (box[:, 1] > box[:, 0]).astype(float)
         """Upper bounds in the unit cube: 0 for an input with an empty range."""
@@ -90,7 +90,8 @@ class Points:
         return found
 
     def _point(self, unit: Floats) -> Floats:
-        point = self.low + self.scale * np.clip(unit, 0.0, self.most)
+        # Rounding must not take the end of a range beyond it.
+        point = np.clip(self.low + self.scale * np.clip(unit, 0.0, self.most), self.low, self.high)
         found: Floats = np.where(self._whole, np.round(point), point)
         return found
 

@@ -110,7 +110,8 @@ def points(study: Study, model: Model) -> Floats:
         made = np.array(rows)
     else:
         unit = _unit(method, len(box), study.plan.count, study.plan.seed)
-        made = box[:, 0] + (box[:, 1] - box[:, 0]) * unit
+        # Rounding must not take the end of a range beyond it.
+        made = np.clip(box[:, 0] + (box[:, 1] - box[:, 0]) * unit, box[:, 0], box[:, 1])
     for k, each in enumerate(study.inputs):
         own = model.params.get(each.name)
         if own is not None and own.whole:
