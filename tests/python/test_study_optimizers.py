@@ -140,6 +140,22 @@ def test_an_optimum_at_the_end_of_a_range_is_within_it(tmp_path):
             assert set(store.results().counts) == {"done"}
 
 
+def test_an_end_outside_the_limits_is_no_optimum(tmp_path, monkeypatch):
+    """COBYQA may state success at a point that violates a constraint: here at the start."""
+    import scipy.optimize
+
+    def ended(function, start, **_):
+        return scipy.optimize.OptimizeResult(
+            x=start, fun=function(start), success=True, message="the smallest step"
+        )
+
+    monkeypatch.setattr(scipy.optimize, "minimize", ended)
+    goal = replace(LEAST.goal, method="cobyqa", start={"height": 1.0})
+    best = study.optimize(made(tmp_path, goal), tmp_path / "s.sqlite")
+    # 3 by 1.5 by 1 has 4.5 of 4.
+    assert not best.converged and "violated by 0.12 of its limit" in best.message
+
+
 def test_a_warm_start_is_the_best_of_the_store(tmp_path):
     plan = study.Plan("grid", levels=4)
     path = tmp_path / "s.sqlite"
