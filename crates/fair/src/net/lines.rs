@@ -7,6 +7,7 @@
 //! that fit within the tolerance, the signs of its second divided differences are held.
 
 use super::line_patterns::ValueTube;
+use super::shapes::EquationSpan;
 use crate::curve::moving::MovingRows;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
@@ -73,6 +74,8 @@ struct LineFairing<'a> {
     share: Option<f64>,
     /// The signs of the fewest changes of each line, and whether they are held.
     signs: Vec<(Vec<HeldSign>, bool)>,
+    /// The half-spaces of the network's own conditions, whose owners come after the lines.
+    asked: Vec<ControlInequality>,
 }
 
 impl Network {
@@ -83,19 +86,20 @@ impl Network {
             && self.strands.iter().all(|s| s.at.is_some() && s.weights.is_none())
     }
 
-    /// The direction in which points move, where it is one.
-    fn way(&self) -> Option<Vec3<f64>> {
+    /// The direction in which the points of line `k` move, where it is one.
+    fn way(&self, k: usize) -> Option<Vec3<f64>> {
         match self.limit.motion {
             Motion::Along(d) => Some(d),
-            _ => None,
+            _ => self.ways.get(k).copied().flatten(),
         }
     }
 
-    /// The measure of a line, in the directions in which points move.
-    fn line_value<T: Real>(&self, rows: &MovingRows<T>, points: &[Vec3<T>]) -> T {
-        let square = |k: usize| {
-            let e = rows.apply(k, points);
-            self.way().map_or_else(
+    /// The measure of line `k`, in the directions in which its points move.
+    fn line_value<T: Real>(&self, k: usize, rows: &MovingRows<T>, points: &[Vec3<T>]) -> T {
+        let way = self.way(k);
+        let square = |r: usize| {
+            let e = rows.apply(r, points);
+            way.map_or_else(
                 || e.norm_sq(),
                 |d| {
                     let along = e.x * d.x + e.y * d.y + e.z * d.z;
@@ -103,7 +107,7 @@ impl Network {
                 },
             )
         };
-        (0..rows.rows.len()).fold(T::zero(), |sum, k| sum + square(k))
+        (0..rows.rows.len()).fold(T::zero(), |sum, r| sum + square(r))
     }
 
     /// What lines that are alike have of their measure: a share of the squares of noise of the
@@ -155,26 +159,28 @@ impl Network {
 
     /// The signs of the fewest changes of line `k` between its breaks.
     fn line_signs(&self, k: usize, frozen: &[bool]) -> Vec<HeldSign> {
-        let (strand, Some(way)) = (&self.strands[k], self.way()) else { return Vec::new() };
+        let (strand, Some(way)) = (&self.strands[k], self.way(k)) else { return Vec::new() };
         let Some(at) = strand.at.as_ref().filter(|_| !strand.space.is_closed()) else {
             return Vec::new();
         };
         let mut out = Vec::new();
         let mut bounds = vec![0];
-        bounds.extend(strand.marks.iter().copied());
+        bounds.extend(strand.marks.iter().chain(strand.runs.iter().flatten()).copied());
         bounds.push(strand.points.len() - 1);
         bounds.sort_unstable();
         bounds.dedup();
         for pair in bounds.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            if to - from + 1 < FEWEST_POINTS {
+            let straight = strand.runs.iter().any(|run| run[0] <= from && to <= run[1]);
+            if straight || to - from + 1 < FEWEST_POINTS {
                 continue;
             }
             let own = &strand.points[from..=to];
             let values: Vec<f64> = own.iter().map(|&i| way.dot(self.points[i])).collect();
-            let room = |&i: &usize| if frozen[i] { 0.0 } else { self.limit.radii[i] };
+            let extent = self.extent();
+            let room = |&i: &usize| if frozen[i] { 0.0 } else { self.limit.radii[i].min(extent) };
             let rooms: Vec<f64> = own.iter().map(room).collect();
-            if rooms.iter().any(|r| !r.is_finite()) || rooms.iter().all(|&r| r == 0.0) {
+            if rooms.iter().all(|&r| r == 0.0 || r == extent) {
                 continue;
             }
             let tube = ValueTube { at: &at[from..=to], values: &values, rooms: &rooms };
@@ -191,7 +197,7 @@ impl Network {
 
     /// The entries of a sign over the network's points, at parameters that may carry derivatives.
     fn sign_entries<T: Real>(&self, held: &HeldSign, at: &[T]) -> Vec<(usize, Vec3<T>)> {
-        let way = self.way().unwrap_or_default();
+        let way = self.way(held.line).unwrap_or_default();
         let places = held.first..held.first + 3;
         let ids = &self.strands[held.line].points[places.clone()];
         let factors = sign_factors(held.sign, &at[places]);
@@ -213,7 +219,8 @@ impl Network {
     fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> f64 {
         let half = self.sign_half(held);
         let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
-        let room = |i: usize| self.limit.radii[i];
+        let extent = self.extent();
+        let room = |i: usize| self.limit.radii[i].min(extent);
         let varies: f64 = half.entries.iter().map(|(i, f)| f.norm() * room(*i)).sum();
         (sum - half.most) / varies.max(f64::MIN_POSITIVE)
     }
@@ -245,14 +252,22 @@ impl Network {
         let own = self.all_moving_rows::<f64>(measure, &[])?;
         let floor = |rows| self.line_floor(rows, &parts.frozen, &self.limit.radii);
         let floors: Vec<f64> = own.iter().map(floor).collect();
-        let signs = (0..count).map(|k| (self.line_signs(k, &parts.frozen), false)).collect();
-        let mut fairing = LineFairing { network: self, pull, share, signs };
-        let whole: f64 = own.iter().map(|rows| self.line_value(rows, &self.points)).sum();
+        let span = EquationSpan::of(self, &parts.conditions);
+        let signs_of = |k: usize| {
+            let mut signs = self.line_signs(k, &parts.frozen);
+            signs.retain(|held| !span.determines(&self.sign_half(held).entries));
+            (signs, false)
+        };
+        let signs = (0..count).map(signs_of).collect();
+        let asked = parts.halves.clone();
+        let mut fairing = LineFairing { network: self, pull, share, signs, asked };
+        let value = |(k, rows)| self.line_value(k, rows, &self.points);
+        let whole: f64 = own.iter().enumerate().map(value).sum();
         let mut rounds: Vec<LineRound<'a>> = Vec::new();
         for _ in 0..ROUNDS {
             let points = rounds.last().map_or(&self.points, |r| &r.found.optimum.points);
             let weight = |k: usize| {
-                let left = self.line_value(&own[k], points).max(floors[k]);
+                let left = self.line_value(k, &own[k], points).max(floors[k]);
                 whole / (count as f64 * left.max(f64::MIN_POSITIVE))
             };
             let scales: Vec<f64> = (0..count).map(|k| weight(k).sqrt()).collect();
@@ -296,7 +311,7 @@ impl Network {
             }
             let mut weighed = MovingRows { rows: Vec::new() };
             for (k, (own, floor)) in rows.iter().zip(&floors).enumerate() {
-                let left = self.line_value(own, &now);
+                let left = self.line_value(k, own, &now);
                 let left = if left.re() < floor.re() { *floor } else { left };
                 // What is next to nothing weighs what it does.
                 let change = if left.re() > 0.0 { left / left.re() } else { T::one() };
@@ -382,7 +397,8 @@ impl LineFairing<'_> {
             if held.is_empty() {
                 return self.followed(parts, Vec::new(), None, 1.0);
             }
-            let halves = held.iter().map(|s| self.network.sign_half(s)).collect();
+            let mut halves = self.asked.clone();
+            halves.extend(held.iter().map(|s| self.network.sign_half(s)));
             let parts = Parts { halves, ..parts.clone() };
             let mut refused = Vec::new();
             for wider in WIDER {
@@ -400,15 +416,18 @@ impl LineFairing<'_> {
                             }
                         }
                         Err(FairError::Shape { shapes, .. }) => refused = shapes,
+                        // The network's own conditions may leave signs no room.
+                        Err(FairError::Contradiction { .. }) => break,
                         Err(other) => return Err(other),
                     },
-                    Err(FairError::Shape { .. }) => {}
+                    Err(FairError::Shape { .. } | FairError::Contradiction { .. }) => {}
                     Err(other) => return Err(other),
                 }
                 if !refused.is_empty() {
                     break;
                 }
             }
+            refused.retain(|&k| k < self.signs.len());
             if refused.is_empty() {
                 // What contradicts what is not known: none is held.
                 self.signs.iter_mut().for_each(|(signs, _)| signs.clear());
@@ -428,7 +447,8 @@ impl LineFairing<'_> {
         near: BudgetOptimum,
         wider: f64,
     ) -> LineRound<'a> {
-        let reached = held.iter().zip(&near.pressed).filter(|(_, pressed)| **pressed);
+        let pressed = near.pressed.iter().skip(self.asked.len());
+        let reached = held.iter().zip(pressed).filter(|(_, pressed)| **pressed);
         let reached: Vec<HeldSign> = reached.map(|(sign, _)| *sign).collect();
         let Certificate { value, gap } = near.optimum.certificate;
         let found = self.followed(parts, reached, Some(near.clone()), wider);
@@ -459,7 +479,7 @@ impl LineFairing<'_> {
         known: Option<BudgetOptimum>,
         wider: f64,
     ) -> Result<LineRound<'a>, FairError> {
-        let mut parts = Parts { halves: Vec::new(), ..parts.clone() };
+        let mut parts = Parts { halves: self.asked.clone(), ..parts.clone() };
         parts.conditions.extend(reached.iter().map(|held| {
             let half = self.network.sign_half(held);
             Condition { entries: half.entries, value: half.most }
@@ -479,7 +499,8 @@ impl LineFairing<'_> {
             Some(share) if wider.is_finite() => Goal::Budget(share * wider),
             _ => Goal::Fairest,
         };
-        let found = path.follow(goal, norm, false, &mut parts, self.pull)?;
+        let held = !self.network.conditions.is_empty();
+        let found = path.follow(goal, norm, held, &mut parts, self.pull)?;
         parts.pull = None;
         Ok(LineRound { parts, scales: Vec::new(), found, reached, wider, decided: true })
     }

@@ -6,50 +6,20 @@ use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
 use crate::net::lines::{LineNumbers, LineRound};
 use crate::net::patches::{PlacedNet, SeamCondition};
+use crate::net::shapes::{EquationSpan, KEPT, MET, NetworkCondition, ROUNDS, SETTLED};
+use crate::net::strand::NetworkCurve;
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided,
     check_unique, is_between, moved, rounding,
 };
-use crate::optimum::{Bounded, Optimum, Parts};
+use crate::optimum::{Bounded, ControlInequality, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, EndContinuity, FairError, Job, KnotRemovalOptions, Limit,
-    Measure, Space, SparseRows, knot_removal_from, replay_from_with,
+    Measure, Motion, Space, SparseRows, knot_removal_from, replay_from_with,
 };
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
-
-/// One curve of a network.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NetworkCurve {
-    /// Its spline.
-    pub space: Space,
-    /// Its control points: places in the network's list.
-    pub points: Vec<usize>,
-    /// Weights of a rational curve.
-    pub weights: Option<Vec<f64>>,
-    /// Its own places that are intended breaks.
-    pub marks: Vec<usize>,
-    /// What its ends keep when it is faired by itself.
-    pub ends: [EndContinuity; 2],
-    /// Parameters of its points in [0, 1], for points that the curve passes through: measures are
-    /// then those of divided differences. Without them the points are control points of its
-    /// spline.
-    pub at: Option<Vec<f64>>,
-}
-
-impl NetworkCurve {
-    /// The rows of a measure over its own points, at parameters that may carry derivatives.
-    pub(super) fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
-        let (closed, degree) = (self.space.is_closed(), self.space.degree());
-        let mut rows = measure.divided(at, closed, degree);
-        rows.retain(|row| {
-            let inner = &row[1..row.len() - 1];
-            !inner.iter().any(|(c, _)| self.marks.contains(c))
-        });
-        rows
-    }
-}
 
 /// Curves over common points. A shared point is one point: it moves for all its curves at once.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +34,10 @@ pub struct Network {
     pub kept: Vec<usize>,
     /// What the limits of goals hold for: points, or all along curves through points.
     pub bound: Bound,
+    /// What it has to have.
+    pub(super) conditions: Vec<NetworkCondition>,
+    /// The one direction in which the points of each curve move by these, where there is one.
+    pub(super) ways: Vec<Option<Vec3<f64>>>,
     /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
@@ -90,7 +64,7 @@ impl Network {
     }
 
     fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {
-        let (kept, patches, seams, across) = Default::default();
+        let (kept, conditions, ways, patches, seams, across) = Default::default();
         let bound = Bound::ControlPoints;
         Self {
             points,
@@ -98,6 +72,8 @@ impl Network {
             strands,
             kept,
             bound,
+            conditions,
+            ways,
             net: None,
             weights: None,
             patches,
@@ -133,6 +109,7 @@ impl Network {
             weights: weights.as_ref().map(|w| own.iter().map(|&i| w[i]).collect()),
             points: own,
             marks: Vec::new(),
+            runs: Vec::new(),
             ends: [EndContinuity::Points(2); 2],
             at: None,
         };
@@ -363,7 +340,7 @@ impl Network {
     }
 
     /// The rows of a measure over all curves.
-    fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
+    pub(super) fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
         let mut all = SparseRows::new();
         for k in 0..self.strands.len() {
             all = all.joined(&self.own_rows(k, measure)?);
@@ -419,11 +396,87 @@ impl Network {
         goal: Goal,
         conditioned: bool,
     ) -> Result<ReachedGoal<'a>, FairError> {
+        if self.conditions.is_empty() {
+            return self.found_near(parts, measure, goal, conditioned);
+        }
+        let base = parts.clone();
+        let lines = self.strands.len();
+        let most = MET * self.extent();
+        let finite = || self.limit.radii.iter().filter(|r| r.is_finite() && **r > 0.0);
+        let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+        let mut at = self.points.clone();
+        let mut made: Option<ReachedGoal<'a>> = None;
+        let mut missed = (f64::INFINITY, 0);
+        for _ in 0..ROUNDS {
+            let linear = self.linear_conditions(&at)?;
+            let kept = linear.left.0 <= KEPT * mean;
+            let before =
+                std::mem::replace(&mut missed, if kept { linear.missed } else { linear.left });
+            if let Some(made) = made.take_if(|_| kept && missed.0 <= most) {
+                return Ok(made);
+            }
+            // What rounding left, where the conditions do not change any more.
+            if kept
+                && missed.0 <= SETTLED * mean
+                && missed.0 > 0.5 * before.0
+                && let Some(mut made) = made.take()
+            {
+                let span = EquationSpan::of(self, &parts.conditions);
+                made.found.optimum.points = span.nearest(self, &made.found.optimum.points);
+                return Ok(made);
+            }
+            let equations = self.independent(linear.equations)?;
+            let owners: Vec<usize> = equations.iter().map(|e| e.1).collect();
+            *parts = base.clone();
+            parts.conditions.extend(equations.into_iter().map(|e| e.0));
+            // The first owners are the lines, of the signs that these hold themselves.
+            // What the equations determine leaves signs no room.
+            let span = EquationSpan::of(self, &parts.conditions);
+            // A search that begins where the equations hold keeps them.
+            if matches!(parts.bounded, Bounded::ControlPoints) && self.limit.motion != Motion::Box {
+                parts.begin = span.within(self);
+            }
+            let own = linear.halves.into_iter().filter(|h| !span.determines(&h.entries));
+            parts.halves.extend(own.map(|h| ControlInequality { owner: lines + h.owner, ..h }));
+            let found =
+                self.found_near(parts, measure, goal, true).map_err(|error| match error {
+                    FairError::Shape { shapes, miss } => {
+                        let shapes =
+                            shapes.into_iter().filter_map(|k| k.checked_sub(lines)).collect();
+                        FairError::Shape { shapes, miss }
+                    }
+                    FairError::Contradiction { conditions, ends, miss } => {
+                        let owner =
+                            |k: usize| owners.get(k.checked_sub(base.conditions.len())?).copied();
+                        let mut shapes: Vec<usize> =
+                            conditions.iter().filter_map(|&k| owner(k)).collect();
+                        shapes.dedup();
+                        if shapes.is_empty() {
+                            return FairError::Contradiction { conditions, ends, miss };
+                        }
+                        FairError::Shape { shapes, miss }
+                    }
+                    other => other,
+                })?;
+            at.clone_from(&found.found.optimum.points);
+            made = Some(found);
+        }
+        Err(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+    }
+
+    fn found_near<'a>(
+        &'a self,
+        parts: &mut Parts<'a>,
+        measure: Measure,
+        goal: Goal,
+        conditioned: bool,
+    ) -> Result<ReachedGoal<'a>, FairError> {
+        let shaped = !self.conditions.is_empty();
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let mut rounds = Vec::new();
-        if let (Goal::Near(share), false) = (goal, conditioned) {
-            if self.exact() {
+        if let (Goal::Near(share), true) = (goal, shaped || !conditioned) {
+            if !shaped && self.exact() {
                 let value = crate::measure::value(&rows, norm, &self.points);
                 let found = GoalOptimum::unmoved(&self.points, value, false);
                 return Ok(ReachedGoal { found, pull, owners, rounds });
@@ -501,6 +554,11 @@ impl Network {
         let mut numbers = points.iter().flat_map(|p| p.to_array());
         if numbers.all(T::is_constant) && tolerances.iter().all(|t| t.is_constant()) {
             return Ok((found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect(), fit));
+        }
+        if !self.conditions.is_empty() {
+            return Err(FairError::NoDerivative(
+                "derivatives of a network with shapes and other conditions are not known",
+            ));
         }
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
@@ -615,10 +673,17 @@ impl Network {
     /// Which points do not move in the joint optimum.
     pub(super) fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
-        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
-        for i in self.kept.iter().copied().chain(marked) {
+        for &i in &self.kept {
             frozen[i] = true;
         }
+        // A knuckle stays, but for one along which another curve runs on.
+        let mut smooth = vec![false; frozen.len()];
+        for strand in self.strands.iter().filter(|s| s.at.is_some()) {
+            let runs_on = |c: &usize| !strand.marks.contains(c);
+            (0..strand.points.len()).filter(runs_on).for_each(|c| smooth[strand.points[c]] = true);
+        }
+        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
+        marked.filter(|&i| !smooth[i]).for_each(|i| frozen[i] = true);
         frozen
     }
 
@@ -633,7 +698,7 @@ impl Network {
     }
 
     /// Points as measures see them.
-    fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+    pub(super) fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
         let origin = self.origin();
         points.iter().map(|&p| p - origin).collect()
     }
@@ -880,93 +945,4 @@ pub struct NetworkFit {
     pub used: f64,
     /// What the fairest takes of the same squares; 3 where it is at all its tolerances.
     pub fairest_used: f64,
-}
-
-/// What a fairing did to a network, for reports.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NetworkReport {
-    /// The faired points.
-    pub points: Vec<Vec3<f64>>,
-    /// The measure over all curves, before and after.
-    pub measure: [f64; 2],
-    /// Sum of squared jumps over all curves, before and after.
-    pub jumps: [f64; 2],
-    /// No point of the surface (or control point of a network) moved farther.
-    pub certified: f64,
-    /// The largest distance found by sampling.
-    pub sampled: f64,
-    /// The measure and the optimality gap within the limits.
-    pub certificate: Certificate,
-    /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
-    pub used: f64,
-}
-
-/// How a network is faired.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NetworkMode {
-    /// All curves at once, with a ball round each point, towards a goal.
-    Toward(Goal),
-    /// All curves at once: the fairest.
-    Joint(Bound),
-    /// All curves at once by so many sweeps over single points.
-    Sweeps(usize),
-    /// Curve after curve: so many passes of so many steps per point.
-    Passes(usize, usize),
-}
-
-impl Network {
-    /// Fairs and reports.
-    ///
-    /// # Errors
-    /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
-    pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
-        self.report_with(measure, mode, Vec::new())
-    }
-
-    /// The same under linear conditions, which the joint optimum alone can keep.
-    ///
-    /// # Errors
-    /// As [`Network::report`].
-    pub fn report_with(
-        &self,
-        measure: Measure,
-        mode: NetworkMode,
-        conditions: Vec<Condition>,
-    ) -> Result<NetworkReport, FairError> {
-        let mut used = f64::NAN;
-        let (points, certificate) = match mode {
-            NetworkMode::Toward(goal) => {
-                let (best, share) = self.toward(measure, goal, conditions, 1e-9)?;
-                used = share;
-                (best.points, best.certificate)
-            }
-            NetworkMode::Joint(bound) => {
-                let best = self.optimum(measure, bound, conditions, 1e-9)?;
-                (best.points, best.certificate)
-            }
-            NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,
-            NetworkMode::Passes(passes, steps) => {
-                let points = self.passes(passes, steps)?;
-                let rows = self.rows(measure)?;
-                let relative = self.relative(&points);
-                let frozen = vec![false; points.len()];
-                let norm = measure.norm();
-                let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
-                (points, left)
-            }
-        };
-        let all = 0..self.strands.len();
-        let both = |m: Measure| -> Result<[f64; 2], FairError> {
-            Ok([self.value(m, all.clone(), &self.points)?, self.value(m, all.clone(), &points)?])
-        };
-        Ok(NetworkReport {
-            measure: both(measure)?,
-            jumps: both(Measure::Jumps)?,
-            certified: self.certified(&points),
-            sampled: self.sampled(&points),
-            certificate,
-            used,
-            points,
-        })
-    }
 }
