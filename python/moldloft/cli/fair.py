@@ -164,7 +164,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="keep the area, the volume (of revolution about x; of a surface that between it and "
-        "the original) or, of curves, the centroid, to first order",
+        "the original) or, of curves, the centroid, to first order; of a network of offsets the "
+        "volume and its centroid",
     )
     parser.add_argument(
         "--spacing",
@@ -195,7 +196,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="what shape the curve has: convex, concave, one-way (no inflection), straight, arc, "
         "each of the whole curve or between two points (arc=9-15; straight=1-9:0,1 in a "
-        "direction); pieces=K of monotone curvature; within=X,Y:MOST; side=X,Y; may be repeated",
+        "direction); pieces=K of monotone curvature; within=X,Y:MOST; side=X,Y; may be repeated; "
+        "of a network behind the name of a curve, `waterline 2: straight=3-9`, or of several, "
+        "`waterline 2..waterline 5 at station 4..station 8: flat`",
     )
     parser.add_argument(
         "--release",
@@ -270,8 +273,6 @@ def add(parser: argparse.ArgumentParser) -> None:
 def _refuse_curves_only(options: argparse.Namespace) -> None:
     """Options of single curves; an error where they would be ignored."""
     for name, given in (
-        ("--shape", options.shape),
-        ("--release", options.release),
         ("--bends", options.bends),
         ("--at", options.at),
         ("--period", options.period is not None),
@@ -598,15 +599,12 @@ class _Points(_Source):
         for name, given in (
             ("--as", options.role not in (None, "points")),
             ("--closed", options.closed or options.closed_v),
-            ("--breaks auto", options.breaks == "auto"),
             ("--through", options.through),
             ("--tangent", options.tangent),
             ("--normal", options.normal),
-            ("--keep", options.keep),
             ("--join", options.join),
             ("--rims", options.rims != "corners"),
             ("--count", options.count),
-            ("--release", options.release),
             ("--knots", options.knots or options.knots_v),
             ("--weights", options.weights),
             ("--seams", options.seams),
@@ -629,7 +627,10 @@ class _Points(_Source):
         curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
         first = [rows.index(rows[k]) for k in range(len(rows))]
         assert first == list(range(len(rows)))
-        marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
+        names, called = self._names(curves, rows)
+        marks: list[int | str] | str = (
+            "auto" if options.breaks == "auto" else self._breaks(options.breaks, names)
+        )
         fixed: Any = options.ends or "corners"
         if options.fixed:
             fixed = [self.of_row[i] for i in _places(options.fixed, len(self.file.points))]
@@ -643,9 +644,18 @@ class _Points(_Source):
                 mode=options.mode,
                 spacing="chord" if options.spacing == "auto" else options.spacing,
                 goal=options.goal,
+                names=names,
+                shape=options.shape,
                 breaks=marks,
+                release="auto"
+                if options.release == "auto"
+                else [
+                    self.of_row[i]
+                    for i in _places(options.release, len(self.file.points), "--release")
+                ],
                 fixed=fixed,
                 motion=_motion(options),
+                keep=options.keep,
                 bound="curve" if options.bound == "curve" else "points",
                 passes=options.passes or 1,
                 steps=options.steps,
@@ -655,31 +665,47 @@ class _Points(_Source):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
         if self.file.offsets:
-            result = self._named(result, rows)
+            result = replace(result, point_names=called)
             if self.file.moves == 1:
                 self._across(result, rows)
         return result
 
-    def _named(self, result: NetworkFairing, rows: list[int]) -> NetworkFairing:
-        """With the stations and waterlines of the table for names."""
+    def _breaks(self, text: str, names: list[str]) -> list[int | str]:
+        """Numbers of rows, and names of curves along which others break."""
+        out: list[int | str] = []
+        for word in filter(None, (w.strip() for w in text.split(","))):
+            if word in names:
+                out.append(word)
+            else:
+                out += [self.of_row[i] for i in _places(word, len(self.file.points))]
+        return out
+
+    def _names(self, curves: list[list[int]], rows: list[int]) -> tuple[list[str], tuple[str, ...]]:
+        """What the curves and points of a table are called: stations and waterlines."""
+        if not self.file.offsets:
+            return [], ()
         other = 3 - self.file.moves
         word = "waterline" if other == 2 else "buttock"
         points = self.file.points[rows]
         names = []
-        for own in result.lists:
+        for own in curves:
             first, second = points[own[0]], points[own[1]]
             station = first[0] == second[0]
             names.append(f"station {first[0]:g}" if station else f"{word} {first[other]:g}")
         called = tuple(f"station {p[0]:g}, {word} {p[other]:g}" for p in points)
-        return replace(result, names=tuple(names), point_names=called)
+        return names, called
 
     def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
         """One tolerance, or that of each different point."""
         if not isinstance(options.tol, list):
             return options.tol
-        if len(options.tol) != len(self.file.points):
+        found = len(options.tol)
+        if found == len(rows):
+            return options.tol
+        if found != len(self.file.points):
             raise Error(
-                f"--tol: expected {len(self.file.points)} tolerances, found {len(options.tol)}"
+                f"--tol: expected {len(rows)} tolerances, one for each different point, or "
+                f"{len(self.file.points)}, one for each row of the curves, found {found}"
             )
         return [options.tol[k] for k in rows]
 
