@@ -686,6 +686,9 @@ def data_findings(
 def line_findings(
     points: NDArray[np.float64], lines: list[tuple[list[int], bool]], marked: list[int]
 ) -> list[tuple[int, tuple[str, int, list[float], str]]]: ...
+def shared_knuckles(
+    points: NDArray[np.float64], lines: list[tuple[list[int], bool]]
+) -> list[tuple[int, int]]: ...
 def is_exact(points: NDArray[np.float64], breaks: list[int], closed: bool) -> bool: ...
 def are_exact(
     points: NDArray[np.float64], lines: list[tuple[list[int], bool]], breaks: list[int]

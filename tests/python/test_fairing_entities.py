@@ -58,7 +58,7 @@ KINDS = {
     "FairNet": (
         network,
         {"tol": ("tolerance", "tolerances", "tolerances_at"), "points": ("curves",)},
-        {"original", "bound"},
+        {"original", "names"},
     ),
     "FairPatches": (patches, {"degree": ("degree", "degree_v"), "goal": ("goal",)}, set()),
 }
@@ -67,6 +67,7 @@ KINDS = {
 COMMAND = {
     "points": "file",
     "curves": "file",
+    "names": "file",
     "surfaces": "file",
     "tol": "tol",
     "as_": "role",
@@ -180,6 +181,10 @@ NETS = {
     "nearest": ('goal = "nearest", share = 0.3', {"goal": ("nearest", 0.3)}),
     "energy": ('goal = "energy", share = {most}', {"goal": ("energy", None)}),
     "steps": ('mode = "faithful", steps = 2', {"mode": "faithful", "steps": 2}),
+    "bound": ('bound = "curve"', {"bound": "curve"}),
+    "shape": ('shape = {"10..16: concave"}', {"shape": ["10..16: concave"]}),
+    "keep": ('keep = {"volume"}', {"keep": ["volume"]}),
+    "knuckles": ("knuckles = {12}", {"breaks": ["curve 12"]}),
 }
 
 

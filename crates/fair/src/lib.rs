@@ -121,19 +121,23 @@ pub use curve::thinning::thinned;
 pub use curve::turning::{curvature_parameters, near_budget};
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
-pub use interrogate::lines::line_findings;
+pub use interrogate::lines::{line_findings, shared_knuckles};
 pub use interrogate::outliers::{DataFinding, data_findings, detectable, predicted};
 pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report, numbers, report};
 pub use interrogate::{shape, surface};
 pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
+pub use net::condition_text::NamedCurves;
 pub use net::curves::CurvePair;
 pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };
 pub use net::network;
-pub use net::network::{Network, NetworkCurve, NetworkFit, NetworkMode, NetworkReport};
+pub use net::network::{Network, NetworkFit};
 pub use net::patches::{NetEdge, PatchNet, Seam};
+pub use net::report::{NetworkMode, NetworkReport};
+pub use net::shapes::{NetworkCondition, one_way};
+pub use net::strand::NetworkCurve;
 pub use optimum::certificate::{Certificate, ball_gap};
 pub use optimum::goal::Goal;
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};

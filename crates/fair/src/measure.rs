@@ -164,7 +164,7 @@ pub(crate) fn unit_of(mean: f64, order: usize) -> f64 {
 
 impl Measure {
     /// The order of the differences that the measure is of.
-    fn order(self, degree: usize) -> usize {
+    pub(crate) fn order(self, degree: usize) -> usize {
         match self {
             Measure::Second | Measure::Bending => 2,
             Measure::Third | Measure::Variation => 3,

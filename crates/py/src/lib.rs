@@ -56,7 +56,7 @@ mod _core {
     #[pymodule_export]
     use crate::fair::{
         Look, Net, Spline, Web, are_exact, data_findings, detectable, divided_differences, eta_y,
-        is_exact, line_findings, monotone_runs,
+        is_exact, line_findings, monotone_runs, shared_knuckles,
     };
     #[pymodule_export]
     use crate::formats::{formats, spline_patch_grid, spline_patch_knots};

@@ -173,7 +173,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="keep to first order the area, the volume (of revolution about x; for a surface that "
-        "between it and the original) or, for curves, the centroid",
+        "between it and the original) or, for curves, the centroid; of a network of offsets the "
+        "volume and its centroid",
     )
     parser.add_argument(
         "--spacing",
@@ -204,7 +205,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="shape of the curve: convex, concave, one-way (no inflection), straight, arc, for the "
         "whole curve or between two points (arc=9-15; straight=1-9:0,1 in a direction); "
-        "pieces=K of monotone curvature; within=X,Y:MAX; side=X,Y; repeatable",
+        "pieces=K of monotone curvature; within=X,Y:MAX; side=X,Y; repeatable; of a network behind "
+        "the name of a curve, `waterline 2: straight=3-9`, or of several, `waterline 2..waterline 5 "
+        "at station 4..station 8: flat`",
     )
     parser.add_argument(
         "--release",
@@ -298,11 +301,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--library", metavar="DIR", action="append", default=[])
 
 
-def _refuse_curves_only(options: argparse.Namespace) -> None:
+def refuse_curves_only(options: argparse.Namespace) -> None:
     """Options of single curves; an error where they would be ignored."""
     for name, given in (
-        ("--shape", options.shape),
-        ("--release", options.release),
         ("--bends", options.bends),
         ("--at", options.at),
         ("--period", options.period is not None),
@@ -312,17 +313,6 @@ def _refuse_curves_only(options: argparse.Namespace) -> None:
     ):
         if given:
             raise Error(f"{name} is for single curves")
-
-
-def _places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
-    """Numbers from 1 as indices."""
-    out = []
-    for word in filter(None, (w.strip() for w in text.split(","))):
-        if not word.isdigit() or int(word) < 1 or (count is not None and int(word) > count):
-            to = f" to {count}" if count else ""
-            raise FairingError(f"{what}: expected points from 1{to}, found `{word}`")
-        out.append(int(word) - 1)
-    return out
 
 
 def run(options: argparse.Namespace) -> int:
@@ -412,17 +402,6 @@ def _source(options: argparse.Namespace) -> Source:
     if is_grid(path):
         return _Grids(read_grids(path), options)
     return _Points(read_points(path))
-
-
-def _motion(options: argparse.Namespace) -> Any:
-    given = [options.along is not None, options.across is not None, options.box]
-    if sum(given) > 1:
-        raise Error("--along, --across and --box: one of these")
-    if options.across is not None:
-        return "across", tuple(options.across)
-    if options.along is not None:
-        return tuple(options.along)
-    return "box" if options.box else "ball"
 
 
 def _ends(options: argparse.Namespace) -> Any:
@@ -518,7 +497,7 @@ def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[st
         steps = passes * count
     breaks: Any = options.breaks
     if breaks != "auto":
-        breaks = _places(breaks, count)
+        breaks = words.places(breaks, count)
     return {
         "closed": options.closed,
         "degree": options.degree,
@@ -526,9 +505,9 @@ def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[st
         "mode": options.mode,
         "bound": options.bound,
         "breaks": breaks,
-        "fixed": _places(options.fixed, count, "--fixed"),
+        "fixed": words.places(options.fixed, count, "--fixed"),
         "ends": _ends(options),
-        "motion": _motion(options),
+        "motion": words.motion(options),
         "through": [(at[0], v) for at, v in options.through],
         "tangents": [(at[0], v) for at, v in options.tangent],
         "joins": _joined(options, role),
@@ -539,7 +518,7 @@ def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[st
         "goal": options.goal,
         "release": "auto"
         if options.release == "auto"
-        else _places(options.release, count, "--release"),
+        else words.places(options.release, count, "--release"),
         "bends": options.bends,
         "shape": options.shape,
         "count": options.count,
@@ -609,7 +588,7 @@ class _Points(Source):
                 "stations and waterlines that are plain numbers are inches, too: "
                 "write their places, if they are numbers of stations"
             )
-        if self.file.fixed_stations and _motion(options) == "ball":
+        if self.file.fixed_stations and words.motion(options) == "ball":
             self.said.append("offsets move; stations stay")
             options.along = [0.0, 1.0]
         if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
@@ -640,110 +619,19 @@ class _Points(Source):
         return FairingError(f"{self.file.path}:{line}: {text}", index=error.index)
 
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
-        import numpy as np
+        from moldloft.cli.fair_lines import FileLines
 
-        from moldloft.fairing import network
-
-        _refuse_curves_only(options)
-        for name, given in (
-            ("--as", options.role not in (None, "points")),
-            ("--closed", options.closed or options.closed_v),
-            ("--breaks auto", options.breaks == "auto"),
-            ("--through", options.through),
-            ("--tangent", options.tangent),
-            ("--normal", options.normal),
-            ("--keep", options.keep),
-            ("--join", options.join),
-            ("--rims", options.rims != "corners"),
-            ("--count", options.count),
-            ("--release", options.release),
-            ("--knots", options.knots or options.knots_v),
-            ("--weights", options.weights),
-            ("--seams", options.seams),
-            ("--log", options.log),
-            ("--degree with two numbers", not isinstance(options.degree, int)),
-        ):
-            if given:
-                raise Error(
-                    f"{name}: not for networks; {self.file.path} has {len(self.file.blocks)} curves"
-                )
-        rows = self._different()
-        curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
-        tolerances = self._tolerances(options, rows)
-        self.limits = np.broadcast_to(np.inf if tolerances is None else tolerances, len(rows))
-        self.rows, self.motion = rows, self._axes(options, rows)
-        marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
-        fixed: Any = options.ends or "corners"
-        if options.fixed:
-            fixed = [self.of_row[i] for i in _places(options.fixed, len(self.file.points))]
+        refuse_curves_only(options)
+        lines = FileLines.of(self.file, options, self.said)
+        self.rows, self.of_row = lines.rows, lines.of_row
+        self.motion, self.limits = lines.motion, lines.limits
         try:
-            result = network(
-                self.file.points[rows],
-                curves,
-                tolerances,
-                degree=options.degree,
-                measure=options.measure or "third",
-                mode=options.mode,
-                spacing="chord" if options.spacing == "auto" else options.spacing,
-                goal=options.goal,
-                breaks=marks,
-                fixed=fixed,
-                motion=self.motion,
-                bound="curve" if options.bound == "curve" else "points",
-                passes=options.passes or 1,
-                steps=options.steps,
-            )
+            result = lines.fair(options)
         except FairingError as error:
-            if error.index is not None and error.index < len(rows):
-                error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
-        if self.file.offsets:
-            called = tuple(self.file.point_names[self.file.places[k]] for k in rows)
-            result = replace(result, names=tuple(self.file.names), point_names=called)
-            if self.file.moves == 1:
-                self._across(result, rows)
+        if self.file.offsets and self.file.moves == 1:
+            self._across(result, lines.rows)
         return result
-
-    def _different(self) -> list[int]:
-        """The first row of each distinct point, and the point of each row of the curves."""
-        rows: list[int] = []
-        keys: dict[Any, int] = {}
-        self.of_row: list[int] = []
-        for k, point in enumerate(self.file.points):
-            key = self.file.places[k] if self.file.offsets else (point + 0.0).tobytes()
-            if key not in keys:
-                keys[key] = len(rows)
-                rows.append(k)
-            self.of_row.append(keys[key])
-        return rows
-
-    def _axes(self, options: argparse.Namespace, rows: list[int]) -> Any:
-        """The motion of the network, or the axes of each point of a table that has several."""
-        file, motion = self.file, _motion(options)
-        if motion != "ball" or not file.offsets:
-            return motion
-        if file.motions is None:
-            self.said.append(
-                "heights move; stations and buttocks stay"
-                if file.moves == 2
-                else "half-breadths move; stations and heights stay"
-            )
-            return (0.0, 0.0, 1.0) if file.moves == 2 else (0.0, 1.0, 0.0)
-        self.said.append(
-            "half-breadths of waterlines and heights of buttocks move, both of a sheer; stations "
-            "and ends on stem and post stay"
-        )
-        return [file.motions[file.places[k]] for k in rows]
-
-    def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
-        """One tolerance, or that of each different point."""
-        if not isinstance(options.tol, list):
-            return options.tol
-        if len(options.tol) != len(self.file.points):
-            raise Error(
-                f"--tol: expected {len(self.file.points)} tolerances, found {len(options.tol)}"
-            )
-        return [options.tol[k] for k in rows]
 
     def _across(self, result: NetworkFairing, rows: list[int]) -> None:
         """Half-breadths that became negative."""
@@ -860,7 +748,7 @@ def fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairi
     """Fairs a grid of points as a surface."""
     from moldloft.fairing import fair
 
-    _refuse_curves_only(options)
+    refuse_curves_only(options)
     for option, given in (
         ("--tangent", options.tangent),
         ("--join", options.join),
@@ -889,7 +777,7 @@ def fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairi
         "rims": rims,
         "through": options.through,
         "normals": options.normal,
-        "motion": _motion(options),
+        "motion": words.motion(options),
         "keep": options.keep,
         "passes": options.passes or 1,
         "steps": options.steps,
@@ -937,7 +825,7 @@ class _Grids(Source):
     def _patches(self, options: argparse.Namespace) -> PatchesFairing:
         from moldloft.fairing import patches
 
-        _refuse_curves_only(options)
+        refuse_curves_only(options)
         for name, given in (
             ("--tol FILE", isinstance(options.tol, list)),
             ("--spacing", options.spacing != "auto"),
@@ -975,7 +863,7 @@ class _Grids(Source):
             measure=options.measure or "second",
             bound=options.bound or "points",
             rims=rims,
-            motion=_motion(options),
+            motion=words.motion(options),
             goal=options.goal,
         )
 

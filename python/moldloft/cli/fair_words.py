@@ -8,7 +8,20 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-__all__ = ["condition", "degrees", "goal", "spacing", "step", "stop", "tolerance", "vector"]
+from moldloft.errors import Error, FairingError
+
+__all__ = [
+    "condition",
+    "degrees",
+    "goal",
+    "motion",
+    "places",
+    "spacing",
+    "step",
+    "stop",
+    "tolerance",
+    "vector",
+]
 
 
 def tolerance(text: str) -> float | str | None:
@@ -103,3 +116,26 @@ def degrees(text: str) -> int | tuple[int, int]:
     if len(words) > 2 or not all(w.isdigit() for w in words):
         raise argparse.ArgumentTypeError(f"`{text}` is not a degree or a pair of degrees")
     return int(words[0]) if len(words) == 1 else (int(words[0]), int(words[1]))
+
+
+def places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
+    """Numbers from 1 as indices."""
+    out = []
+    for word in filter(None, (w.strip() for w in text.split(","))):
+        if not word.isdigit() or int(word) < 1 or (count is not None and int(word) > count):
+            to = f" to {count}" if count else ""
+            raise FairingError(f"{what}: expected points from 1{to}, found `{word}`")
+        out.append(int(word) - 1)
+    return out
+
+
+def motion(options: argparse.Namespace) -> Any:
+    """The motion that ``--along``, ``--across`` and ``--box`` name."""
+    given = [options.along is not None, options.across is not None, options.box]
+    if sum(given) > 1:
+        raise Error("--along, --across and --box: one of these")
+    if options.across is not None:
+        return "across", tuple(options.across)
+    if options.along is not None:
+        return tuple(options.along)
+    return "box" if options.box else "ball"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +12,10 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
-from moldloft.fairing.arrays import (
-    direction,
-    motions_of,
-    narrowed,
-    points_of,
-    radii,
-    too_large,
-)
-from moldloft.fairing.asked import EXACT, goal_of, only_data, spacing_of
+from moldloft.fairing.arrays import narrowed, points_of, too_large
+from moldloft.fairing.asked import EXACT, goal_of, index_of, only_data, spacing_of
 from moldloft.fairing.findings import along_lines
+from moldloft.fairing.lines import NetworkLines
 from moldloft.fairing.report import Finding, certificate_of, claims_optimum, lines_of
 from moldloft.fairing.spline import Spline
 
@@ -91,6 +85,8 @@ class NetworkFairing:
     """Names of the curves, such as ``station 3``; by default their numbers."""
     point_names: tuple[str, ...] = ()
     """Names of the points; by default their numbers."""
+    released: tuple[int, ...] = ()
+    """Released points, which count in no distance."""
 
     def name(self, curve: int) -> str:
         """Name of a curve in messages and pages.
@@ -127,7 +123,9 @@ class NetworkFairing:
     def deviation_sampled(self) -> float:
         """The largest move of a point."""
         moved = self.points - narrowed(self.data, self.points.shape[1])
-        return float(np.linalg.norm(moved, axis=1).max())
+        far = np.linalg.norm(moved, axis=1)
+        far[list(self.released)] = 0.0
+        return float(np.nanmax(far))
 
     @property
     def gap_relative(self) -> float:
@@ -216,17 +214,21 @@ class NetworkFairing:
 def network(
     points: ArrayLike | NetworkFairing,
     curves: Sequence[Sequence[int]],
-    tol: ArrayLike | None,
+    tol: ArrayLike | Mapping[str | int, float] | None,
     *,
+    names: Sequence[str] = (),
     degree: int = 3,
     measure: str = "third",
     mode: str = "optimum",
     spacing: Any = "chord",
     goal: Any = "near",
-    breaks: Sequence[int] = (),
+    shape: Sequence[str] | str = (),
+    breaks: Sequence[int | str] | str = (),
+    release: Sequence[int] | str = (),
     fixed: Sequence[int] | str = "corners",
     motion: Any = "ball",
     bound: str = "points",
+    keep: Sequence[str] | str = (),
     passes: int = 1,
     steps: int | None = None,
     original: ArrayLike | None = None,
@@ -237,12 +239,17 @@ def network(
     ----------
     points
         ``(n, 3)`` or ``(n, 2)``; or the :class:`NetworkFairing` of points, which are then faired
-        again from the points as they were read.
+        again from the points as they were read. A row of NaN is a cell without a hull: curves end
+        beside it.
     curves
         The points of each curve, from 0; a closed curve ends with its first point. A number that
         stands in several lists is one point of all these curves.
     tol
-        Maximum distance that each point may move.
+        Maximum distance that each point may move: one number, one for each point, or those of
+        curves by name (or number, from 0), ``""`` for all others; the least of several curves
+        counts.
+    names
+        Names of the curves in options and messages; by default ``curve 1`` and so on.
     degree
         Polynomial degree of the curves.
     measure
@@ -261,18 +268,35 @@ def network(
         measure is not that of the hull, and the squares are at most ``share`` (0.3) of noise's;
         between the two the budget is continuous, and it falls to 0.05 where they are much more.
         Fewer than 40 moving points do not tell: theirs is ``share``.
+    shape
+        Exact shapes of curves: ``"WL 2: convex"``, ``"WL 2: straight=3-9:1,0,0"``
+        (points from 1), ``"WL 2..WL 5 at station 4..station 8: straight:1,0,0"`` (a parallel body:
+        the points of these curves on those), the same with ``flat`` or ``flat:0,1,0`` (all
+        these points in one plane), ``"sheer: tangent=start:1,0,0"``; ``one-way``, ``concave``,
+        ``within`` and ``side`` as for :func:`~moldloft.fairing.fair`; ``all`` are all curves. For
+        the optimum at parameters.
     breaks
-        Points that are intended breaks of all their curves.
+        Intended breaks: a number is a point, of all its curves; a name is a curve, along which all
+        curves that cross it break and it does not; ``"auto"`` are the knuckles that stand out along
+        curves, and where these lie on a curve of the network, all along that.
+    release
+        Points that are wrong: they move wherever the curves through the others are, and count
+        nowhere; ``"auto"`` are the wrong digits of the findings.
     fixed
         Points that do not move: ``"corners"`` (at which every curve that has them ends),
         ``"ends"``, ``"none"``, or numbers.
     motion
         As for curves: ``(0, 1, 0)`` moves only half-breadths of stations and waterlines. Or a
-        list with the axes of each point, such as ``"y"``, ``"yz"`` or ``""`` for one that stays.
+        list with the axes of each point, such as ``"y"``, ``"yz"`` or ``""`` for one that stays. Or
+        by curves as tolerances: ``{"": (0, 1, 0), "sheer": ("across", (1, 0, 0))}`` moves a sheer
+        in the planes of the stations.
     bound
         ``"points"``: the tolerance is that of the points, between which a curve may swing farther;
         ``"curve"``: no curve is farther from its original than the smaller tolerance of the two
         points next to it, all along. Of the optimum at parameters.
+    keep
+        ``"volume"`` and its ``"centroid"`` stay, by splines through the sections (curves in planes
+        across x); where points move along one direction.
     passes, steps
         Maximum number of sweeps of the faithful mode.
     original
@@ -300,18 +324,23 @@ def network(
     """
     if isinstance(points, NetworkFairing):
         points = points.data[:, : points.points.shape[1]]
-    data, width = points_of(points)
+    whole, hull = _where_hull(points)
+    data, width = points_of(whole)
     if original is not None:
         count = len(data)
-        data, width = points_of(original)
+        read, where = _where_hull(original)
+        data, width = points_of(read)
         if len(data) != count:
             raise FairingError("the original has as many points as there are points")
+        hull &= where
     started = time.perf_counter()
     wanted = goal_of(goal)
     if mode != "optimum":
         only_data(goal)
     word_spaced, spaced_way = spacing_of(spacing)
     index = mode != "optimum" or word_spaced == "index"
+    shapes = [shape] if isinstance(shape, str) else list(shape)
+    kept_words = [keep] if isinstance(keep, str) else list(keep)
     if bound not in ("points", "curve"):
         raise FairingError(f"a bound is one on points or curve, not `{bound}`")
     if bound == "curve" and index:
@@ -320,22 +349,10 @@ def network(
             "take another spacing than `index`"
         )
     count = len(data)
-    lists: list[tuple[list[int], bool]] = []
-    marked = {_number(b, count) for b in breaks}
-    for k, given in enumerate(curves):
-        own = [_number(i, count) for i in given]
-        closed = len(own) > 1 and own[0] == own[-1]
-        own = own[:-1] if closed else own
-        if len(set(own)) < len(own):
-            raise FairingError(f"curve {k + 1} passes twice through a point")
-        least = 2 * degree + 2 if closed else degree + 2
-        if len(own) < least:
-            raise FairingError(
-                f"expected at least {least} points of curve {k + 1}, found {len(own)}"
-            )
-        lists.append((own, closed))
-    if not lists:
-        raise FairingError("no curves")
+    given = NetworkLines.of(curves, count, names)
+    lines, cut = given.where_hull(hull, degree)
+    lines.refuse_short(degree)
+    lists = lines.lists
     uses = np.zeros(count, int)
     ends = np.zeros(count, int)
     for own, closed in lists:
@@ -354,21 +371,32 @@ def network(
             )
         still = [int(i) for i in np.flatnonzero(kept)]
     else:
-        still = [_number(i, count) for i in fixed]
-    marks = [[k for k, i in enumerate(own) if i in marked] for own, _ in lists]
+        still = [index_of(i, count) for i in fixed]
+    marks = lines.marks(breaks, data)
+    marked = {own[c] for (own, _), places in zip(lists, marks, strict=True) for c in places}
+    findings = along_lines(data, lists, marked)
+    if isinstance(release, str) and release != "auto":
+        raise FairingError(f"released points are numbers or auto, not `{release}`")
+    released = (
+        sorted({f.index for _, f in findings if f.kind == "outlier"})
+        if isinstance(release, str)
+        else [index_of(i, count) for i in release]
+    )
+    word, way, held, steady = lines.motions(motion, count)
+    tolerances = lines.tolerances(tol, count)
+    for i in released:
+        tolerances[i] = np.inf
+    moves = (uses > 0) & ~np.asarray(steady)
+    tolerances = [t if moving else 0.0 for t, moving in zip(tolerances, moves, strict=True)]
+    still = [i for i in still if i not in released]
+    asked = bool(shapes or kept_words or released)
     # The optimum along curves at parameters knows exact points itself.
-    stay = index and tol is not None and goal_of(goal)[0] == "near"
+    stay = index and tol is not None and goal_of(goal)[0] == "near" and not asked
     stay = stay and _core.are_exact(data, lists, sorted(marked))
     web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
-    motion, held, steady = motions_of(motion, count)
-    word, way = direction(motion)
-    allowed = [0.0 if still else r for r, still in zip(radii(tol, count), steady, strict=True)]
-    allowed = [0.0] * count if stay else allowed
-    moving = {k for k, r in enumerate(allowed) if r > 0} - {*still, *marked}
-    held = [(k, across) for k, across in held if k in moving]
     faired, pairs, reported = web.fair(
         {
-            "tolerance": allowed,
+            "tolerance": [0.0] * count if stay else tolerances,
             "held": held,
             "motion": word,
             "direction": way,
@@ -379,6 +407,10 @@ def network(
             "spacing": "index" if index else word_spaced,
             "spacing_direction": spaced_way,
             "goal": wanted if mode == "optimum" else None,
+            "names": lines.names,
+            "shape": shapes,
+            "keep": kept_words,
+            "release": released,
             "conditions": [],
             "labels": [],
             "passes": passes,
@@ -389,17 +421,29 @@ def network(
         # Which network is the fairest was not asked.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
     seconds = time.perf_counter() - started
-    for k, across in held:
-        # Conditions hold to rounding.
-        axis = int(np.argmax(across))
-        faired[k, axis] = data[k, axis]
+    moved = np.linalg.norm(faired - data, axis=1)
+    moved[released] = 0.0
+    said = [
+        f"point {i + 1} was released: it moves by {np.linalg.norm(faired[i] - data[i]):.3e}"
+        for i in released
+    ]
+    if reported["bent"]:
+        named = ", ".join(lines.name(k) for k in reported["bent"])
+        said.append(
+            f"{named}: more inflections than the points require; crossing curves or conditions "
+            "leave no fewer within the tolerance"
+        )
+    shown = faired.copy()
+    shown[~hull] = np.nan
+    limits = [t for k, t in enumerate(tolerances) if k not in released and uses[k]]
+    most = None if tol is None else float(max(limits, default=0.0))
     return NetworkFairing(
-        points=narrowed(faired, width),
+        points=narrowed(shown, width),
         curves=tuple(Spline._of(p[1]) for p in pairs),
         originals=tuple(Spline._of(p[0]) for p in pairs),
-        data=data,
+        data=data if hull.all() else np.where(hull[:, None], data, np.nan),
         lists=tuple(tuple(o + o[:1]) if c else tuple(o) for o, c in lists),
-        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        tol=most,
         mode=mode,
         measure=measure,
         shared=int((uses > 1).sum()),
@@ -407,24 +451,32 @@ def network(
         measure_after=reported["measure_after"],
         jumps_before=reported["jumps_before"],
         jumps_after=reported["jumps_after"],
-        deviation_certified=reported["certified"],
+        deviation_certified=float(moved.max()) if released else reported["certified"],
         deviation_curves=max(p[3] for p in pairs),
         deviation_curves_certified=max(p[2] for p in pairs),
         goal=wanted[0],
         used=reported["used"],
-        findings=along_lines(data, lists, marked),
-        notes=(*too_large(tol, data), *((EXACT,) if stay else ())),
+        findings=findings,
+        notes=(*too_large(most, data[hull]), *cut, *said, *((EXACT,) if stay else ())),
+        names=tuple(lines.names),
+        released=tuple(released),
         value=reported["certificate"]["value"],
         gap=reported["certificate"]["gap"],
         seconds=seconds,
     )
 
 
-def _number(given: Any, count: int) -> int:
-    k = int(given)
-    if not 0 <= k < count:
-        raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
-    return k
+def _where_hull(points: Any) -> tuple[Any, NDArray[np.bool_]]:
+    """Points with zeros where there is no hull, and where there is one."""
+    try:
+        given = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        given = np.zeros((0, 0))
+    if given.ndim != 2:
+        return points, np.ones(len(given), bool)
+    hull = np.asarray(~np.isnan(given).any(axis=1), np.bool_)
+    given[~hull] = 0.0
+    return given, hull
 
 
 explain(globals())

@@ -348,6 +348,43 @@ pub(crate) fn chain(
     Ok(Chain { pieces })
 }
 
+/// Increasing positions, each within `rooms` of its foot; noise can reverse the order of close
+/// points. Least-squares solution with a minimum step between positions, by pooling adjacent
+/// violators (Ayer, Brunk, Ewing, Reid and Silverman 1955), with the largest step that `rooms`
+/// allow; otherwise the error is the index of the first reversed foot.
+pub(crate) fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
+    let Some(first) = (1..feet.len()).find(|&k| feet[k] <= feet[k - 1]) else { return Ok(feet) };
+    let least = rooms.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = rooms.iter().copied().fold(0.0, f64::max);
+    let mut step = if largest.is_finite() { largest } else { least };
+    for _ in 0..PLACE_HALVINGS {
+        step *= 0.5;
+        // Mean and number of feet of each block.
+        let mut blocks: Vec<(f64, usize)> = Vec::new();
+        for (k, s) in feet.iter().enumerate() {
+            blocks.push((s - step * k as f64, 1));
+            while let [.., a, b] = blocks[..]
+                && a.0 > b.0
+            {
+                blocks.truncate(blocks.len() - 2);
+                let count = a.1 + b.1;
+                blocks.push(((a.0 * a.1 as f64 + b.0 * b.1 as f64) / count as f64, count));
+            }
+        }
+        let means = blocks.iter().flat_map(|&(mean, count)| std::iter::repeat_n(mean, count));
+        let placed: Vec<f64> = means.enumerate().map(|(k, mean)| mean + step * k as f64).collect();
+        let within =
+            placed.iter().zip(&feet).zip(rooms).all(|((p, s), room)| (p - s).abs() <= *room);
+        if within && placed.windows(2).all(|w| w[0] < w[1]) {
+            return Ok(placed);
+        }
+    }
+    Err(first)
+}
+
+/// Maximum number of halvings of the step.
+const PLACE_HALVINGS: usize = 12;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -19,6 +19,7 @@ use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
     moved, rounding,
 };
+use crate::optimum::ties::Ties;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
@@ -263,6 +264,8 @@ impl Data {
             vec![f64::INFINITY; job.points.len()]
         };
         Ok(Parts {
+            held: &[],
+            ties: Ties::default(),
             points: &job.points,
             relative: job.points.clone(),
             centred: false,

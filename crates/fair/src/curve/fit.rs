@@ -1,6 +1,7 @@
 //! Splines through or near data points: the step before fairing.
 
 use crate::error::check_finite;
+use crate::optimum::HeldDirections;
 use crate::optimum::problem::{self, NormBounds, Problem};
 use crate::{FairError, Motion, RowNorm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
@@ -326,6 +327,7 @@ pub fn fit(
     for _ in 0..3 {
         let off = |k: usize| ((rows.apply(k, &control) - points[k]) * roots[k]).to_array();
         let problem = Problem {
+            held: HeldDirections::default(),
             dimension: 3,
             offsets: (0..weighted.len()).map(off).collect(),
             measure: weighted.clone(),
@@ -416,6 +418,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
     let bounds = NormBounds::none();
     let conditions = Vec::new();
     Problem {
+        held: HeldDirections::default(),
         dimension: 3,
         measure,
         norm: RowNorm::Square,

@@ -39,6 +39,9 @@ pub struct InterpolationSpace {
     pub(crate) thin: Option<CurvesBesideData>,
 }
 
+/// The degree of curves with straight runs.
+const CUBIC: usize = 3;
+
 /// An interpolation between two items of a list, by indices and fraction; if the second index is
 /// the length of the list, between the last and the first of a closed curve.
 type Share = (usize, usize, f64);
@@ -66,7 +69,7 @@ impl InterpolationSpace {
         breaks.sort_unstable();
         breaks.dedup();
         if !closed {
-            return Self::open(degree, at, (0..n).collect(), &breaks);
+            return Self::open(degree, at, (0..n).collect(), &breaks, &[]);
         }
         if let [first, .., last] = at
             && last - first >= 1.0
@@ -80,7 +83,7 @@ impl InterpolationSpace {
                 .collect();
             let mut moved: Vec<usize> = breaks.iter().map(|b| b - first).collect();
             moved.push(n);
-            let mut layout = Self::open(degree, &turned, owner, &moved)?;
+            let mut layout = Self::open(degree, &turned, owner, &moved, &[])?;
             layout.first = Some(first);
             layout.at = (0..n).map(|i| turned[(i + n - first) % n]).collect();
             return Ok(layout);
@@ -104,11 +107,79 @@ impl InterpolationSpace {
         })
     }
 
+    /// Cubics with straight runs among the data, from place to place: of a run its own points alone
+    /// decide, so that it is straight where these are, and what begins or ends at it has its tangent
+    /// there and a curvature of its own.
+    ///
+    /// # Errors
+    /// As [`InterpolationSpace::new`].
+    pub(crate) fn with_runs(
+        at: &[f64],
+        breaks: &[usize],
+        runs: &[[usize; 2]],
+        closed: bool,
+    ) -> Result<Self, FairError> {
+        let n = at.len();
+        if runs.is_empty() {
+            return Self::new(CUBIC, at, breaks, closed);
+        }
+        let mut all: Vec<usize> =
+            breaks.iter().copied().chain(runs.iter().flatten().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        if let Some(&index) = all.iter().find(|&&b| b >= n) {
+            return Err(FairError::Mark { index, count: n });
+        }
+        if let Some(k) = (1..n).find(|&k| at[k].is_nan() || at[k] <= at[k - 1]) {
+            return Err(FairError::Unsorted { index: k });
+        }
+        // A closed curve begins at the first of its breaks and ends of runs.
+        let first = if closed { all[0] } else { 0 };
+        let count = if closed { n + 1 } else { n };
+        let owners: Vec<usize> = (0..count).map(|k| (first + k) % n).collect();
+        let round = |k: usize| if first + k >= n { 1.0 } else { 0.0 };
+        let turned: Vec<f64> = if closed {
+            (0..count).map(|k| at[owners[k]] - at[first] + round(k)).collect()
+        } else {
+            at.to_vec()
+        };
+        let mut moved: Vec<usize> = all.iter().map(|b| b - first).collect();
+        if closed {
+            moved.push(n);
+        }
+        // The pieces that take their tangent from a run at the first place, or at the last.
+        let sharp = |k: usize| breaks.contains(&owners[k]);
+        let ends_run = |k: usize, end: usize| runs.iter().any(|run| run[end] == owners[k]);
+        let tangents: Vec<[bool; 2]> = {
+            let bounds: Vec<usize> = {
+                let mut bounds = vec![0];
+                bounds.extend(moved.iter().copied().filter(|&b| 0 < b && b < count - 1));
+                bounds.push(count - 1);
+                bounds
+            };
+            let tangent = |pair: &[usize]| {
+                let inside = runs.iter().any(|run| run[0] == owners[pair[0]]);
+                [
+                    !inside && ends_run(pair[0], 1) && !sharp(pair[0]),
+                    !inside && ends_run(pair[1], 0) && !sharp(pair[1]),
+                ]
+            };
+            bounds.windows(2).map(tangent).collect()
+        };
+        let mut layout = Self::open(CUBIC, &turned, owners, &moved, &tangents)?;
+        if closed {
+            layout.first = Some(first);
+            layout.at = (0..n).map(|i| turned[(i + n - first) % n]).collect();
+        }
+        Ok(layout)
+    }
+
     fn open(
         degree: usize,
         at: &[f64],
         owners: Vec<usize>,
         breaks: &[usize],
+        tangents: &[[bool; 2]],
     ) -> Result<Self, FairError> {
         let count = at.len();
         if count < 2 {
@@ -129,9 +200,16 @@ impl InterpolationSpace {
         if breaks.contains(&0) {
             marks.push(0);
         }
-        for pair in ends.windows(2) {
+        let mut held = Vec::new();
+        for (piece, pair) in ends.windows(2).enumerate() {
             let (from, to) = (pair[0], pair[1]);
-            let own = completed(degree, &at[from..=to]);
+            let tangent = tangents.get(piece).copied().unwrap_or_default();
+            let own = if tangent == [false; 2] {
+                completed(degree, &at[from..=to])
+            } else {
+                held.push((sites.len() - 1, tangent));
+                with_tangents(to - from + 1, tangent)
+            };
             let m = own.len();
             let start = sites.len() - 1;
             // Odd degrees leave out the same number of sites at both ends.
@@ -150,7 +228,7 @@ impl InterpolationSpace {
                 sites.push(shared(at, share));
                 site_of.push(share);
                 owner.push(match source[..] {
-                    [(k, _)] => Some(owners[from + k]),
+                    [(k, 1.0)] => Some(owners[from + k]),
                     _ => None,
                 });
                 sources.push(source.into_iter().map(|(k, x)| (owners[from + k], x)));
@@ -167,7 +245,99 @@ impl InterpolationSpace {
         let space = Space::open(KnotVector::new(degree, knots)?)?;
         let rows = values(&space, &sites);
         let (at, first, thin) = (at.to_vec(), None, None);
-        Ok(Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first, thin })
+        let mut layout =
+            Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first, thin };
+        if !held.is_empty() {
+            layout.sources = layout.tangent_sources(&held)?;
+        }
+        Ok(layout)
+    }
+
+    /// The sites over the data where pieces have the tangents of the runs beside them: of each its
+    /// first site, and whether it takes one there and at its end.
+    fn tangent_sources(&self, held: &[(usize, [bool; 2])]) -> Result<SparseRows, FairError> {
+        let n = self.sites.len();
+        let unknown: Vec<usize> = (0..n).filter(|&k| self.sources.row(k).0.is_empty()).collect();
+        let mut responses = Vec::with_capacity(n);
+        for k in 0..n {
+            let mut unit = vec![Vec3::zero(); n];
+            unit[k] = Vec3::of(1.0, 0.0, 0.0);
+            responses.push(self.through(&unit)?);
+        }
+        let slope = |span: isize, t: f64| -> Vec<f64> {
+            let basis = self.space.basis(span, t);
+            let of = |control: &Vec<Vec3<f64>>| {
+                let columns = self.space.columns(span).zip(basis.rows[1].iter());
+                columns.map(|(c, b)| control[c].x * b).sum()
+            };
+            responses.iter().map(of).collect()
+        };
+        // What has to vanish, over the sites.
+        let mut equations: Vec<Vec<f64>> = Vec::new();
+        for &(first, tangent) in held {
+            let last = (first + 1..n)
+                .find(|&k| self.owner[k].is_some() && self.marks.contains(&k))
+                .unwrap_or(n - 1);
+            for (place, _) in [first, last].iter().zip(tangent).filter(|(_, held)| *held) {
+                let t = self.sites[*place];
+                let beside = |left: bool| {
+                    let end = |k: &isize| self.space.knot(*k + isize::from(left)) == t;
+                    self.space.spans().find(end)
+                };
+                let (Some(left), Some(right)) = (beside(true), beside(false)) else { continue };
+                let pair = slope(left, t).into_iter().zip(slope(right, t));
+                equations.push(pair.map(|(a, b)| a - b).collect());
+            }
+            let open = unknown.iter().filter(|&&u| first < u && u < last).count();
+            if open == 2 && tangent != [true; 2] {
+                // Two points and a tangent: a parabola.
+                let mut row = vec![0.0; n];
+                for k in first..=last {
+                    let others = (first..=last).filter(|&l| l != k);
+                    row[k] = 1.0 / others.map(|l| self.sites[k] - self.sites[l]).product::<f64>();
+                }
+                equations.push(row);
+            }
+        }
+        let m = unknown.len();
+        if equations.len() != m {
+            return Err(FairError::Singular);
+        }
+        let mut out = vec![Vec::new(); m];
+        for k in (0..n).filter(|k| !unknown.contains(k)) {
+            let mut matrix = Vec::with_capacity(m * m);
+            let mut right = Vec::with_capacity(m);
+            for row in &equations {
+                let size = row.iter().fold(f64::MIN_POSITIVE, |s, x| s.max(x.abs()));
+                matrix.extend(unknown.iter().map(|&u| row[u] / size));
+                right.push(-row[k] / size);
+            }
+            moldloft_num::solve_dense(&mut matrix, &mut right).map_err(|_| FairError::Singular)?;
+            for (own, x) in out.iter_mut().zip(right) {
+                own.push((k, x));
+            }
+        }
+        let mut sources = SparseRows::new();
+        for k in 0..n {
+            let (columns, factors) = self.sources.row(k);
+            match unknown.iter().position(|&u| u == k) {
+                None => {
+                    sources.push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()))
+                }
+                Some(u) => {
+                    // Sites are data here, or combinations of them.
+                    let mut entries = std::collections::BTreeMap::new();
+                    for &(site, x) in out[u].iter().filter(|(_, x)| *x != 0.0) {
+                        let (columns, factors) = self.sources.row(site);
+                        for (&c, &f) in columns.iter().zip(factors) {
+                            *entries.entry(c as usize).or_insert(0.0) += x * f;
+                        }
+                    }
+                    sources.push(entries);
+                }
+            }
+        }
+        Ok(sources)
     }
 
     /// A space of fewer control points than there are data, at parameters `at` in any order; `rows` are the
@@ -461,6 +631,24 @@ fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
     }
     let to = if b < list.len() { list[b] } else { list[0] + T::one() };
     list[a] + (to - list[a]) * share
+}
+
+/// The sites of a cubic piece of so many data that takes a tangent at its first, at its last or at
+/// both: what has no sources follows from these.
+fn with_tangents(count: usize, tangent: [bool; 2]) -> Vec<(Share, Vec<(usize, f64)>)> {
+    let datum = |k: usize| ((k, k, 0.0), vec![(k, 1.0)]);
+    if count == 2 {
+        let more = [1.0, 2.0].map(|k| ((0, 1, k / 3.0), Vec::new()));
+        return [datum(0)].into_iter().chain(more).chain([datum(1)]).collect();
+    }
+    let mut out: Vec<_> = (0..count).map(datum).collect();
+    if tangent[1] {
+        out.insert(count - 1, ((count - 2, count - 1, 0.5), Vec::new()));
+    }
+    if tangent[0] {
+        out.insert(1, ((0, 1, 0.5), Vec::new()));
+    }
+    out
 }
 
 /// Parameters of a piece with at least `degree + 1` sites, each as a combination of the data:

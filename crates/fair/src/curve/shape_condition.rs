@@ -74,9 +74,14 @@ impl ShapeCondition {
             Some((word, rest)) => (word.trim(), Some(rest.trim())),
             None => (text.trim(), None),
         };
+        // The whole of a curve in a direction.
+        let (word, along) = match word.split_once(':').filter(|_| rest.is_none()) {
+            Some((word, along)) => (word.trim(), Some(along.trim())),
+            None => (word, None),
+        };
         let wrong = || format!("expected one of: {GRAMMAR}; found `{text}`");
         let (what, more) = match rest.map(|r| r.split_once(':')) {
-            None => (None, None),
+            None => (None, along),
             Some(None) => (rest, None),
             Some(Some((a, b))) => (Some(a.trim()), Some(b.trim())),
         };

@@ -5,8 +5,10 @@
 //! its slope are polynomials in them: these are made linear at the curve before, and solved again
 //! until the curve itself has them ([`crate::fair_data`]).
 
+mod spline;
+
 use crate::curve::bernstein::{P, SignedQuantity};
-use crate::curve::chain::{Chain, ChainElement, chain};
+use crate::curve::chain::{Chain, ChainElement, chain, in_order};
 use crate::curve::monotone::runs_of;
 use crate::curve::shape_condition::ShapeCondition;
 use crate::interrogate::shape;
@@ -135,6 +137,17 @@ fn halved(pieces: &[Vec<Vec<f64>>]) -> Vec<Vec<Vec<f64>>> {
     out
 }
 
+/// Where a combination of control points is at most so far along a direction.
+fn half_space(
+    rows: impl Iterator<Item = (usize, f64)>,
+    direction: Vec3<f64>,
+    most: f64,
+    owner: usize,
+) -> ControlInequality {
+    let entries = rows.filter(|r| r.1 != 0.0).map(|(c, f)| (c, direction * f)).collect();
+    ControlInequality { entries, most, owner }
+}
+
 fn refused(shape: usize, why: impl Into<String>) -> FairError {
     FairError::Shapeless { shape, why: why.into() }
 }
@@ -224,13 +237,7 @@ impl Data {
                 }
                 C::Pieces(0) => return Err(refused(owner, "expected at least one piece")),
                 C::Pieces(k) => out.pieces = Some((owner, *k)),
-                C::Within { direction, most } => {
-                    let size = direction.norm();
-                    if !(size > 0.0 && size.is_finite() && most.is_finite()) {
-                        return Err(refused(owner, "a limit has a direction and a number"));
-                    }
-                    out.limits.push((owner, *direction * (1.0 / size), most / size));
-                }
+                C::Within { direction, most } => out.limit(owner, *direction, *most)?,
                 C::OneSided { direction } => {
                     let unit = direction.normalized().filter(|d| d.is_finite());
                     let unit = unit.ok_or_else(|| refused(owner, "a side has a direction"))?;
@@ -254,31 +261,9 @@ impl Data {
             out.runs(&mut self, &runs)?;
         }
         // Signs after the knots are final.
+        let layout = &self.layout;
         for (owner, condition) in wanted.iter().enumerate() {
-            let of = |between: &[usize; 2]| -> Vec<isize> {
-                let layout = &self.layout;
-                let [a, b] = between.map(|k| layout.at[k]);
-                let space = &layout.space;
-                let met = |&k: &isize| space.knot(k) < b && space.knot(k + 1) > a;
-                space.spans().filter(met).filter(|k| !out.determined.contains(k)).collect()
-            };
-            match condition {
-                ShapeCondition::Turn { between, left } => {
-                    let spans = of(between);
-                    out.signs.extend(spans.into_iter().map(|span| Signed {
-                        span,
-                        what: SignedQuantity::Turn,
-                        positive: *left,
-                        slack: 0.0,
-                        owner,
-                    }));
-                }
-                ShapeCondition::OneWay { between } => {
-                    let spans = of(between);
-                    out.one_way.push((owner, spans));
-                }
-                _ => {}
-            }
+            out.turned(&layout.space, &layout.at, owner, condition);
         }
         Ok((self, out))
     }
@@ -287,6 +272,43 @@ impl Data {
 type Run = (usize, [usize; 2], bool, Option<Vec3<f64>>);
 
 impl ShapeConstraints {
+    /// Adds a limit.
+    fn limit(&mut self, owner: usize, direction: Vec3<f64>, most: f64) -> Result<(), FairError> {
+        let size = direction.norm();
+        if !(size > 0.0 && size.is_finite() && most.is_finite()) {
+            return Err(refused(owner, "a limit has a direction and a number"));
+        }
+        self.limits.push((owner, direction * (1.0 / size), most / size));
+        Ok(())
+    }
+
+    /// Adds the signs of a part that turns one way, of data at these parameters.
+    fn turned(&mut self, space: &Space, at: &[f64], owner: usize, condition: &ShapeCondition) {
+        let of = |between: &[usize; 2]| -> Vec<isize> {
+            let [a, b] = between.map(|k| at[k]);
+            let met = |&k: &isize| space.knot(k) < b && space.knot(k + 1) > a;
+            space.spans().filter(met).filter(|k| !self.determined.contains(k)).collect()
+        };
+        match condition {
+            ShapeCondition::Turn { between, left } => {
+                let signed = |span: isize| Signed {
+                    span,
+                    what: SignedQuantity::Turn,
+                    positive: *left,
+                    slack: 0.0,
+                    owner,
+                };
+                let own: Vec<Signed> = of(between).into_iter().map(signed).collect();
+                self.signs.extend(own);
+            }
+            ShapeCondition::OneWay { between } => {
+                let spans = of(between);
+                self.one_way.push((owner, spans));
+            }
+            _ => {}
+        }
+    }
+
     /// True without conditions.
     pub fn is_empty(&self) -> bool {
         self.signs.is_empty()
@@ -685,43 +707,6 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
 /// chain.
 const ROOM: f64 = 0.9;
 
-/// Increasing positions, each within `rooms` of its foot; noise can reverse the order of close
-/// points. Least-squares solution with a minimum step between positions, by pooling adjacent
-/// violators (Ayer, Brunk, Ewing, Reid and Silverman 1955), with the largest step that `rooms`
-/// allow; otherwise the error is the index of the first reversed foot.
-fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
-    let Some(first) = (1..feet.len()).find(|&k| feet[k] <= feet[k - 1]) else { return Ok(feet) };
-    let least = rooms.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = rooms.iter().copied().fold(0.0, f64::max);
-    let mut step = if largest.is_finite() { largest } else { least };
-    for _ in 0..HALVINGS {
-        step *= 0.5;
-        // Mean and number of feet of each block.
-        let mut blocks: Vec<(f64, usize)> = Vec::new();
-        for (k, s) in feet.iter().enumerate() {
-            blocks.push((s - step * k as f64, 1));
-            while let [.., a, b] = blocks[..]
-                && a.0 > b.0
-            {
-                blocks.truncate(blocks.len() - 2);
-                let count = a.1 + b.1;
-                blocks.push(((a.0 * a.1 as f64 + b.0 * b.1 as f64) / count as f64, count));
-            }
-        }
-        let means = blocks.iter().flat_map(|&(mean, count)| std::iter::repeat_n(mean, count));
-        let placed: Vec<f64> = means.enumerate().map(|(k, mean)| mean + step * k as f64).collect();
-        let within =
-            placed.iter().zip(&feet).zip(rooms).all(|((p, s), room)| (p - s).abs() <= *room);
-        if within && placed.windows(2).all(|w| w[0] < w[1]) {
-            return Ok(placed);
-        }
-    }
-    Err(first)
-}
-
-/// Maximum number of halvings of the step.
-const HALVINGS: usize = 12;
-
 impl ShapeConstraints {
     /// The equations of lines and arcs, made linear at a curve, and whose they are.
     pub(crate) fn conditions(&self, control: &[Vec3<f64>]) -> Vec<(Condition, usize)> {
@@ -808,30 +793,31 @@ impl ShapeConstraints {
         out
     }
 
-    /// The half-spaces of limits and sides.
-    fn beyond(&self, data: &Data) -> Vec<ControlInequality> {
-        let space = &data.layout.space;
+    /// The half-spaces of limits.
+    fn limited(&self, space: &Space) -> Vec<ControlInequality> {
         let mut out = Vec::new();
-        let mut beyond = |rows: Vec<(usize, f64)>, d: Vec3<f64>, most: f64, owner: usize| {
-            let entries = rows.into_iter().filter(|r| r.1 != 0.0).map(|(c, f)| (c, d * f));
-            out.push(ControlInequality { entries: entries.collect(), most, owner });
-        };
         for &(owner, d, most) in &self.limits {
             for span in space.spans() {
                 // Bézier points of quarters: those of whole spans are too far from the curve where
                 // it turns away from its limit.
                 for row in halved(&halved(&[space.bezier_of(span)])).into_iter().flatten() {
-                    beyond(space.columns(span).zip(row).collect(), d, most, owner);
+                    out.push(half_space(space.columns(span).zip(row), d, most, owner));
                 }
             }
         }
+        out
+    }
+
+    /// The half-spaces of limits and sides.
+    fn beyond(&self, data: &Data) -> Vec<ControlInequality> {
+        let mut out = self.limited(&data.layout.space);
         for &(owner, d) in &self.sides {
             for (k, owned) in data.layout.owner.iter().enumerate() {
                 let Some(i) = *owned else { continue };
                 if data.limit.radii[i] > 0.0 {
                     let (columns, factors) = data.layout.rows.row(k);
                     let own = columns.iter().map(|&c| c as usize).zip(factors.iter().copied());
-                    beyond(own.collect(), d, d.dot(data.points[i]), owner);
+                    out.push(half_space(own, d, d.dot(data.points[i]), owner));
                 }
             }
         }

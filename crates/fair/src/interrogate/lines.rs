@@ -66,3 +66,53 @@ pub fn line_findings(
     });
     found
 }
+
+/// The fewest points of a line whose knuckles are looked for.
+const FEWEST_JUDGED: usize = 7;
+
+/// Knuckles as what several lines share: of the findings of [`line_findings`] the line that turns and its
+/// point, and where a line of the network runs along the knuckles of those that cross it, all of these
+/// at its points from the first to the last found, and on over lines too short to be judged.
+///
+/// At least two crossing lines turn, and no fewer than half of those between.
+pub fn shared_knuckles(
+    lines: &[(Vec<usize>, bool)],
+    found: &[(usize, DataFinding)],
+) -> Vec<(usize, usize)> {
+    let knuckle = |f: &&(usize, DataFinding)| matches!(f.1, DataFinding::Knuckle { .. });
+    let mut out: Vec<(usize, usize)> =
+        found.iter().filter(knuckle).map(|(k, f)| (*k, f.index())).collect();
+    let turns = out.clone();
+    for (along, (own, _)) in lines.iter().enumerate() {
+        // Of each point the lines that cross there and do not end.
+        let crossing: Vec<Vec<usize>> = own
+            .iter()
+            .map(|i| {
+                let passes = |k: &usize| {
+                    let (other, closed) = &lines[*k];
+                    let place = other.iter().position(|j| j == i);
+                    place.is_some_and(|c| *closed || (0 < c && c + 1 < other.len()))
+                };
+                (0..lines.len()).filter(|k| *k != along && passes(k)).collect()
+            })
+            .collect();
+        let sharp = |c: usize| crossing[c].iter().any(|&k| turns.contains(&(k, own[c])));
+        let all: Vec<usize> = (0..own.len()).filter(|&c| sharp(c)).collect();
+        let [first, .., last] = all[..] else { continue };
+        let between = (first..=last).filter(|&c| !crossing[c].is_empty()).count();
+        if 2 * all.len() < between {
+            continue;
+        }
+        let short = |c: usize| crossing[c].iter().all(|&k| lines[k].0.len() < FEWEST_JUDGED);
+        let from = (0..first).rev().take_while(|&c| short(c)).last().unwrap_or(first);
+        let to = (last + 1..own.len()).take_while(|&c| short(c)).last().unwrap_or(last);
+        for c in from..=to {
+            out.extend(crossing[c].iter().map(|&k| (k, own[c])));
+        }
+        // The line itself runs on.
+        out.retain(|&(k, i)| k != along || turns.contains(&(k, i)));
+    }
+    out.sort_unstable();
+    out.dedup();
+    out
+}

@@ -6,8 +6,9 @@ use super::shapes::{self, AnchoredSpline};
 use super::{ArgumentFields, fault, measure};
 use crate::curve::request::ACCURACY;
 use crate::{
-    EndContinuity, FairError, InterpolationSpace, Limit, Network, NetworkCurve, ParameterSpacing,
-    Space, are_exact, interpolate_with_corners, line_findings, parameters_across,
+    Bound, EndContinuity, FairError, InterpolationSpace, Limit, NamedCurves, Network,
+    NetworkCondition, NetworkCurve, ParameterSpacing, ShapeCondition, Space, are_exact,
+    interpolate_with_corners, line_findings, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -37,8 +38,8 @@ shared_options! {
         /// by the tolerance, so that the sum of the measure over all curves is minimal; each curve
         /// then interpolates its moved points, so that intersections are preserved. A list that
         /// ends with its first point is a closed curve. The value is the list of the faired curves:
-        /// `net[2]` is the second, `NetCurve` makes it an object. The tolerance bounds the points:
-        /// there is no `bound`.
+        /// `net[2]` is the second, `NetCurve` makes it an object. Options refer to curves by number,
+        /// from 1.
         #[derive(Kind)]
         #[kind(
             forward,
@@ -68,7 +69,7 @@ shared_options! {
         /// Fixed ends of open curves: "corners" (points at which every curve through them ends),
         /// "ends" (all) or "none".
         #[field(default = "corners")]
-        keep: Arc<str>,
+        kept_ends: Arc<str>,
     }
     [along]
     {
@@ -92,7 +93,7 @@ shared_options! {
     [goal]
     [share]
     {
-        /// Further points that do not move.
+        /// Points that do not move besides those of `kept_ends`.
         #[field(default)]
         fixed: Option<Vec<Point<T>>>,
         /// Tolerances of the points in `tolerances_at`, instead of `tolerance`.
@@ -104,6 +105,25 @@ shared_options! {
         /// Steps per point of each curve and pass in the mode "faithful".
         #[field(default = 3, min = 1, max = 1000)]
         steps: usize,
+        /// What the tolerance bounds: "points", their moves; "curve": no curve is farther from the one
+        /// before than the smaller tolerance of the two points beside. No derivatives.
+        #[field(default = "points")]
+        bound: Arc<str>,
+        /// What curves have to have, exactly, by their numbers: "2: convex", "2: straight=3-9:1,0,0"
+        /// (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points on the others), "2..5 at
+        /// 8..12: flat:0,1,0" (these in one plane), "1: tangent=start:1,0,0". No derivatives.
+        #[field(default)]
+        shape: Option<Vec<Arc<str>>>,
+        /// Numbers of curves, from 1, along which all curves that cross them break.
+        #[field(default)]
+        knuckles: Option<Vec<usize>>,
+        /// Points that are wrong: they move wherever the curves through the others are.
+        #[field(default)]
+        release: Option<Vec<Point<T>>>,
+        /// "volume" and its "centroid" stay, by splines through the sections, where points move along one
+        /// direction. No derivatives.
+        #[field(default)]
+        keep: Option<Vec<Arc<str>>>,
     }
 }
 
@@ -160,6 +180,20 @@ impl<T: Real> Joined<T> {
         points.unwrap_or_default().iter().enumerate().map(place).collect()
     }
 
+    /// Curves by their numbers, from 1.
+    fn numbers(&self, given: Option<&[usize]>, field: FieldId) -> Result<Vec<usize>, CallError> {
+        let count = self.curves.len();
+        let index = |(item, &k): (usize, &usize)| match k.checked_sub(1) {
+            Some(at) if at < count => Ok(at),
+            _ => Err(CallError::new("out-of-range", format!("there is no curve {k}"))
+                .expected(format!("numbers of curves from 1 to {count}"))
+                .found(k.to_string())
+                .in_item(item)
+                .in_field(field)),
+        };
+        given.unwrap_or_default().iter().enumerate().map(index).collect()
+    }
+
     /// Indices of the fixed ends.
     fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
@@ -182,10 +216,36 @@ impl<T: Real> Joined<T> {
                     "way to keep ends",
                     which,
                     &known,
-                    FairNet::<f64>::KEEP,
+                    FairNet::<f64>::KEPT_ENDS,
                 ));
             }
         })
+    }
+}
+
+impl<T: Real> FairNet<T> {
+    /// What the network has to have, each with the item and the field that ask for it.
+    fn conditions(&self, joined: &Joined<T>) -> Result<Vec<AskedCondition>, CallError> {
+        let named = NamedCurves { curves: &joined.curves, names: &[] };
+        let mut out = Vec::new();
+        for (item, text) in self.shape.iter().flatten().enumerate() {
+            let made = NetworkCondition::read(text, named).map_err(|why| {
+                CallError::new("no-shape", why)
+                    .found(text.to_string())
+                    .in_item(item)
+                    .in_field(Self::SHAPE)
+            })?;
+            out.extend(made.into_iter().map(|c| (c, item, Self::SHAPE)));
+        }
+        for (item, word) in self.keep.iter().flatten().enumerate() {
+            let kept =
+                NetworkCondition::kept(word, self.along.map(|d| d.re())).ok_or_else(|| {
+                    super::unknown("quantity to keep", word, &["volume", "centroid"], Self::KEEP)
+                        .in_item(item)
+                })?;
+            out.push((kept, item, Self::KEEP));
+        }
+        Ok(out)
     }
 }
 
@@ -199,7 +259,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             "a point with a tolerance of its own",
             Self::TOLERANCES_AT,
         )?;
-        let own = self.tolerances.unwrap_or_default();
+        let own = self.tolerances.as_deref().unwrap_or_default();
         if own.len() != own_at.len() {
             return Err(CallError::new("wrong-count", "each of `tolerances_at` has a tolerance")
                 .expected(format!("{} tolerances", own_at.len()))
@@ -207,12 +267,20 @@ impl<T: Real> Build<T> for FairNet<T> {
                 .in_field(Self::TOLERANCES));
         }
         let mut tolerances = vec![self.tolerance; joined.points.len()];
-        for (&i, &t) in own_at.iter().zip(&own) {
+        for (&i, &t) in own_at.iter().zip(own) {
             tolerances[i] = t;
         }
+        let released = joined.places(self.release.as_deref(), "a released point", Self::RELEASE)?;
+        for &i in &released {
+            tolerances[i] = T::from(f64::INFINITY);
+        }
         let degree = self.degree;
-        let marks_of = |own: &[usize]| -> Vec<usize> {
-            (0..own.len()).filter(|&k| marked.contains(&own[k])).collect()
+        let along = joined.numbers(self.knuckles.as_deref(), Self::KNUCKLES)?;
+        let marks_of = |k: usize| -> Vec<usize> {
+            let own = &joined.curves[k].0;
+            let crossed =
+                |i: &usize| along.iter().any(|&l| l != k && joined.curves[l].0.contains(i));
+            (0..own.len()).filter(|&c| marked.contains(&own[c]) || crossed(&own[c])).collect()
         };
         let places = ArgumentFields {
             points: Self::CURVES,
@@ -250,7 +318,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .in_item(k)
                     .in_field(Self::CURVES));
             }
-            let (marks, ends) = (marks_of(own), [EndContinuity::Points(0); 2]);
+            let (marks, ends) = (marks_of(k), [EndContinuity::Points(0); 2]);
             let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
             let radii: Vec<f64> = own.iter().map(|&i| tolerances[i].re()).collect();
             let limits = (motion, &radii[..]);
@@ -274,6 +342,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                 points: own.clone(),
                 weights: None,
                 marks,
+                runs: Vec::new(),
                 ends,
                 at: plain,
             });
@@ -288,10 +357,24 @@ impl<T: Real> Build<T> for FairNet<T> {
                 .found("mode = \"faithful\"")
                 .in_field(field));
         }
-        let mut kept = joined.kept(&self.keep)?;
+        let mut kept = joined.kept(&self.kept_ends)?;
         kept.extend(fixed.iter().filter(|i| !kept.contains(i)).copied().collect::<Vec<_>>());
         let mut still: Vec<bool> = tolerances.iter().map(|t| t.re() == 0.0).collect();
+        kept.retain(|i| !released.contains(i));
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
+        let wanted = self.conditions(&joined)?;
+        let shaped = !wanted.is_empty();
+        let bound = match &*self.bound {
+            "points" => Bound::ControlPoints,
+            "curve" => Bound::Bezier,
+            other => return Err(super::unknown("bound", other, &["points", "curve"], Self::BOUND)),
+        };
+        if passes.is_some() && (shaped || bound != Bound::ControlPoints) {
+            return Err(CallError::new("other-mode", "conditions and bounds are for the optimum")
+                .expected("mode = \"optimum\"")
+                .found("mode = \"faithful\"")
+                .in_field(Self::MODE));
+        }
         let xyz: Vec<Vec3<T>> = joined.points.iter().map(|p| p.xyz).collect();
         let mut fit = None;
         let solve = || -> Result<Vec<Vec3<T>>, FairError> {
@@ -299,8 +382,12 @@ impl<T: Real> Build<T> for FairNet<T> {
             let plain = xyz.iter().map(|p| p.re()).collect();
             let mut network = Network::new(plain, strands, limit)?;
             network.kept = kept;
+            network.bound = bound;
+            if shaped {
+                network = network.with_conditions(wanted.iter().map(|w| w.0.clone()).collect())?;
+            }
             let near = matches!(goal, crate::Goal::Near(_));
-            if index && near && are_exact(&network.points, &joined.curves, &marked) {
+            if index && near && !shaped && are_exact(&network.points, &joined.curves, &marked) {
                 return Ok(xyz.clone());
             }
             if let Some(passes) = passes {
@@ -311,7 +398,21 @@ impl<T: Real> Build<T> for FairNet<T> {
             fit = Some(own);
             Ok(points)
         };
-        let moved = solve().map_err(|e| fault(e, &places))?;
+        let moved = solve().map_err(|e| {
+            let own = |k: usize| wanted.get(k).map_or((0, Self::SHAPE), |w| (w.1, w.2));
+            let said = e.to_string();
+            match e {
+                FairError::Shapeless { shape, why } => {
+                    let (item, field) = own(shape);
+                    CallError::new("no-shape", why).in_item(item).in_field(field)
+                }
+                FairError::Shape { shapes, .. } => {
+                    let (item, field) = own(shapes.first().copied().unwrap_or_default());
+                    CallError::new("no-shape", said).in_item(item).in_field(field)
+                }
+                other => fault(other, &places),
+            }
+        })?;
         let figures = fit.map(|fit| {
             let plain: Vec<Vec3<f64>> = xyz.iter().map(|p| p.re()).collect();
             let found = line_findings(&plain, &joined.curves, &marked);
@@ -342,10 +443,11 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(at) = &ats[k] {
                 // The parameters of the given points are used, since the moved points are near
                 // them.
-                let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
+                let sharp = (marks_of(k), runs_of(&wanted, k));
+                let curve = through(degree, &points, at, &sharp, *closed).map_err(about)?;
                 return Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)));
             }
-            let marks = marks_of(own);
+            let marks = marks_of(k);
             let sharp = interpolate_with_corners(
                 degree,
                 &points,
@@ -365,16 +467,36 @@ impl<T: Real> Build<T> for FairNet<T> {
     }
 }
 
+/// A condition with the item and the field that ask for it.
+type AskedCondition = (NetworkCondition, usize, FieldId);
+
+/// The straight runs of a curve.
+fn runs_of(wanted: &[AskedCondition], k: usize) -> Vec<[usize; 2]> {
+    let run = |asked: &AskedCondition| match &asked.0 {
+        NetworkCondition::Curve { curve, shape: ShapeCondition::Straight { between, .. } }
+            if *curve == k =>
+        {
+            Some(*between)
+        }
+        _ => None,
+    };
+    wanted.iter().filter_map(run).collect()
+}
+
 /// Interpolating spline; points and parameters may carry derivatives.
 fn through<T: Real>(
     degree: usize,
     points: &[Vec3<T>],
     at: &[T],
-    breaks: &[usize],
+    (breaks, runs): &(Vec<usize>, Vec<[usize; 2]>),
     closed: bool,
 ) -> Result<SplineWithKnotDerivatives<T>, FairError> {
     let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-    let layout = InterpolationSpace::new(degree, &real, breaks, closed)?;
+    let layout = if runs.is_empty() {
+        InterpolationSpace::new(degree, &real, breaks, closed)?
+    } else {
+        InterpolationSpace::with_runs(&real, breaks, runs, closed)?
+    };
     let (control, knots) = layout.through_moving(points, at)?;
     let (knots, control) = layout.space.open_form(&knots, &control);
     SplineWithKnotDerivatives::new(degree, Some(knots), control, None)

@@ -1,6 +1,7 @@
 //! The curves of a network: splines through its points, how far these are apart, and limits that
 //! hold all along them.
 
+use crate::net::shapes::control_map;
 use crate::optimum::DataLimits;
 use crate::{
     Deviation, FairError, InterpolationSpace, Job, Network, ParameterSpacing, Space, SparseRows,
@@ -20,7 +21,7 @@ pub struct CurvePair {
 }
 
 impl CurvePair {
-    /// How far the curves are apart.
+    /// The distance between the curves.
     ///
     /// # Errors
     /// As [`Job::new`].
@@ -31,10 +32,16 @@ impl CurvePair {
 }
 
 impl Network {
-    fn layout(&self, k: usize) -> Option<Result<InterpolationSpace, FairError>> {
+    /// The splines through the points of curve `k`, where it has parameters.
+    pub(super) fn layout(&self, k: usize) -> Option<Result<InterpolationSpace, FairError>> {
         let strand = &self.strands[k];
         let (degree, closed) = (strand.space.degree(), strand.space.is_closed());
-        strand.at.as_ref().map(|at| InterpolationSpace::new(degree, at, &strand.marks, closed))
+        strand.at.as_ref().map(|at| {
+            if strand.runs.is_empty() {
+                return InterpolationSpace::new(degree, at, &strand.marks, closed);
+            }
+            InterpolationSpace::with_runs(at, &strand.marks, &strand.runs, closed)
+        })
     }
 
     /// Curve `k` through its points as they were given, and through these.
@@ -77,15 +84,8 @@ impl Network {
             let Some(layout) = self.layout(k) else { continue };
             let layout = layout?;
             let own = &self.strands[k].points;
-            // The displacement is linear in the moves: control points by the moves of single points.
-            let mut control: Vec<Vec<(usize, f64)>> = vec![Vec::new(); layout.space.count()];
-            for place in 0..own.len() {
-                let mut unit = vec![Vec3::zero(); own.len()];
-                unit[place] = Vec3::of(1.0, 0.0, 0.0);
-                for (c, p) in layout.through(&layout.data(&unit))?.iter().enumerate() {
-                    control[c].push((place, p.x));
-                }
-            }
+            // The displacement is linear in the moves.
+            let control = control_map(&layout, own.len())?;
             layout.space.each_bezier(None, |entries| {
                 let mut sum = vec![0.0; own.len()];
                 for &(c, x) in entries {
@@ -99,8 +99,11 @@ impl Network {
                     let all = places.iter().map(|&place| self.limit.radii[own[place]]);
                     all.filter(|&r| r > 0.0).reduce(f64::min)
                 };
-                let radius = radii_of(&near[..2]).or_else(|| radii_of(&near));
-                // What passes through one point is limited there.
+                // Beside a point without limit the curve has none.
+                let free =
+                    near[..2].iter().any(|&place| self.limit.radii[own[place]].is_infinite());
+                let radius = radii_of(&near[..2]).or_else(|| radii_of(&near)).filter(|_| !free);
+                // A Bézier point of one point has the limit of that.
                 let single = sum.iter().filter(|f| f.abs() > 1e-12).count() < 2;
                 if let (Some(radius), false) = (radius, single) {
                     rows.push(own.iter().copied().zip(sum).filter(|(_, f)| *f != 0.0));

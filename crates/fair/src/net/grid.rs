@@ -15,6 +15,7 @@ use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_single,
     check_unique, moved, rounding, tightened,
 };
+use crate::optimum::ties::Ties;
 use crate::optimum::{Bounded, DataLimits, Parts, Solved};
 use crate::{
     Certificate, Condition, EndContinuity, FairError, InterpolationSpace, Limit, Measure, Motion,
@@ -27,11 +28,11 @@ use moldloft_num::{Real, Vec3};
 pub struct GridData {
     /// The data.
     pub points: Vec<Vec3<f64>>,
-    /// How far the surface may be from each, and in which directions it may leave them.
+    /// Limits of the distances of the surface from them, and the directions of these.
     pub limit: Limit,
     /// Where they are on the surface, and the splines: along u and along v.
     pub layouts: [InterpolationSpace; 2],
-    /// What rims keep of the surface through the data: at both ends of u, then of v. A free rim
+    /// Conditions at the rims of the surface through the data: at both ends of u, then of v. A free rim
     /// leaves only the corners where they are.
     pub rims: [[EndContinuity; 2]; 2],
 }
@@ -47,7 +48,7 @@ pub struct GridFit {
     pub residuals: Vec<f64>,
     /// The mean of the squared residuals over the tolerances, over 1/3.
     pub used: f64,
-    /// What the fairest takes of the same squares; see [`crate::DataFit`].
+    /// The same squares of the fairest; see [`crate::DataFit`].
     pub fairest_used: f64,
     /// The measure of the surface and the optimality gap; see [`crate::DataFit`].
     pub certificate: Certificate,
@@ -182,7 +183,7 @@ fn weights<T: Real>(sites: &[T], closed: bool) -> Vec<T> {
         .collect()
 }
 
-/// What makes a measure that counts by mean spans one by the unit parameter.
+/// Factor from a measure by mean spans to one by the unit parameter.
 fn unit(measure: Measure, layout: &InterpolationSpace) -> f64 {
     let order = match measure {
         Measure::Second | Measure::Bending => 2.0,
@@ -373,6 +374,8 @@ impl GridData {
             vec![f64::INFINITY; original.len()]
         };
         Ok(Parts {
+            held: &[],
+            ties: Ties::default(),
             points: original,
             relative: original.to_vec(),
             centred: false,
@@ -420,7 +423,7 @@ impl GridData {
         pull
     }
 
-    /// Whether all lines of the grid are exact from break to break.
+    /// True if all lines of the grid are exact between breaks.
     fn exact(&self) -> bool {
         let n = self.columns();
         let m = self.points.len() / n;
@@ -713,7 +716,7 @@ pub fn fair_grid_with<T: Real>(
     };
     let budget = match goal {
         Goal::Near(own) if found.between => {
-            // What the fairest takes of the squares moves, too.
+            // The squares of the fairest change, too.
             if found.share < 1.0 {
                 return Err(FairError::NoDerivative(
                     "the budget of this surface and how far it is worth a move both hang on the fairest, so \

@@ -10,7 +10,7 @@ const HALVINGS: usize = 30;
 /// The most changes that are looked for.
 const MOST_CHANGES: usize = 6;
 
-/// Numbers at rising places with room on both sides.
+/// Numbers at increasing parameters, each with a tolerance.
 pub(super) struct ValueTube<'a> {
     pub at: &'a [f64],
     pub values: &'a [f64],
@@ -34,7 +34,7 @@ impl ValueTube<'_> {
             let own = if sign > 0.0 { self.high(i, share) } else { -self.low(i, share) };
             if i == a { own.min(begin) } else { own }
         };
-        // What is convex stays above the line on from two of its points, the first at its highest
+        // A convex list stays above the line on from two of its points, the first at its highest
         // and the second at its lowest; a bound of that on the points between is what makes it fit.
         let mut least = low(b);
         for i in a..b {

@@ -7,6 +7,8 @@
 //! that fit within the tolerance, the signs of its second divided differences are held.
 
 use super::line_patterns::ValueTube;
+use super::shapes::EquationSpan;
+use super::sign_room::SignRoom;
 use crate::curve::moving::MovingRows;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
@@ -17,7 +19,7 @@ use crate::{Certificate, Condition, FairError, Measure, Motion, Network, RowNorm
 use moldloft_num::{Real, Vec3};
 
 /// The fewest points of a line that has changes of curvature.
-const FEWEST_POINTS: usize = 5;
+const FEWEST_POINTS: usize = 4;
 
 /// The share of the measure that noise of the tolerances has below which lines are alike.
 const ALIKE: f64 = 1e-3;
@@ -34,6 +36,12 @@ const LEFT: f64 = 1e-9;
 /// The same share below which a second difference has no sign.
 const STRAIGHT: f64 = 1e-6;
 
+/// Difference of the factors of two signs, of size 1, that are the same.
+const SAME: f64 = 1e-9;
+
+/// Fraction of a tolerance below which conditions leave a point a range of its own.
+const NARROWED: f64 = 0.999;
+
 /// The sign of the second difference of three neighbours on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HeldSign {
@@ -41,6 +49,35 @@ struct HeldSign {
     /// The place of the first of the three on the line.
     first: usize,
     sign: f64,
+}
+
+/// The signs of a line with the fewest changes.
+struct LineSigns {
+    /// All of them.
+    fewest: Vec<HeldSign>,
+    /// Those that have not been given up.
+    left: Vec<HeldSign>,
+    /// True once the line has bent more than that.
+    held: bool,
+}
+
+/// Cost of giving up a sign, by the changes that this may add: next to a change it moves that; at the
+/// end of a line it adds one; else two.
+const COSTS: [f64; 3] = [0.25, 0.6, 1.0];
+
+/// Cost of giving up each sign of a line.
+fn costs(signs: &[HeldSign]) -> Vec<f64> {
+    let cost = |k: usize| {
+        let beside = |other: Option<&HeldSign>| match other {
+            Some(other) if other.first.abs_diff(signs[k].first) > 2 => 1,
+            Some(other) if other.sign == signs[k].sign => 2,
+            Some(_) => 0,
+            None => 1,
+        };
+        let before = beside(k.checked_sub(1).and_then(|k| signs.get(k)));
+        COSTS[before.min(beside(signs.get(k + 1)))]
+    };
+    (0..signs.len()).map(cost).collect()
 }
 
 /// The factors of three points whose sum a sign keeps from being positive.
@@ -61,41 +98,51 @@ pub(super) struct LineRound<'a> {
     scales: Vec<f64>,
     /// The budget of squares in the goal's own; infinite for the fairest.
     wider: f64,
-    /// Whether it is known which signs are reached.
+    /// True if it is known which signs are reached.
     decided: bool,
+    /// Lines that bend more than the fewest changes within their tolerances: conditions or crossing
+    /// lines leave their signs no room.
+    pub bent: Vec<usize>,
 }
 
-/// What all rounds have in common.
+/// Data of all rounds.
 struct LineFairing<'a> {
     network: &'a Network,
     pull: &'a SparseRows,
     /// The budget of squares; none for the fairest.
     share: Option<f64>,
-    /// The signs of the fewest changes of each line, and whether they are held.
-    signs: Vec<(Vec<HeldSign>, bool)>,
+    /// The signs of the lines.
+    signs: Vec<LineSigns>,
+    /// The half-spaces of the network's own conditions, whose owners come after the lines.
+    asked: Vec<ControlInequality>,
+    /// The squares that ties require, and how many points have no displacement of their own.
+    ties: (f64, usize),
+    /// Start of the searches, if signs have shown that they need one.
+    begin: Vec<Vec3<f64>>,
 }
 
 impl Network {
-    /// Whether it is one of curves through points, which have measures of their own.
+    /// True for curves through points, which have measures of their own.
     pub(super) fn has_lines(&self, norm: RowNorm) -> bool {
         self.patches.is_empty()
             && norm == RowNorm::Square
             && self.strands.iter().all(|s| s.at.is_some() && s.weights.is_none())
     }
 
-    /// The direction in which points move, where it is one.
-    fn way(&self) -> Option<Vec3<f64>> {
+    /// The direction in which the points of line `k` move, where it is one.
+    fn way(&self, k: usize) -> Option<Vec3<f64>> {
         match self.limit.motion {
             Motion::Along(d) => Some(d),
-            _ => None,
+            _ => self.ways.get(k).copied().flatten(),
         }
     }
 
-    /// The measure of a line, in the directions in which points move.
-    fn line_value<T: Real>(&self, rows: &MovingRows<T>, points: &[Vec3<T>]) -> T {
-        let square = |k: usize| {
-            let e = rows.apply(k, points);
-            self.way().map_or_else(
+    /// The measure of line `k`, in the directions in which its points move.
+    fn line_value<T: Real>(&self, k: usize, rows: &MovingRows<T>, points: &[Vec3<T>]) -> T {
+        let way = self.way(k);
+        let square = |r: usize| {
+            let e = rows.apply(r, points);
+            way.map_or_else(
                 || e.norm_sq(),
                 |d| {
                     let along = e.x * d.x + e.y * d.y + e.z * d.z;
@@ -103,10 +150,10 @@ impl Network {
                 },
             )
         };
-        (0..rows.rows.len()).fold(T::zero(), |sum, k| sum + square(k))
+        (0..rows.rows.len()).fold(T::zero(), |sum, r| sum + square(r))
     }
 
-    /// What lines that are alike have of their measure: a share of the squares of noise of the
+    /// The measure below which lines are alike: a fraction of the squares of noise of the
     /// tolerances.
     fn line_floor<T: Real>(&self, rows: &MovingRows<T>, frozen: &[bool], tolerances: &[T]) -> T {
         let moves = |c: usize| !frozen[c] && tolerances[c].re().is_finite();
@@ -153,28 +200,53 @@ impl Network {
         (0..self.strands.len()).map(of).collect()
     }
 
-    /// The signs of the fewest changes of line `k` between its breaks.
-    fn line_signs(&self, k: usize, frozen: &[bool]) -> Vec<HeldSign> {
-        let (strand, Some(way)) = (&self.strands[k], self.way()) else { return Vec::new() };
+    /// The signs of the fewest changes of line `k` between its breaks, within the ranges that the
+    /// conditions leave its points.
+    fn line_signs(
+        &self,
+        k: usize,
+        frozen: &[bool],
+        (span, ranges): (&EquationSpan, &[Vec<[f64; 2]>]),
+    ) -> Vec<HeldSign> {
+        let (strand, Some(way)) = (&self.strands[k], self.way(k)) else { return Vec::new() };
         let Some(at) = strand.at.as_ref().filter(|_| !strand.space.is_closed()) else {
             return Vec::new();
         };
         let mut out = Vec::new();
         let mut bounds = vec![0];
-        bounds.extend(strand.marks.iter().copied());
+        bounds.extend(strand.marks.iter().chain(strand.runs.iter().flatten()).copied());
         bounds.push(strand.points.len() - 1);
         bounds.sort_unstable();
         bounds.dedup();
         for pair in bounds.windows(2) {
-            let (from, to) = (pair[0], pair[1]);
+            let straight = strand.runs.iter().any(|run| run[0] <= pair[0] && pair[1] <= run[1]);
+            if straight {
+                continue;
+            }
+            // A curve does not bend back where it leaves a run.
+            let smooth = |end: usize| !strand.marks.contains(&end);
+            let after = strand.runs.iter().any(|run| run[1] == pair[0] && smooth(run[1]));
+            let before = strand.runs.iter().any(|run| run[0] == pair[1] && smooth(run[0]));
+            let (from, to) = (pair[0] - usize::from(after), pair[1] + usize::from(before));
             if to - from + 1 < FEWEST_POINTS {
                 continue;
             }
             let own = &strand.points[from..=to];
-            let values: Vec<f64> = own.iter().map(|&i| way.dot(self.points[i])).collect();
-            let room = |&i: &usize| if frozen[i] { 0.0 } else { self.limit.radii[i] };
-            let rooms: Vec<f64> = own.iter().map(room).collect();
-            if rooms.iter().any(|r| !r.is_finite()) || rooms.iter().all(|&r| r == 0.0) {
+            let extent = self.extent();
+            // Conditions may leave a part of a tolerance, equal for points that move together.
+            let room = |&i: &usize| -> [f64; 2] {
+                let (value, room) = (way.dot(self.points[i]), self.limit.radii[i].min(extent));
+                match span.along(&ranges[i], way) {
+                    _ if frozen[i] => [value, 0.0],
+                    Some([low, high]) if (high - low) < 2.0 * NARROWED * room => {
+                        [value + 0.5 * (low + high), 0.5 * (high - low)]
+                    }
+                    _ => [value, room],
+                }
+            };
+            let (values, rooms): (Vec<f64>, Vec<f64>) =
+                own.iter().map(room).map(|r| (r[0], r[1])).unzip();
+            if rooms.iter().all(|&r| r == 0.0 || r == extent) {
                 continue;
             }
             let tube = ValueTube { at: &at[from..=to], values: &values, rooms: &rooms };
@@ -191,12 +263,20 @@ impl Network {
 
     /// The entries of a sign over the network's points, at parameters that may carry derivatives.
     fn sign_entries<T: Real>(&self, held: &HeldSign, at: &[T]) -> Vec<(usize, Vec3<T>)> {
-        let way = self.way().unwrap_or_default();
+        let way = self.way(held.line).unwrap_or_default();
         let places = held.first..held.first + 3;
         let ids = &self.strands[held.line].points[places.clone()];
         let factors = sign_factors(held.sign, &at[places]);
         let along = |f: T| Vec3::new(f * way.x, f * way.y, f * way.z);
         ids.iter().zip(factors).map(|(&i, f)| (i, along(f))).collect()
+    }
+
+    /// The factors of a sign by the points that lead its own.
+    fn tied_factors(&self, held: &HeldSign, parts: &Parts<'_>) -> [(usize, f64); 3] {
+        let strand = &self.strands[held.line];
+        let at = strand.at.as_deref().unwrap_or_default();
+        let factors = sign_factors(held.sign, &at[held.first..held.first + 3]);
+        std::array::from_fn(|k| (parts.ties.leader(strand.points[held.first + k]), factors[k]))
     }
 
     /// A sign as a half-space.
@@ -213,12 +293,13 @@ impl Network {
     fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> f64 {
         let half = self.sign_half(held);
         let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
-        let room = |i: usize| self.limit.radii[i];
+        let extent = self.extent();
+        let room = |i: usize| self.limit.radii[i].min(extent);
         let varies: f64 = half.entries.iter().map(|(i, f)| f.norm() * room(*i)).sum();
         (sum - half.most) / varies.max(f64::MIN_POSITIVE)
     }
 
-    /// Whether line of these signs has more changes at points than they have.
+    /// True if a line of these signs has more changes at these points than the signs have.
     fn bends_more(&self, signs: &[HeldSign], points: &[Vec3<f64>]) -> bool {
         let parts = signs.chunk_by(|a, b| b.first <= a.first + 2);
         let changes = |signs: Vec<f64>| signs.windows(2).filter(|w| w[0] != w[1]).count();
@@ -245,14 +326,41 @@ impl Network {
         let own = self.all_moving_rows::<f64>(measure, &[])?;
         let floor = |rows| self.line_floor(rows, &parts.frozen, &self.limit.radii);
         let floors: Vec<f64> = own.iter().map(floor).collect();
-        let signs = (0..count).map(|k| (self.line_signs(k, &parts.frozen), false)).collect();
-        let mut fairing = LineFairing { network: self, pull, share, signs };
-        let whole: f64 = own.iter().map(|rows| self.line_value(rows, &self.points)).sum();
+        let equations = parts.equations();
+        let span = EquationSpan::of(self, &equations);
+        let ranges = span.move_ranges(self, &equations);
+        let frozen = self.frozen();
+        let signs_of = |k: usize| {
+            let mut signs = self.line_signs(k, &frozen, (&span, &ranges));
+            signs.retain(|held| !span.determines(&self.sign_half(held).entries));
+            LineSigns { left: signs.clone(), fewest: signs, held: false }
+        };
+        let mut signs: Vec<LineSigns> = (0..count).map(signs_of).collect();
+        // Lines that move together have the same half-spaces: one of each.
+        let mut seen: Vec<[(usize, f64); 3]> = Vec::new();
+        for line in signs.iter_mut().filter(|_| !parts.ties.is_empty()) {
+            line.left.retain(|held| {
+                let own = self.tied_factors(held, parts);
+                let same = |other: &[(usize, f64); 3]| {
+                    own.iter().zip(other).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() <= SAME)
+                };
+                let new = !seen.iter().any(same);
+                if new {
+                    seen.push(own);
+                }
+                new
+            });
+        }
+        let asked = parts.halves.clone();
+        let (begin, ties) = (Vec::new(), (parts.ties.forced, parts.ties.removed));
+        let mut fairing = LineFairing { network: self, pull, share, ties, signs, asked, begin };
+        let value = |(k, rows)| self.line_value(k, rows, &self.points);
+        let whole: f64 = own.iter().enumerate().map(value).sum();
         let mut rounds: Vec<LineRound<'a>> = Vec::new();
         for _ in 0..ROUNDS {
             let points = rounds.last().map_or(&self.points, |r| &r.found.optimum.points);
             let weight = |k: usize| {
-                let left = self.line_value(&own[k], points).max(floors[k]);
+                let left = self.line_value(k, &own[k], points).max(floors[k]);
                 whole / (count as f64 * left.max(f64::MIN_POSITIVE))
             };
             let scales: Vec<f64> = (0..count).map(|k| weight(k).sqrt()).collect();
@@ -296,9 +404,9 @@ impl Network {
             }
             let mut weighed = MovingRows { rows: Vec::new() };
             for (k, (own, floor)) in rows.iter().zip(&floors).enumerate() {
-                let left = self.line_value(own, &now);
+                let left = self.line_value(k, own, &now);
                 let left = if left.re() < floor.re() { *floor } else { left };
-                // What is next to nothing weighs what it does.
+                // The weight of a line without a measure is constant.
                 let change = if left.re() > 0.0 { left / left.re() } else { T::one() };
                 let scale = T::from(round.scales[k]) / change.sqrt();
                 let scaled =
@@ -361,61 +469,115 @@ impl LineFairing<'_> {
             let round = self.under_signs(parts)?;
             let points = &round.found.optimum.points;
             let mut more = false;
-            for (signs, held) in &mut self.signs {
-                if !*held && self.network.bends_more(signs, points) {
-                    (*held, more) = (true, true);
+            for line in self.signs.iter_mut().filter(|line| !line.held) {
+                if self.network.bends_more(&line.fewest, points) {
+                    (line.held, more) = (true, true);
                 }
             }
             if !more {
-                return Ok(round);
+                return Ok(self.reported(round));
             }
         }
     }
 
-    /// The same under the signs that are held: those of lines that contradict others are given up,
-    /// and then the budget.
+    /// The round with the lines that bend more than the fewest changes.
+    fn reported<'a>(&self, mut round: LineRound<'a>) -> LineRound<'a> {
+        let points = &round.found.optimum.points;
+        let bends = |k: &usize| self.network.bends_more(&self.signs[*k].fewest, points);
+        round.bent = (0..self.signs.len()).filter(bends).collect();
+        round
+    }
+
+    /// The optimum under the signs that are held. Signs that the conditions and other lines leave no room
+    /// are given up; before that the budget is widened.
     fn under_signs<'a>(&mut self, parts: &Parts<'a>) -> Result<LineRound<'a>, FairError> {
-        let mean = self.pull.len() as f64 / 3.0;
         loop {
-            let held = self.signs.iter().filter(|(_, held)| *held);
-            let held: Vec<HeldSign> = held.flat_map(|(signs, _)| signs).copied().collect();
+            let held: Vec<HeldSign> = self.held().flat_map(|line| &line.left).copied().collect();
             if held.is_empty() {
                 return self.followed(parts, Vec::new(), None, 1.0);
             }
-            let halves = held.iter().map(|s| self.network.sign_half(s)).collect();
-            let parts = Parts { halves, ..parts.clone() };
-            let mut refused = Vec::new();
+            let mut halves = self.asked.clone();
+            halves.extend(held.iter().map(|s| self.network.sign_half(s)));
+            let mut parts = Parts { halves, ..parts.clone() };
+            if !self.begin.is_empty() {
+                parts.begin.clone_from(&self.begin);
+            }
             for wider in WIDER {
-                let most = self.share.map_or(f64::INFINITY, |share| wider * share * mean);
-                let made = if most.is_finite() { parts.within(self.pull, most) } else { Ok(None) };
-                match made {
-                    Ok(Some(found)) => return Ok(self.settled(&parts, &held, found, wider)),
-                    Ok(None) => match parts.solve_after(None) {
-                        Ok((optimum, solution)) => {
-                            if self.squares(&optimum.points) <= most {
-                                let pressed = solution.pressed;
-                                let found =
-                                    BudgetOptimum { weight: 0.0, optimum, good: true, pressed };
-                                return Ok(self.settled(&parts, &held, found, f64::INFINITY));
-                            }
-                        }
-                        Err(FairError::Shape { shapes, .. }) => refused = shapes,
-                        Err(other) => return Err(other),
-                    },
-                    Err(FairError::Shape { .. }) => {}
-                    Err(other) => return Err(other),
-                }
-                if !refused.is_empty() {
-                    break;
+                if let Some((found, wider)) = self.within_budget(&parts, wider)? {
+                    return Ok(self.settled(&parts, &held, found, wider));
                 }
             }
-            if refused.is_empty() {
-                // What contradicts what is not known: none is held.
-                self.signs.iter_mut().for_each(|(signs, _)| signs.clear());
+            let costs: Vec<f64> = self.held().flat_map(|line| costs(&line.left)).collect();
+            let room = SignRoom::of(&parts, self.asked.len(), &costs)?;
+            let any = |all: &[bool]| all.iter().any(|&x| x);
+            let given_up = if any(&room.missed) {
+                room.missed
+            } else if self.begin.is_empty() && !room.moves.is_empty() {
+                // There is a network with these signs: the search begins there.
+                vec![false; held.len()]
+            } else if any(&room.tight) {
+                room.tight
+            } else {
+                vec![true; held.len()]
+            };
+            self.begin = room.moves;
+            let mut given_up = given_up.into_iter();
+            for line in self.signs.iter_mut().filter(|line| line.held) {
+                line.left.retain(|_| given_up.next() == Some(false));
             }
-            for k in refused {
-                self.signs[k].0.clear();
+        }
+    }
+
+    /// The bound on the sum of squares at a multiple of the goal's own budget: beyond the squares that
+    /// ties require those of points with a displacement of their own.
+    fn most(&self, wider: f64) -> f64 {
+        let (forced, removed) = self.ties;
+        let free = self.pull.len().saturating_sub(removed) as f64 / 3.0;
+        self.share.map_or(f64::INFINITY, |share| forced + wider * share * free)
+    }
+
+    fn held(&self) -> impl Iterator<Item = &LineSigns> {
+        self.signs.iter().filter(|line| line.held)
+    }
+
+    /// The optimum under half-spaces and a budget of the goal's own times `wider`, with the budget that
+    /// it has then; none where there is no such network.
+    fn within_budget(
+        &self,
+        parts: &Parts<'_>,
+        wider: f64,
+    ) -> Result<Option<(BudgetOptimum, f64)>, FairError> {
+        let most = self.most(wider);
+        let none = |error| match error {
+            FairError::Shape { .. } | FairError::Contradiction { .. } => Ok(None),
+            other => Err(other),
+        };
+        if most.is_finite() {
+            // A search under a budget begins within it.
+            let begin = parts.ties.shifted(&self.network.points).into_iter().enumerate();
+            let begin: Vec<Vec3<f64>> = begin
+                .map(|(i, p)| {
+                    p + parts.begin.get(parts.ties.leader(i)).copied().unwrap_or_default()
+                })
+                .collect();
+            let mut own = parts.clone();
+            if self.squares(&begin) >= most {
+                own.begin = Vec::new();
             }
+            match own.within(self.pull, most) {
+                Ok(Some(found)) => return Ok(Some((found, wider))),
+                Ok(None) => {}
+                Err(error) => return none(error),
+            }
+        }
+        match parts.solve_after(None) {
+            Ok((optimum, solution)) if self.squares(&optimum.points) <= most => {
+                let pressed = solution.pressed;
+                let found = BudgetOptimum { weight: 0.0, optimum, good: true, pressed };
+                Ok(Some((found, f64::INFINITY)))
+            }
+            Ok(_) => Ok(None),
+            Err(error) => none(error),
         }
     }
 
@@ -428,7 +590,8 @@ impl LineFairing<'_> {
         near: BudgetOptimum,
         wider: f64,
     ) -> LineRound<'a> {
-        let reached = held.iter().zip(&near.pressed).filter(|(_, pressed)| **pressed);
+        let pressed = near.pressed.iter().skip(self.asked.len());
+        let reached = held.iter().zip(pressed).filter(|(_, pressed)| **pressed);
         let reached: Vec<HeldSign> = reached.map(|(sign, _)| *sign).collect();
         let Certificate { value, gap } = near.optimum.certificate;
         let found = self.followed(parts, reached, Some(near.clone()), wider);
@@ -448,7 +611,8 @@ impl LineFairing<'_> {
         (found.share, found.weight, found.least) = (1.0, near.weight, value);
         found.optimum = near.optimum;
         let (parts, scales) = (parts.clone(), Vec::new());
-        LineRound { parts, scales, found, reached: Vec::new(), wider, decided: false }
+        let (reached, bent) = (Vec::new(), Vec::new());
+        LineRound { parts, scales, found, reached, wider, decided: false, bent }
     }
 
     /// The optimum where these signs are conditions.
@@ -459,7 +623,7 @@ impl LineFairing<'_> {
         known: Option<BudgetOptimum>,
         wider: f64,
     ) -> Result<LineRound<'a>, FairError> {
-        let mut parts = Parts { halves: Vec::new(), ..parts.clone() };
+        let mut parts = Parts { halves: self.asked.clone(), ..parts.clone() };
         parts.conditions.extend(reached.iter().map(|held| {
             let half = self.network.sign_half(held);
             Condition { entries: half.entries, value: half.most }
@@ -476,11 +640,18 @@ impl LineFairing<'_> {
             moves: None,
         };
         let goal = match self.share {
-            Some(share) if wider.is_finite() => Goal::Budget(share * wider),
+            Some(share) if wider.is_finite() && self.ties == (0.0, 0) => {
+                Goal::Budget(share * wider)
+            }
+            Some(_) if wider.is_finite() => {
+                Goal::Budget(self.most(wider) * 3.0 / self.pull.len() as f64)
+            }
             _ => Goal::Fairest,
         };
-        let found = path.follow(goal, norm, false, &mut parts, self.pull)?;
+        let held = !self.network.conditions.is_empty();
+        let found = path.follow(goal, norm, held, &mut parts, self.pull)?;
         parts.pull = None;
-        Ok(LineRound { parts, scales: Vec::new(), found, reached, wider, decided: true })
+        let (scales, bent) = (Vec::new(), Vec::new());
+        Ok(LineRound { parts, scales, found, reached, wider, decided: true, bent })
     }
 }

@@ -1,5 +1,6 @@
 //! Nets of surfaces, networks of curves, and surfaces with common edges.
 
+pub mod condition_text;
 mod conditions;
 pub mod curves;
 pub mod grid;
@@ -7,3 +8,8 @@ mod line_patterns;
 mod lines;
 pub mod network;
 pub(crate) mod patches;
+pub mod report;
+pub mod shapes;
+mod sign_room;
+pub mod strand;
+mod tied;

@@ -6,71 +6,47 @@ use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
 use crate::net::lines::{LineNumbers, LineRound};
 use crate::net::patches::{PlacedNet, SeamCondition};
+use crate::net::shapes::{EquationSpan, KEPT, MET, NetworkCondition, ROUNDS, SETTLED, one_way};
+use crate::net::strand::NetworkCurve;
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided,
     check_unique, is_between, moved, rounding,
 };
-use crate::optimum::{Bounded, Optimum, Parts};
+use crate::optimum::ties::Ties;
+use crate::optimum::{Bounded, ControlInequality, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, EndContinuity, FairError, Job, KnotRemovalOptions, Limit,
-    Measure, Space, SparseRows, knot_removal_from, replay_from_with,
+    Measure, Motion, Space, SparseRows, knot_removal_from, replay_from_with,
 };
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
-
-/// One curve of a network.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NetworkCurve {
-    /// Its spline.
-    pub space: Space,
-    /// Its control points: places in the network's list.
-    pub points: Vec<usize>,
-    /// Weights of a rational curve.
-    pub weights: Option<Vec<f64>>,
-    /// Its own places that are intended breaks.
-    pub marks: Vec<usize>,
-    /// What its ends keep when it is faired by itself.
-    pub ends: [EndContinuity; 2],
-    /// Parameters of its points in [0, 1], for points that the curve passes through: measures are
-    /// then those of divided differences. Without them the points are control points of its
-    /// spline.
-    pub at: Option<Vec<f64>>,
-}
-
-impl NetworkCurve {
-    /// The rows of a measure over its own points, at parameters that may carry derivatives.
-    pub(super) fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
-        let (closed, degree) = (self.space.is_closed(), self.space.degree());
-        let mut rows = measure.divided(at, closed, degree);
-        rows.retain(|row| {
-            let inner = &row[1..row.len() - 1];
-            !inner.iter().any(|(c, _)| self.marks.contains(c))
-        });
-        rows
-    }
-}
 
 /// Curves over common points. A shared point is one point: it moves for all its curves at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// The original points.
     pub points: Vec<Vec3<f64>>,
-    /// How far they may move, across all passes.
+    /// Limits of their moves, across all passes.
     pub limit: Limit,
     /// The curves, in the order of passes.
     pub strands: Vec<NetworkCurve>,
     /// Points that do not move.
     pub kept: Vec<usize>,
-    /// What the limits of goals hold for: points, or all along curves through points.
+    /// Scope of the limits of goals: points, or all along curves through points.
     pub bound: Bound,
+    /// Its conditions.
+    pub(super) conditions: Vec<NetworkCondition>,
+    /// Directions in which single points do not move.
+    pub(super) held: Vec<(usize, Vec3<f64>)>,
+    /// The one direction in which the points of each curve move, if there is one.
+    pub(super) ways: Vec<Option<Vec3<f64>>>,
     /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
     /// The nets of joined surfaces.
     pub(crate) patches: Vec<PlacedNet>,
-    /// What holds across their seams and of points that move in planes of their own, and how that of
-    /// seams hangs on the points given.
+    /// Conditions across their seams, and their dependence on the given points.
     pub(crate) seams: Vec<Condition>,
     pub(crate) across: Vec<SeamCondition>,
 }
@@ -90,21 +66,24 @@ impl Network {
         Ok(network)
     }
 
-    /// Keeps a point in the plane through it across a direction: an offset moves along its own axis
-    /// alone, whatever its neighbours may do.
+    /// The network with single points that do not move in directions of their own: an offset moves
+    /// along its own axis only, while a sheer moves in two.
     ///
     /// # Errors
     /// [`FairError::Mark`] when there is no such point.
-    pub fn hold(&mut self, point: usize, across: Vec3<f64>) -> Result<(), FairError> {
+    pub fn with_held(mut self, held: Vec<(usize, Vec3<f64>)>) -> Result<Self, FairError> {
         let count = self.points.len();
-        let place = self.points.get(point).ok_or(FairError::Mark { index: point, count })?;
-        let value = across.dot(*place);
-        self.seams.push(Condition { entries: vec![(point, across)], value });
-        Ok(())
+        if let Some(&(index, _)) = held.iter().find(|(i, _)| *i >= count) {
+            return Err(FairError::Mark { index, count });
+        }
+        self.held = held;
+        let way = |strand: &NetworkCurve| one_way(self.limit.motion, &self.held, &strand.points);
+        self.ways = self.strands.iter().map(way).collect();
+        Ok(self)
     }
 
     fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {
-        let (kept, patches, seams, across) = Default::default();
+        let (kept, conditions, held, ways, patches, seams, across) = Default::default();
         let bound = Bound::ControlPoints;
         Self {
             points,
@@ -112,6 +91,9 @@ impl Network {
             strands,
             kept,
             bound,
+            conditions,
+            held,
+            ways,
             net: None,
             weights: None,
             patches,
@@ -147,6 +129,7 @@ impl Network {
             weights: weights.as_ref().map(|w| own.iter().map(|&i| w[i]).collect()),
             points: own,
             marks: Vec::new(),
+            runs: Vec::new(),
             ends: [EndContinuity::Points(2); 2],
             at: None,
         };
@@ -256,7 +239,11 @@ impl Network {
     }
 
     fn check_seams(&self) -> Result<(), FairError> {
-        if self.seams.is_empty() { Ok(()) } else { Err(FairError::SeamsByPasses) }
+        if self.seams.is_empty() && self.held.is_empty() {
+            Ok(())
+        } else {
+            Err(FairError::SeamsByPasses)
+        }
     }
 
     /// Curve `k` as a job of its own, at these points.
@@ -377,7 +364,7 @@ impl Network {
     }
 
     /// The rows of a measure over all curves.
-    fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
+    pub(super) fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
         let mut all = SparseRows::new();
         for k in 0..self.strands.len() {
             all = all.joined(&self.own_rows(k, measure)?);
@@ -416,7 +403,7 @@ impl Network {
         (pull, owners)
     }
 
-    /// Whether all curves through their points are exact from break to break.
+    /// True if all curves through their points are exact between breaks.
     fn exact(&self) -> bool {
         let curve = |strand: &NetworkCurve| {
             let own: Vec<Vec3<f64>> = strand.points.iter().map(|&i| self.points[i]).collect();
@@ -433,11 +420,97 @@ impl Network {
         goal: Goal,
         conditioned: bool,
     ) -> Result<ReachedGoal<'a>, FairError> {
+        if self.conditions.is_empty() {
+            return self.found_near(parts, measure, goal, conditioned);
+        }
+        let base = parts.clone();
+        let lines = self.strands.len();
+        let most = MET * self.extent();
+        let finite = || self.limit.radii.iter().filter(|r| r.is_finite() && **r > 0.0);
+        let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+        let mut at = self.points.clone();
+        let mut made: Option<ReachedGoal<'a>> = None;
+        let mut missed = (f64::INFINITY, 0);
+        for _ in 0..ROUNDS {
+            let linear = self.linear_conditions(&at)?;
+            let kept = linear.left.0 <= KEPT * mean;
+            let before =
+                std::mem::replace(&mut missed, if kept { linear.missed } else { linear.left });
+            if let Some(made) = made.take_if(|_| kept && missed.0 <= most) {
+                return Ok(made);
+            }
+            // The rest is rounding once the conditions do not change any more.
+            if kept
+                && missed.0 <= SETTLED * mean
+                && missed.0 > 0.5 * before.0
+                && let Some(mut made) = made.take()
+            {
+                let span = EquationSpan::of(self, &parts.equations());
+                made.found.optimum.points = span.nearest(self, &made.found.optimum.points);
+                return Ok(made);
+            }
+            let equations = self.independent(linear.equations)?;
+            *parts = base.clone();
+            // Limits all along curves do not hold at the positions of ties.
+            let direct = matches!(parts.bounded, Bounded::ControlPoints);
+            let equations = if direct {
+                let (ties, others, frozen) = self.tied(equations)?;
+                (parts.ties, parts.frozen) = (ties, frozen);
+                others
+            } else {
+                equations
+            };
+            let owners: Vec<usize> = equations.iter().map(|e| e.1).collect();
+            parts.conditions.extend(equations.into_iter().map(|e| e.0));
+            // Combinations that the equations determine have no sign.
+            let span = EquationSpan::of(self, &parts.equations());
+            // A search that begins where the equations hold keeps them.
+            if direct && self.limit.motion != Motion::Box && !parts.conditions.is_empty() {
+                let moves = span.within(self).into_iter().enumerate();
+                parts.begin = moves.map(|(i, v)| v - parts.ties.shift(i)).collect();
+            }
+            // The first owners are the lines, of the signs that these hold themselves.
+            let own = linear.halves.into_iter().filter(|h| !span.determines(&h.entries));
+            parts.halves.extend(own.map(|h| ControlInequality { owner: lines + h.owner, ..h }));
+            let found =
+                self.found_near(parts, measure, goal, true).map_err(|error| match error {
+                    FairError::Shape { shapes, miss } => {
+                        let shapes =
+                            shapes.into_iter().filter_map(|k| k.checked_sub(lines)).collect();
+                        FairError::Shape { shapes, miss }
+                    }
+                    FairError::Contradiction { conditions, ends, miss } => {
+                        let owner =
+                            |k: usize| owners.get(k.checked_sub(base.conditions.len())?).copied();
+                        let mut shapes: Vec<usize> =
+                            conditions.iter().filter_map(|&k| owner(k)).collect();
+                        shapes.dedup();
+                        if shapes.is_empty() {
+                            return FairError::Contradiction { conditions, ends, miss };
+                        }
+                        FairError::Shape { shapes, miss }
+                    }
+                    other => other,
+                })?;
+            at.clone_from(&found.found.optimum.points);
+            made = Some(found);
+        }
+        Err(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+    }
+
+    fn found_near<'a>(
+        &'a self,
+        parts: &mut Parts<'a>,
+        measure: Measure,
+        goal: Goal,
+        conditioned: bool,
+    ) -> Result<ReachedGoal<'a>, FairError> {
+        let shaped = !self.conditions.is_empty();
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let mut rounds = Vec::new();
-        if let (Goal::Near(share), false) = (goal, conditioned) {
-            if self.exact() {
+        if let (Goal::Near(share), true) = (goal, shaped || !conditioned) {
+            if !shaped && self.exact() {
                 let value = crate::measure::value(&rows, norm, &self.points);
                 let found = GoalOptimum::unmoved(&self.points, value, false);
                 return Ok(ReachedGoal { found, pull, owners, rounds });
@@ -483,10 +556,24 @@ impl Network {
         conditions: Vec<Condition>,
         accuracy: f64,
     ) -> Result<(Optimum, f64), FairError> {
+        let (found, _) = self.reached(measure, goal, conditions, accuracy)?;
+        Ok((found.optimum, found.used))
+    }
+
+    /// The same with the curves that bend more than their points require.
+    pub(super) fn reached(
+        &self,
+        measure: Measure,
+        goal: Goal,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<(GoalOptimum, Vec<usize>), FairError> {
         let conditioned = !conditions.is_empty();
         let mut parts = self.parts(measure, self.bound, conditions, accuracy)?;
-        let ReachedGoal { found, .. } = self.found(&mut parts, measure, goal, conditioned)?;
-        Ok((found.optimum, found.used))
+        let reached = self.found(&mut parts, measure, goal, conditioned)?;
+        let last = reached.rounds.last().and_then(|rounds| rounds.last());
+        let bent = last.map_or_else(Vec::new, |round| round.bent.clone());
+        Ok((reached.found, bent))
     }
 
     /// The same for numbers that carry derivatives: points, tolerances, and of each curve with
@@ -515,6 +602,11 @@ impl Network {
         let mut numbers = points.iter().flat_map(|p| p.to_array());
         if numbers.all(T::is_constant) && tolerances.iter().all(|t| t.is_constant()) {
             return Ok((found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect(), fit));
+        }
+        if !self.conditions.is_empty() {
+            return Err(FairError::NoDerivative(
+                "derivatives of a network with shapes and other conditions are not known",
+            ));
         }
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
@@ -579,7 +671,7 @@ impl Network {
         };
         let mut budget = T::zero();
         if let (Goal::Near(share), true) = (goal, found.between) {
-            // What the fairest takes moves, too.
+            // The squares of the fairest change, too.
             let parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
             let fairest = parts.whole()?;
             let slope = rows.slope(&fairest.optimum.points);
@@ -617,7 +709,7 @@ impl Network {
         }
         let mut most = T::from(share);
         if allowed(share, used, count) != Some(share) {
-            // What the fairest takes moves, too.
+            // The squares of the fairest change, too.
             let at = self.lines_moved(fairest, pulling, most, numbers)?;
             let used = used_of(&at, pulling.1, numbers.points, numbers.tolerances);
             most = allowed(share, used, count).unwrap_or(used);
@@ -626,13 +718,20 @@ impl Network {
         self.lines_moved(last, pulling, most, numbers)
     }
 
-    /// Which points do not move in the joint optimum.
+    /// True for points that do not move in the joint optimum.
     pub(super) fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
-        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
-        for i in self.kept.iter().copied().chain(marked) {
+        for &i in &self.kept {
             frozen[i] = true;
         }
+        // A knuckle stays, but for one along which another curve runs on.
+        let mut smooth = vec![false; frozen.len()];
+        for strand in self.strands.iter().filter(|s| s.at.is_some()) {
+            let runs_on = |c: &usize| !strand.marks.contains(c);
+            (0..strand.points.len()).filter(runs_on).for_each(|c| smooth[strand.points[c]] = true);
+        }
+        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
+        marked.filter(|&i| !smooth[i]).for_each(|i| frozen[i] = true);
         frozen
     }
 
@@ -647,7 +746,7 @@ impl Network {
     }
 
     /// Points as measures see them.
-    fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+    pub(super) fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
         let origin = self.origin();
         points.iter().map(|&p| p - origin).collect()
     }
@@ -773,6 +872,8 @@ impl Network {
             measure: self.rows(measure)?,
             norm: measure.norm(),
             frozen: self.frozen(),
+            held: &self.held,
+            ties: Ties::default(),
             conditions,
             own: 0,
             bounded: match bound {
@@ -873,7 +974,7 @@ struct ReachedGoal<'a> {
     rounds: Vec<Vec<LineRound<'a>>>,
 }
 
-/// What points take of the squares that noise of the tolerances has.
+/// The squares of moves relative to those of noise of the tolerances.
 fn used_of<T: Real>(at: &[Vec3<T>], owners: &[usize], points: &[Vec3<T>], tolerances: &[T]) -> T {
     let square = |&i: &usize| {
         let off = at[i] - points[i];
@@ -883,7 +984,7 @@ fn used_of<T: Real>(at: &[Vec3<T>], owners: &[usize], points: &[Vec3<T>], tolera
     sum / (owners.len() as f64 / 3.0)
 }
 
-/// What is to be said of the result of a goal.
+/// Figures of the result of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetworkFit {
     /// The measure of all curves and the optimality gap within the limits.
@@ -892,95 +993,6 @@ pub struct NetworkFit {
     pub active: usize,
     /// The mean of the squared moves over tolerances, over 1/3.
     pub used: f64,
-    /// What the fairest takes of the same squares; 3 where it is at all its tolerances.
+    /// The same squares of the fairest; 3 if all moves reach their tolerances.
     pub fairest_used: f64,
-}
-
-/// What a fairing did to a network, for reports.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NetworkReport {
-    /// The faired points.
-    pub points: Vec<Vec3<f64>>,
-    /// The measure over all curves, before and after.
-    pub measure: [f64; 2],
-    /// Sum of squared jumps over all curves, before and after.
-    pub jumps: [f64; 2],
-    /// No point of the surface (or control point of a network) moved farther.
-    pub certified: f64,
-    /// The largest distance found by sampling.
-    pub sampled: f64,
-    /// The measure and the optimality gap within the limits.
-    pub certificate: Certificate,
-    /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
-    pub used: f64,
-}
-
-/// How a network is faired.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NetworkMode {
-    /// All curves at once, with a ball round each point, towards a goal.
-    Toward(Goal),
-    /// All curves at once: the fairest.
-    Joint(Bound),
-    /// All curves at once by so many sweeps over single points.
-    Sweeps(usize),
-    /// Curve after curve: so many passes of so many steps per point.
-    Passes(usize, usize),
-}
-
-impl Network {
-    /// Fairs and reports.
-    ///
-    /// # Errors
-    /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
-    pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
-        self.report_with(measure, mode, Vec::new())
-    }
-
-    /// The same under linear conditions, which the joint optimum alone can keep.
-    ///
-    /// # Errors
-    /// As [`Network::report`].
-    pub fn report_with(
-        &self,
-        measure: Measure,
-        mode: NetworkMode,
-        conditions: Vec<Condition>,
-    ) -> Result<NetworkReport, FairError> {
-        let mut used = f64::NAN;
-        let (points, certificate) = match mode {
-            NetworkMode::Toward(goal) => {
-                let (best, share) = self.toward(measure, goal, conditions, 1e-9)?;
-                used = share;
-                (best.points, best.certificate)
-            }
-            NetworkMode::Joint(bound) => {
-                let best = self.optimum(measure, bound, conditions, 1e-9)?;
-                (best.points, best.certificate)
-            }
-            NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,
-            NetworkMode::Passes(passes, steps) => {
-                let points = self.passes(passes, steps)?;
-                let rows = self.rows(measure)?;
-                let relative = self.relative(&points);
-                let frozen = vec![false; points.len()];
-                let norm = measure.norm();
-                let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
-                (points, left)
-            }
-        };
-        let all = 0..self.strands.len();
-        let both = |m: Measure| -> Result<[f64; 2], FairError> {
-            Ok([self.value(m, all.clone(), &self.points)?, self.value(m, all.clone(), &points)?])
-        };
-        Ok(NetworkReport {
-            measure: both(measure)?,
-            jumps: both(Measure::Jumps)?,
-            certified: self.certified(&points),
-            sampled: self.sampled(&points),
-            certificate,
-            used,
-            points,
-        })
-    }
 }

@@ -29,9 +29,9 @@ pub struct PatchNet {
     pub points: Vec<Vec3<f64>>,
     /// Weights, which stay.
     pub weights: Option<Vec<f64>>,
-    /// How far control points may move.
+    /// Limits of the moves of control points.
     pub limit: Limit,
-    /// What its rims keep, at both ends of u, then of v; see [`Network::with_rims`].
+    /// Conditions of its rims, at both ends of u, then of v; see [`Network::with_rims`].
     pub rims: [[EndContinuity; 2]; 2],
     /// Knuckle lines along u and along v; see [`Network::with_breaks`].
     pub breaks: [Vec<usize>; 2],
@@ -93,11 +93,11 @@ pub struct NetEdge {
 pub struct Seam {
     /// Numbers of the surfaces, from 0.
     pub sheets: [usize; 2],
-    /// Which edge of each.
+    /// The edge of each.
     pub edges: [NetEdge; 2],
-    /// Whether the second runs against the first.
+    /// True if the second runs against the first.
     pub reversed: bool,
-    /// What is continuous: [`EndContinuity::Position`], [`EndContinuity::Tangent`] or [`EndContinuity::Curvature`].
+    /// The continuity: [`EndContinuity::Position`], [`EndContinuity::Tangent`] or [`EndContinuity::Curvature`].
     pub keeps: EndContinuity,
 }
 
@@ -150,7 +150,7 @@ pub(crate) struct PlacedNet {
     pub places: Vec<usize>,
 }
 
-/// What holds across one seam.
+/// Conditions across one seam.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SeamCondition {
     /// SparseRows of places along the seam, from it into each sheet: for each control point on the seam.
@@ -407,7 +407,7 @@ fn net(sheet: &PatchNet) -> Result<(Network, [Vec<usize>; 2]), FairError> {
     Ok((net, [corners, rims]))
 }
 
-/// Which points of a sheet are within two rows of a seam of it.
+/// True for points of a sheet within two rows of a seam of it.
 fn seam_points(sheet: &PatchNet, number: usize, seams: &[Seam]) -> Vec<bool> {
     let mut on = vec![false; sheet.points.len()];
     for seam in seams {

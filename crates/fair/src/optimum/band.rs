@@ -76,7 +76,7 @@ impl Band {
         self.data.copy_from_slice(&other.data);
     }
 
-    /// How many numbers are stored.
+    /// The number of stored entries.
     pub fn size(&self) -> usize {
         self.data.len()
     }
@@ -103,6 +103,50 @@ impl Band {
             let last = if high == low { r + 1 } else { D };
             for (entry, b) in self.data[start..start + last].iter_mut().zip(&block[r]) {
                 *entry += factor * b;
+            }
+        }
+    }
+
+    /// Restricts the matrix to symmetric projections of the coordinates of single points: what they
+    /// take away has a diagonal of its own, so that the matrix stays positive definite.
+    pub fn restrict<const D: usize>(&mut self, held: &[(usize, [[f64; D]; D])]) {
+        let (w, stride) = (self.width, self.width + 1);
+        let projected = |projection: &[[f64; D]; D], v: [f64; D]| -> [f64; D] {
+            std::array::from_fn(|r| (0..D).map(|c| projection[r][c] * v[c]).sum())
+        };
+        for (point, projection) in held {
+            let first = point * D;
+            let most = (0..D).map(|d| self.data[(first + d) * stride + w]).fold(0.0, f64::max);
+            // The point's rows left of its own block.
+            for column in (first + D - 1).saturating_sub(w)..first {
+                let at: [usize; D] =
+                    std::array::from_fn(|d| (first + d) * stride + w + column - first - d);
+                let new = projected(projection, at.map(|k| self.data[k]));
+                at.iter().zip(new).for_each(|(&k, x)| self.data[k] = x);
+            }
+            // Its columns below.
+            for row in first + D..(first + w + 1).min(self.n) {
+                let at: [usize; D] = std::array::from_fn(|d| row * stride + w + first + d - row);
+                let new = projected(projection, at.map(|k| self.data[k]));
+                at.iter().zip(new).for_each(|(&k, x)| self.data[k] = x);
+            }
+            let entry = |r: usize, c: usize| {
+                let (r, c) = if r < c { (c, r) } else { (r, c) };
+                (first + r) * stride + w + c - r
+            };
+            let block: [[f64; D]; D] =
+                std::array::from_fn(|r| std::array::from_fn(|c| self.data[entry(r, c)]));
+            // The block is symmetric: P B, then P (P B)'.
+            let half: [[f64; D]; D] = {
+                let columns = block.map(|column| projected(projection, column));
+                std::array::from_fn(|r| std::array::from_fn(|c| columns[c][r]))
+            };
+            let both = half.map(|row| projected(projection, row));
+            for r in 0..D {
+                for c in 0..=r {
+                    let unit = f64::from(u8::from(r == c));
+                    self.data[entry(r, c)] = both[r][c] + most * (unit - projection[r][c]);
+                }
             }
         }
     }
@@ -283,6 +327,39 @@ mod tests {
             assert!(b.iter().zip(&x).all(|(p, q)| (p - q).abs() < 1e-12));
         }
         assert!(matches!(Band::zero(1 << 20, 1 << 12), Err(FairError::TooLarge { .. })));
+    }
+
+    #[test]
+    fn restricted_matrices_keep_directions() {
+        let mut random = Lcg::new(12);
+        // Five points of two coordinates, each beside its neighbours.
+        let mut band = Band::zero(10, 3).unwrap();
+        let mut dense = [[0.0; 10]; 10];
+        for i in 0..10usize {
+            for j in (2 * (i / 2)).saturating_sub(2)..=i {
+                let x = if i == j { 5.0 } else { random.centred() };
+                band.add(i, j, x);
+                (dense[i][j], dense[j][i]) = (x, x);
+            }
+        }
+        // Point 1 moves along (0.6, 0.8), point 3 not along y.
+        let (a, b) = ([0.6, 0.8], [1.0, 0.0]);
+        let outer = |v: [f64; 2]| v.map(|r| v.map(|c| r * c));
+        band.restrict(&[(1, outer(a)), (3, outer(b))]);
+        band.factor();
+        let mut x: Vec<f64> = (0..10).map(|k| f64::from(k) - 4.5).collect();
+        let along = 0.6 * x[2] + 0.8 * x[3];
+        (x[2], x[3], x[7]) = (0.6 * along, 0.8 * along, 0.0);
+        let right = x.clone();
+        band.solve(&mut x);
+        assert!((0.8 * x[2] - 0.6 * x[3]).abs() < 1e-14 && x[7] == 0.0);
+        // The residual is across the directions of the points.
+        let off: Vec<f64> =
+            (0..10).map(|i| (0..10).map(|j| dense[i][j] * x[j]).sum::<f64>() - right[i]).collect();
+        for (k, off) in off.iter().enumerate() {
+            assert!([2, 3, 7].contains(&k) || off.abs() < 1e-12, "{k}: {off}");
+        }
+        assert!((0.6 * off[2] + 0.8 * off[3]).abs() < 1e-12);
     }
 
     #[test]

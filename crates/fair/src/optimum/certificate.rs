@@ -3,7 +3,7 @@
 use crate::{Job, Limit, Motion, RowNorm, SparseRows};
 use moldloft_num::Vec3;
 
-/// How near a result is to the best within its limits.
+/// Distance of a result from the best within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// The measure of the result.

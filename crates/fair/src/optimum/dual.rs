@@ -76,7 +76,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
         for (k, w) in stiffness.iter().enumerate() {
             add_block(band, &self.limit_rows, k, w);
         }
-        band.factor();
+        self.factor(band);
         let errors: Vec<V<D>> =
             (0..self.measure.len()).map(|k| self.error_at(k, &self.x)).collect();
         let mut z = errors.clone();
@@ -99,6 +99,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
                     if p.bounds.separate { m.iter().map(|c| c.abs()).sum() } else { length(*m) };
                 bound += radius * size - dot(*m, *s);
             }
+            self.project(&mut rest);
             for ((rest, x), reach) in rest.iter().zip(&self.x).zip(&self.reach) {
                 let rest = length(*rest);
                 bound += if rest == 0.0 { 0.0 } else { rest * (length(*x) + reach) };
@@ -111,7 +112,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
                 break;
             }
             let mut dx: Vec<V<D>> = rest.iter().map(|v| v.map(|c| -c)).collect();
-            band.solve(dx.as_flattened_mut());
+            self.inverse(band, &mut dx);
             for (k, z) in z.iter_mut().enumerate() {
                 axpy(z, 1.0, apply(&self.measure, k, &dx));
             }

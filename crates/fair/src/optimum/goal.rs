@@ -1,4 +1,4 @@
-//! Which of the results within the tolerances is wanted, and the way to it from the fairest.
+//! Goals among the results within the tolerances, and the path to them from the fairest.
 //!
 //! The results on the way are the optima of the measure plus a weight times the squared residuals
 //! over tolerances: the fairest at weight 0, the data at the end. Each is the fairest of all whose
@@ -10,7 +10,7 @@ use crate::optimum::{Bend, BudgetOptimum, Optimum, Parts, Solved};
 use crate::{Certificate, FairError, RowNorm, SparseRows};
 use moldloft_num::{Dual4, Real, Vec3};
 
-/// Which of the curves within the tolerances is wanted.
+/// Goal among the curves within the tolerances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The fairest: the least of the measure.
@@ -44,7 +44,7 @@ const MOST_SOLUTIONS: usize = 60;
 const STAYS: f64 = 1.5;
 const MOVES: f64 = 3.0;
 
-/// How far a gain is worth to move: a smooth step.
+/// The fraction of the path that a gain is worth: a smooth step.
 pub(crate) fn worth<T: Real>(gain: T) -> T {
     worth_beside(gain, 0.0)
 }
@@ -72,7 +72,7 @@ const FOREIGN: f64 = 0.25;
 /// are as wide as `FOREIGN`.
 const FEWEST: usize = 40;
 
-/// How many standard deviations noise may have more.
+/// Standard deviations that noise may exceed its mean by.
 const DEVIATIONS: f64 = 1.5;
 
 /// The budget of the goal `near` in a network of `count` moving points whose fairest takes `used`; none
@@ -91,7 +91,7 @@ pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
     Some(used + (T::from(share) - used) * foreign)
 }
 
-/// Whether the budget of a network lies between the fairest and the goal's own.
+/// True if the budget of a network is between that of the fairest and the goal's own.
 pub(crate) fn is_between(used: f64, count: usize) -> bool {
     let foreign = beyond(used, count) / FOREIGN;
     count >= FEWEST && foreign > 0.0 && foreign < 1.0
@@ -108,12 +108,12 @@ fn towards<T: Real>(from: T, least: f64, by: T) -> T {
     }
 }
 
-/// How far the points resolve nothing of what the measure does not have.
+/// Degree to which the points do not resolve what the measure lacks.
 fn strange_to<T: Real>(used: T, count: usize) -> T {
     (beyond(used, count) - STRANGE_SURFACE) / STRANGE_WIDTH
 }
 
-/// How far what the fairest takes of the squares is beyond what noise has, give or take its deviations.
+/// Excess of the squares of the fairest over those of noise and its deviations.
 fn beyond<T: Real>(used: T, count: usize) -> T {
     // The square of even noise has the mean 1/3 and the variance 4/45.
     let deviation = (0.8 / count.max(1) as f64).sqrt();
@@ -131,7 +131,7 @@ pub(crate) fn tightened<T: Real>(share: f64, used: T, count: usize) -> T {
     towards(foreign, STRANGE_BUDGET, strange_to(used, count))
 }
 
-/// How far the measure is none of the surface's: 0 where it may be, 1 where it is not.
+/// Degree to which the measure is not that of the surface, from 0 to 1.
 fn foreign_to<T: Real>(used: T, count: usize) -> T {
     let share = (beyond(used, count) - FOREIGN_SURFACE) / FOREIGN_WIDTH;
     if count < FEWEST || share.re() <= 0.0 {
@@ -163,7 +163,7 @@ const STRANGE_BUDGET: f64 = 0.05;
 /// The weight of data beside the measure of their own curve where the nearest of a shape is wanted.
 const CLOSEST: f64 = 1e6;
 
-/// How exactly budgets and shares are kept.
+/// Accuracy of budgets and shares.
 const GOAL_ACCURACY: f64 = 1e-7;
 
 /// The same where further solutions are quick.
@@ -179,7 +179,7 @@ const MOST_IDLE: usize = 3;
 /// So many residuals make each search worth saving.
 const MANY: usize = 200;
 
-/// How far the logarithm of the weight goes at once, as long as the goal is not between two weights.
+/// Steps of the logarithm of the weight until the goal is between two weights.
 const FIRST_STRIDE: f64 = 2.0;
 const LARGEST_STRIDE: f64 = 6.0;
 
@@ -204,20 +204,20 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub energy: E,
     /// The sum of squared residuals over tolerances.
     pub squares: S,
-    /// How many residuals these are.
+    /// The number of residuals.
     pub count: usize,
-    /// What rounding leaves of the measure.
+    /// The measure that rounding leaves.
     pub noise: f64,
     pub original: &'a [Vec3<f64>],
-    /// How the budget of `near` goes by what the fairest takes.
+    /// Dependence of the budget of `near` on the squares of the fairest.
     pub adapts: Adaptation,
     /// The optimum under the budget, nearly, where it is known.
     pub known: Option<BudgetOptimum>,
-    /// How far to move from an original that is the nearest of few control points; else it goes by the gain.
+    /// Fraction of the move from an original that is the nearest of few control points; else by the gain.
     pub moves: Option<f64>,
 }
 
-/// Whether the budget of `near` is the goal's own, or goes by what the fairest takes of the squares.
+/// Dependence of the budget of `near` on the squares of the fairest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Adaptation {
     /// The goal's own.
@@ -228,11 +228,11 @@ pub(crate) enum Adaptation {
     Network,
 }
 
-/// Where the way ended.
+/// The end of the path.
 #[derive(Clone)]
 pub(crate) struct GoalOptimum {
     pub optimum: Optimum,
-    /// How far the result is on the straight way from the original to the optimum of the weight.
+    /// Fraction of the straight path from the original to the optimum of the weight.
     pub share: f64,
     pub used: f64,
     pub least: f64,
@@ -240,7 +240,7 @@ pub(crate) struct GoalOptimum {
     /// The fairest, where it was looked for, and what it takes of the squares.
     pub fairest: Vec<Vec3<f64>>,
     pub fairest_used: f64,
-    /// Whether the budget hangs on what the fairest takes.
+    /// True if the budget depends on the squares of the fairest.
     pub between: bool,
 }
 
@@ -395,7 +395,7 @@ where
             found.share = share;
             Ok(found)
         };
-        // What should be met: a falling function of the weight's logarithm, negative when met.
+        // A falling function of the weight's logarithm, negative when the goal is met.
         let measured = |optimum: &Optimum| match goal {
             Goal::Fairest => -1.0,
             Goal::Budget(share) | Goal::Near(share) => {
@@ -624,7 +624,7 @@ pub(crate) fn check_decided(found: &GoalOptimum, solved: &Solved) -> Result<(), 
 /// The share of the data's own measure that is nothing.
 const NOTHING: f64 = 1e-9;
 
-/// What the derivatives of a result hang on.
+/// Variations of the data of a result.
 pub(crate) struct GoalVariation<'a, T: Real> {
     /// The originals, as they and the limits move.
     pub originals: Vec<Vec3<T>>,
@@ -638,9 +638,9 @@ pub(crate) struct GoalVariation<'a, T: Real> {
     pub forces: Vec<Vec3<T>>,
     /// The rows of the measure as they change.
     pub rows: &'a MovingRows<T>,
-    /// How the factors of the parts' conditions change.
+    /// Changes of the factors of the parts' conditions.
     pub bends: &'a [Bend<T>],
-    /// What the sum of squares may be, as it changes.
+    /// The bound on the sum of squares, as it changes.
     pub budget: T,
     /// The original itself, which the originals are but for what its limits' rows change by.
     pub start: &'a [Vec3<T>],

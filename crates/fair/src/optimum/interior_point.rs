@@ -39,7 +39,7 @@ const POLISHED: usize = 1000;
 /// The largest matrix of which the measure's share is kept beside the sum.
 const KEPT: usize = 1 << 24;
 
-/// How far inside a half-space the solution aims, as a share of its scale, so that rounding and the
+/// Distance inside a half-space that the solution aims at, relative to its scale, so that rounding and the
 /// last step cannot leave it.
 const INSIDE: f64 = 1e-9;
 
@@ -57,12 +57,12 @@ impl<const D: usize> Half<D> {
         self.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
     }
 
-    /// What the slack and the displacement are short of the room.
+    /// Residual of the slack at a displacement.
     fn rest(&self, x: &[V<D>]) -> f64 {
         self.room - self.at(x) - self.slack
     }
 
-    /// How stiff the measure is against a move of it, by the diagonal of its matrix: that of the point
+    /// Stiffness of the measure against a move of it, by the diagonal of its matrix: that of the point
     /// that moves it most.
     fn own_stiffness(&self, h: &[f64]) -> f64 {
         let stiffness = |(i, f): &(usize, V<D>)| h[*i] / dot(*f, *f).max(f64::MIN_POSITIVE);
@@ -81,6 +81,8 @@ impl<const D: usize> Half<D> {
 pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub p: &'a Problem,
     pub order: UnknownOrder,
+    /// Projections of unknowns on the directions in which they move.
+    held: Vec<(usize, [V<D>; D])>,
     pub measure: SparseRows,
     pub limit_rows: SparseRows,
     offsets: Vec<V<D>>,
@@ -89,7 +91,7 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     halves: Vec<Half<D>>,
     squares: Option<SquaresBound<D>>,
     pub x: Vec<V<D>>,
-    /// Where the search begins.
+    /// Start of the search.
     begin: Vec<V<D>>,
     /// Cones of the limits, then those of the lengths.
     pub cones: Vec<ConeScaling<D>>,
@@ -102,10 +104,10 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     refined: Option<f64>,
 }
 
-/// What a Newton step changes.
+/// A Newton step.
 struct NewtonDirection<const D: usize> {
     x: Vec<V<D>>,
-    /// What the complementarity of each cone should become.
+    /// The complementarity of each cone that is aimed at.
     goals: Vec<Pair<D>>,
     /// Slack and dual of each cone.
     u: Vec<Pair<D>>,
@@ -229,11 +231,14 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 begin[at as usize] = cut(v);
             }
         }
+        let unknown = |i: usize| Some(place[i]).filter(|&at| at != NONE).map(|at| at as usize);
         Self {
             p,
+            held: p.held.over(unknown),
             halves: p.halves.iter().map(half).collect(),
-            squares: p.squares.as_ref().map(|(rows, most)| {
-                SquaresBound::new(rows.renumbered(place), *most, order.unknowns)
+            squares: p.squares.as_ref().map(|(rows, offsets, most)| {
+                let offsets = offsets.iter().map(cut).collect();
+                SquaresBound::new(rows.renumbered(place), offsets, *most, order.unknowns)
             }),
             measure: p.measure.renumbered(place),
             limit_rows: p.bounds.rows.renumbered(place),
@@ -263,6 +268,20 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             self.base = Some(band.clone());
         }
         Ok(band)
+    }
+
+    /// Projects vectors of the unknowns on the directions in which these move.
+    pub fn project<T: Real>(&self, x: &mut [[T; D]]) {
+        for (at, rows) in &self.held {
+            let v = x[*at];
+            x[*at] = rows.map(|row| (0..D).fold(T::zero(), |sum, c| sum + v[c] * row[c]));
+        }
+    }
+
+    /// Factors the matrix, restricted to the directions in which the unknowns move.
+    pub fn factor(&self, band: &mut Band) {
+        band.restrict(&self.held);
+        band.factor();
     }
 
     fn add_measure(&self, band: &mut Band) {
@@ -399,7 +418,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             let towards = before.map(|d| (mu, &d.squares, d.x.as_slice()));
             squares.push(towards, &mut out.x);
         }
-        self.inverse(band, out.x.as_flattened_mut());
+        self.inverse(band, &mut out.x);
         // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
         out.nu = dense.solve(&self.conditions, &self.x, out.x.as_flattened_mut());
         for (c, cone) in self.cones.iter().enumerate() {
@@ -424,15 +443,17 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
 
     /// The system of the conditions' multipliers by the factored matrix.
     pub fn schur(&self, band: &Band) -> Schur {
-        Schur::new(&self.conditions, self.x.len(), &|y| self.inverse(band, y))
+        Schur::new(&self.conditions, self.x.len(), &|y| self.inverse(band, y.as_chunks_mut().0))
     }
 
     /// Solves with the factored matrix, in place.
-    fn inverse(&self, band: &Band, x: &mut [f64]) {
-        band.solve(x);
+    pub fn inverse(&self, band: &Band, x: &mut [V<D>]) {
+        self.project(x);
+        band.solve(x.as_flattened_mut());
         if let Some(squares) = &self.squares {
-            squares.correct(x);
+            squares.correct(x.as_flattened_mut());
         }
+        self.project(x);
     }
 
     /// The longest step along `d` that keeps all cones, at most 2.
@@ -520,6 +541,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         if let Some(squares) = &self.squares {
             gap += squares.certify(&self.x, &mut slope);
         }
+        self.project(&mut slope);
         let norm = |v: V<D>| {
             if p.bounds.separate { v.iter().map(|c| c.abs()).sum() } else { dot(v, v).sqrt() }
         };
@@ -543,6 +565,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 spread(&self.limit_rows, k, force, &mut slope);
             }
         }
+        self.project(&mut slope);
         for ((rest, x), reach) in slope.iter().zip(&self.x).zip(&self.reach) {
             let rest = dot(*rest, *rest).sqrt();
             gap += if rest == 0.0 { 0.0 } else { rest * (dot(*x, *x).sqrt() + reach) };
@@ -626,23 +649,23 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         }
     }
 
-    /// Whether a sum of squares is all that is weighed.
+    /// True if the objective is a sum of squares without a bound on another.
     fn of_squares(&self) -> bool {
         self.p.norm == RowNorm::Square && self.squares.is_none()
     }
 
-    /// Whether the last digits are worth a try: half-spaces keep those of the interior point.
+    /// True if the last digits can be polished: not under half-spaces.
     fn polished(&self) -> bool {
         self.of_squares() && self.halves.is_empty()
     }
 
-    /// Whether limits have forces of their own: of control points they are those of the slope.
+    /// True if limits have forces of their own: those of control points are the slope.
     fn bounds_data(&self) -> bool {
         let bounds = &self.p.bounds;
         !(bounds.direct && bounds.offsets.is_empty())
     }
 
-    /// Whether a polished solution is one.
+    /// True if a polished solution meets the accuracy.
     fn polished_to(&self, accuracy: f64, floor: f64, margin: f64) -> bool {
         let (value, gap) = self.certificate();
         // The margin is part of the gap: forces times what is not used of the limits.
@@ -748,8 +771,10 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 push(rows, k, side.map(|s| radii[k] * s));
             }
             self.assemble(&mut band);
-            band.factor();
+            self.factor(&mut band);
+            self.project(&mut right);
             band.solve_any(right.as_flattened_mut());
+            self.project(&mut right);
             if !self.conditions.is_empty() {
                 self.schur(&band).answer(values, right.as_flattened_mut());
             }
@@ -830,9 +855,14 @@ pub(crate) fn solve<const D: usize>(
         iterations += 1;
         state.cones.iter_mut().for_each(ConeScaling::scale);
         state.assemble(&mut band);
-        band.factor();
-        if let Some(squares) = &mut state.squares {
-            squares.factored(&band);
+        state.factor(&mut band);
+        if let Some(mut squares) = state.squares.take() {
+            squares.factored(|slope| {
+                state.project(slope);
+                band.solve(slope.as_flattened_mut());
+                state.project(slope);
+            });
+            state.squares = Some(squares);
         }
         let dense = state.schur(&band);
         state.direction(&band, &dense, 0.0, None, &mut affine);
@@ -854,7 +884,7 @@ pub(crate) fn solve<const D: usize>(
         let by = (longest * 0.99).min(1.0);
         state.step(&corrected, by);
         if by < STUCK {
-            // What is left is rounding.
+            // The rest is rounding.
             idle = MOST_ITERATIONS;
         }
         let missed = state.missed();

@@ -4,20 +4,24 @@ pub(crate) mod band;
 pub(crate) mod certificate;
 mod dual;
 pub(crate) mod goal;
+mod held;
 mod interior_point;
 mod polish;
 pub(crate) mod problem;
 mod schur;
 mod second_order_cone;
 mod squares_bound;
+pub(crate) mod ties;
 
 use crate::curve::condition::{AXES, across};
 use crate::curve::job::EndContinuity;
 use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, RowNorm, SparseRows};
+pub(crate) use held::HeldDirections;
 use moldloft_num::{Order, Real, Vec3};
 use problem::{NormBounds, Problem, V};
+use ties::Ties;
 
-/// What the tolerance is a bound on.
+/// The quantity that the tolerance bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// Each control point stays near its original place.
@@ -27,12 +31,12 @@ pub enum Bound {
     Bezier,
 }
 
-/// How to look for the optimum.
+/// Options of the optimum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptimumOptions {
     /// The measure to minimise.
     pub measure: Measure,
-    /// What the tolerance bounds.
+    /// The quantity that the tolerance bounds.
     pub bound: Bound,
     /// Conditions besides the ends.
     pub conditions: Vec<Condition>,
@@ -57,9 +61,12 @@ pub struct Optimum {
     pub certificate: Certificate,
     /// Newton steps taken.
     pub iterations: usize,
-    /// How many limits are reached: their multiplier outweighs their slack.
+    /// The number of limits that are reached.
     pub active: usize,
 }
+
+/// Reach of points without a tolerance, in extents.
+const FAR: f64 = 10.0;
 
 /// The gap, as a share of the measure, to which the weight of a budget is looked for.
 const WEIGHED: f64 = 1e-8;
@@ -97,6 +104,11 @@ impl MotionAxes {
             *o = v.dot(*a);
         }
         out
+    }
+
+    /// Directions in which points do not move, in the coordinates of the frame.
+    pub fn held(&self, directions: &[(usize, Vec3<f64>)]) -> HeldDirections {
+        HeldDirections::of(directions.iter().map(|&(i, d)| (i, self.down(d))).collect())
     }
 
     pub fn up(&self, v: V) -> Vec3<f64> {
@@ -153,7 +165,7 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
-    /// Whether it is known which limits are reached.
+    /// True if it is known which limits are reached.
     pub fn is_decided(&self) -> bool {
         self.solution.active.is_some()
     }
@@ -174,14 +186,14 @@ impl Solved {
 pub(crate) struct ControlInequality {
     pub entries: Vec<(usize, Vec3<f64>)>,
     pub most: f64,
-    /// Which of the caller's shape conditions asks for it.
+    /// Index of the caller's shape condition.
     pub owner: usize,
 }
 
 /// The number of a condition, and by how much its factors change, point by point.
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
 
-/// What the limits are about.
+/// The quantity that is limited.
 #[derive(Clone)]
 pub(crate) enum Bounded {
     /// Control points.
@@ -192,14 +204,14 @@ pub(crate) enum Bounded {
     Data(DataLimits),
 }
 
-/// How far data may be from the curve at their parameters.
+/// Limits of the distances of data from the curve at their parameters.
 #[derive(Clone)]
 pub(crate) struct DataLimits {
     /// The values at the data's parameters over the control points.
     pub rows: SparseRows,
     /// A radius per row.
     pub radii: Vec<f64>,
-    /// Where the original is off the data; none where it passes through them.
+    /// Distances of the original from the data; empty if it interpolates them.
     pub offsets: Vec<Vec3<f64>>,
     /// By how much each control point can move under these limits.
     pub reach: Vec<f64>,
@@ -211,13 +223,13 @@ pub(crate) struct BudgetOptimum {
     /// The weight of the squares beside the measure at which it is the least, too, nearly.
     pub weight: f64,
     pub optimum: Optimum,
-    /// Whether rounding leaves it the optimum; else it is within the limits and near it.
+    /// True if it is the optimum to rounding; else it is within the limits and near it.
     pub good: bool,
-    /// Which half-spaces are reached.
+    /// True for half-spaces that are reached.
     pub pressed: Vec<bool>,
 }
 
-/// What curves, nets and networks have in common.
+/// Data of the optimum of curves, nets and networks.
 #[derive(Clone)]
 pub(crate) struct Parts<'a> {
     pub points: &'a [Vec3<f64>],
@@ -227,17 +239,22 @@ pub(crate) struct Parts<'a> {
     pub measure: SparseRows,
     pub norm: RowNorm,
     pub frozen: Vec<bool>,
+    /// Directions in which single points do not move.
+    pub held: &'a [(usize, Vec3<f64>)],
+    /// Points that move together.
+    pub ties: Ties,
     pub conditions: Vec<Condition>,
-    /// Whether the measure sees points from their mean, as of rational splines.
+    /// True if the measure is relative to the mean of the points, as of rational splines.
     pub centred: bool,
-    /// How many of the conditions are not the caller's.
+    /// The number of conditions that are not the caller's.
     pub own: usize,
     pub bounded: Bounded,
     pub halves: Vec<ControlInequality>,
     /// A pull towards the data, beside the measure: rows that measure displacements.
     pub pull: Option<SparseRows>,
     pub accuracy: f64,
-    /// Where a search begins, as a displacement: strictly inside the limits. At the points themselves when empty.
+    /// Start of a search, as displacements strictly inside the limits, from the positions of ties; these
+    /// positions when empty.
     pub begin: Vec<Vec3<f64>>,
 }
 
@@ -266,6 +283,8 @@ impl<'a> Parts<'a> {
             measure: job.measure_rows(options.measure)?,
             norm: options.measure.norm(),
             frozen,
+            held: &[],
+            ties: Ties::default(),
             conditions,
             own,
             bounded: match options.bound {
@@ -288,6 +307,11 @@ impl<'a> Parts<'a> {
         Ok(self.solved(&frame, &problem, None)?.0)
     }
 
+    /// All equations, those of ties first.
+    pub fn equations(&self) -> Vec<Condition> {
+        self.ties.equations.iter().chain(&self.conditions).cloned().collect()
+    }
+
     /// The optimum beginning at the solution of a problem that differs little, and its own solution.
     pub fn solve_after(
         &self,
@@ -303,7 +327,7 @@ impl<'a> Parts<'a> {
     pub fn within(&self, pull: &SparseRows, most: f64) -> Result<Option<BudgetOptimum>, FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let mut problem = self.problem(&frame);
-        problem.squares = Some((pull.clone(), most));
+        problem.squares = Some((self.ties.rows(pull.clone()), self.pulled(pull, &frame), most));
         let solution = problem::solve(&problem, WEIGHED, 0.0, 0.0, None)?;
         let (weight, met) = (solution.weight, solution.misses.iter().all(|&miss| miss <= 1e-7));
         if !(weight.is_normal() && weight > 0.0 && met) {
@@ -419,7 +443,7 @@ impl<'a> Parts<'a> {
                 set.map_or(T::zero(), |c| tolerances[c] - T::from(tolerances[c].re()))
             })
             .collect();
-        // What is kept moves with the points; what is aimed at does not.
+        // Kept values move with the points; targets do not.
         let value = |(k, condition): (usize, &Condition)| {
             if k < self.own {
                 return T::zero();
@@ -479,7 +503,7 @@ impl<'a> Parts<'a> {
         let solution = problem::solve(problem, self.accuracy, floor, margin, before)?;
         let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
-        // What is not a number is missed.
+        // NaN is missed.
         let met = |k: usize| solution.misses[k] <= 1e-7;
         let missed: Vec<usize> = (0..count).filter(|&k| !met(k)).collect();
         if !missed.is_empty() {
@@ -528,19 +552,31 @@ impl<'a> Parts<'a> {
 
     fn moved(&self, frame: &MotionAxes, x: &[V]) -> Vec<Vec3<f64>> {
         let zero = |v: &V| v.iter().all(|&c| c == 0.0);
-        let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
-        self.points.iter().zip(x).map(place).collect()
+        let place = |(p, v): (Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
+        let begin = self.ties.shifted(self.points);
+        let each = begin.into_iter().enumerate();
+        each.map(|(i, p)| place((p, &x[self.ties.leader(i)]))).collect()
+    }
+
+    /// Values of rows that pull without a displacement; none without ties.
+    fn pulled(&self, pull: &SparseRows, frame: &MotionAxes) -> Vec<V> {
+        if self.ties.is_empty() {
+            return Vec::new();
+        }
+        (0..pull.len()).map(|k| frame.down(pull.apply(k, &self.ties.shift))).collect()
     }
 
     /// The problem in the frame of its motion.
     pub fn problem(&self, frame: &MotionAxes) -> Problem {
         let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
-        let rows = &self.measure;
+        let (rows, ties) = (&self.measure, &self.ties);
+        let (points, relative) = (ties.shifted(self.points), ties.shifted(&self.relative));
         let mut offsets: Vec<V> =
-            (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+            (0..rows.len()).map(|k| frame.down(rows.apply(k, &relative))).collect();
         let mut measure = rows.clone();
         if let Some(pull) = &self.pull {
             // Displacements begin at zero.
+            offsets.extend(self.pulled(pull, frame));
             offsets.resize(rows.len() + pull.len(), [0.0; 3]);
             measure = measure.joined(pull);
         }
@@ -549,10 +585,22 @@ impl<'a> Parts<'a> {
         let mut bounds = NormBounds { separate: frame.separate, ..NormBounds::none() };
         match &self.bounded {
             Bounded::ControlPoints => {
+                bounds.direct = ties.is_empty();
                 for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
-                    bounds.rows.push([(i, 1.0)]);
+                    bounds.rows.push([(ties.leader(i), 1.0)]);
                     bounds.radii.push(radii[i]);
+                    if !ties.is_empty() {
+                        bounds.offsets.push(frame.down(ties.shift(i)));
+                    }
                 }
+                if !bounds.radii.is_empty() {
+                    // Without a bound on some there is no certificate.
+                    let extent =
+                        FAR * points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
+                    reach.iter_mut().filter(|r| r.is_infinite()).for_each(|r| *r = extent);
+                }
+                // From the positions of ties the moves of leaders are twice their tolerances at most.
+                (0..ties.leader.len()).for_each(|i| reach[i] *= 2.0);
             }
             Bounded::Bezier(all, most) => {
                 bounds.direct = false;
@@ -582,15 +630,17 @@ impl<'a> Parts<'a> {
                 reach = data.reach.iter().map(|r| r * corner).collect();
             }
         }
+        let held = frame.held(self.held);
+        let moving = |entries: &[(usize, Vec3<f64>)]| -> Vec<(usize, V)> {
+            let free = entries.iter().filter(|(i, _)| !frozen[*i]);
+            ties.entries(free.map(|(i, f)| (*i, held.project(*i, frame.down(*f)))).collect())
+        };
         let conditions = self
             .conditions
             .iter()
-            .map(|c| {
-                let free = c.entries.iter().filter(|(i, _)| !frozen[*i]);
-                problem::EqualityConstraint {
-                    entries: free.map(|(i, f)| (*i, frame.down(*f))).collect(),
-                    value: c.value - c.at(self.points),
-                }
+            .map(|c| problem::EqualityConstraint {
+                entries: moving(&c.entries),
+                value: c.value - c.at(&points),
             })
             .collect();
         let mean = {
@@ -606,9 +656,8 @@ impl<'a> Parts<'a> {
             .halves
             .iter()
             .map(|h| {
-                let free = h.entries.iter().filter(|(i, _)| !frozen[*i]);
-                let entries: Vec<_> = free.map(|(i, f)| (*i, frame.down(*f))).collect();
-                let sum: f64 = h.entries.iter().map(|(i, f)| f.dot(self.points[*i])).sum();
+                let entries = moving(&h.entries);
+                let sum: f64 = h.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
                 let size = |v: &V| v.iter().map(|c| c * c).sum::<f64>().sqrt();
                 let scale = mean * entries.iter().map(|(_, f)| size(f)).sum::<f64>();
                 problem::InequalityConstraint { entries, room: h.most - sum, scale }
@@ -618,11 +667,12 @@ impl<'a> Parts<'a> {
             halves,
             squares: None,
             dimension: frame.axes.len(),
-            measure,
+            measure: ties.rows(measure),
             norm: self.norm,
             offsets,
             bounds,
-            frozen: self.frozen.clone(),
+            frozen: (0..n).map(|i| frozen[i] || ties.leader(i) != i).collect(),
+            held,
             conditions,
             reach,
             begin: self.begin.iter().map(|&v| frame.down(v)).collect(),

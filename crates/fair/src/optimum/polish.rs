@@ -20,7 +20,7 @@ const STIFF: f64 = 1e5;
 
 const MOST_ROUNDS: usize = 14;
 
-/// How stiff the measure is against a move of a limit's row: that of the point that moves it most.
+/// Stiffness of the measure against a move of a limit's row: that of the point that moves it most.
 fn own_stiffness(rows: &SparseRows, k: usize, h: &[f64]) -> f64 {
     let (columns, factors) = rows.row(k);
     let of = |(&c, &a): (&u32, &f64)| if a == 0.0 { 0.0 } else { h[c as usize] / (a * a) };
@@ -30,7 +30,7 @@ fn own_stiffness(rows: &SparseRows, k: usize, h: &[f64]) -> f64 {
 }
 
 impl<const D: usize> InteriorPointState<'_, D> {
-    /// What cone `c`'s row is, and its length.
+    /// The row of cone `c` and its length.
     fn limit(&self, c: usize, x: &[V<D>]) -> (V<D>, f64) {
         let (rows, k) = self.rows_of(c);
         let mut s: V<D> = std::array::from_fn(|i| self.p.bounds.offset(k)[i]);
@@ -67,7 +67,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
             let (rows, k) = self.rows_of(c as usize);
             add_block(band, rows, k, &w);
         }
-        band.factor();
+        self.factor(band);
     }
 
     /// Tries to end the solution at rounding; true when it did. Limits are aimed at `margin` less
@@ -121,13 +121,13 @@ impl<const D: usize> InteriorPointState<'_, D> {
                 spread(rows, k, n.map(|v| -push * v), &mut dx);
                 normals.push((n, off));
             }
-            // What the multipliers carry already, so that each round refines them.
+            // The force of the multipliers so far, so that each round refines them.
             for (condition, nu) in self.conditions.iter().zip(&nu) {
                 for (i, factor) in &condition.entries {
                     axpy(&mut dx[*i], -nu, *factor);
                 }
             }
-            band.solve(dx.as_flattened_mut());
+            self.inverse(band, &mut dx);
             if !self.conditions.is_empty() {
                 let more = self.schur(band).solve(&self.conditions, &x, dx.as_flattened_mut());
                 nu.iter_mut().zip(more).for_each(|(nu, more)| *nu += more);
@@ -255,7 +255,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
         let mut forces = vec![T::zero(); limits.len()];
         let mut nu = vec![T::zero(); self.conditions.len()];
         for _ in 0..5 {
-            // What is still unbalanced.
+            // The residual.
             let mut rest: Vec<[T; D]> = right.to_vec();
             for k in 0..self.measure.len() {
                 let e = apply(&self.measure, k, &x);
@@ -291,7 +291,9 @@ impl<const D: usize> InteriorPointState<'_, D> {
                     }
                 }
             }
+            self.project(&mut rest);
             band.solve_any(rest.as_flattened_mut());
+            self.project(&mut rest);
             let more = dense.answer(&left, rest.as_flattened_mut());
             nu.iter_mut().zip(more).for_each(|(nu, more)| *nu += more);
             let step = rest;

@@ -11,6 +11,7 @@
 //! cone program solvers"); the lengths' own unknowns t are eliminated row by row. Half-spaces C x <= d
 //! are kept with slacks of their own, which may begin outside.
 
+use crate::optimum::held::HeldDirections;
 use crate::optimum::interior_point::{self, InteriorPointState};
 use crate::optimum::second_order_cone::Pair;
 use crate::{FairError, RowNorm, SparseRows};
@@ -25,7 +26,7 @@ pub(crate) struct NormBounds {
     /// Each row is a single point, each point has at most one row.
     pub direct: bool,
     pub radii: Vec<f64>,
-    /// What is added to each row, shorter than its radius; none when empty.
+    /// Offsets of the rows, shorter than their radii; zero when empty.
     pub offsets: Vec<V>,
     /// Each coordinate is limited by itself.
     pub separate: bool,
@@ -38,7 +39,7 @@ impl NormBounds {
         Self { rows, direct: true, radii, offsets, separate: false }
     }
 
-    /// What row `k` begins with.
+    /// Offset of row `k`.
     pub fn offset(&self, k: usize) -> V {
         self.offsets.get(k).copied().unwrap_or_default()
     }
@@ -56,7 +57,7 @@ pub(crate) struct EqualityConstraint {
 pub(crate) struct InequalityConstraint {
     pub entries: Vec<(usize, V)>,
     pub room: f64,
-    /// What it varies by when points move by their tolerances.
+    /// Its variation when points move by their tolerances.
     pub scale: f64,
 }
 
@@ -72,13 +73,16 @@ pub(crate) struct Problem {
     pub bounds: NormBounds,
     /// Points that do not move.
     pub frozen: Vec<bool>,
+    /// Directions in which points do not move; factors of conditions and half-spaces have none there.
+    pub held: HeldDirections,
     pub conditions: Vec<EqualityConstraint>,
     pub halves: Vec<InequalityConstraint>,
-    /// SparseRows the sum of whose squares is at most a number.
-    pub squares: Option<(SparseRows, f64)>,
+    /// Rows with their values at no displacement (none when empty), the sum of whose squares is at most a
+    /// number.
+    pub squares: Option<(SparseRows, Vec<V>, f64)>,
     /// By how much each point can move at most, for the certificate.
     pub reach: Vec<f64>,
-    /// Where the search begins, strictly inside the bounds; at no displacement when empty.
+    /// Start of the search, strictly inside the bounds; no displacement when empty.
     pub begin: Vec<V>,
 }
 
@@ -96,7 +100,7 @@ pub(crate) struct CertifiedSolution {
     pub misses: Vec<f64>,
     /// By how much each half-space is left, relative to its own scale.
     pub outside: Vec<f64>,
-    /// Which half-spaces are reached: they resist more than the measure does.
+    /// True for half-spaces that are reached: they resist more than the measure does.
     pub pressed: Vec<bool>,
     /// Slacks and duals at the solution, for [`respond`].
     pub cones: Vec<(Pair<3>, Pair<3>)>,
@@ -120,7 +124,7 @@ pub(crate) struct Active {
 /// The place of a point that is not an unknown.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Which unknown each point is.
+/// The unknown of each point.
 pub(crate) struct UnknownOrder {
     /// Unknown number of each point, or [`NONE`].
     pub place: Vec<u32>,

@@ -32,7 +32,7 @@ pub(crate) struct ConeScaling<const D: usize> {
     eta: f64,
     /// W y = W^-1 u.
     middle: Pair<D>,
-    /// How far inside slack and dual are, squared.
+    /// Distances of slack and dual from the boundary, squared.
     inside: [f64; 2],
 }
 
@@ -191,7 +191,7 @@ impl<const D: usize> ConeScaling<D> {
         ((dt, de), (y0, y1))
     }
 
-    /// How far slack and dual can go along `du` and `dy` inside the cone, at most `step`.
+    /// The longest step of slack and dual along `du` and `dy` inside the cone, at most `step`.
     #[inline(always)]
     pub fn longest(&self, du: Pair<D>, dy: Pair<D>, mut step: f64) -> f64 {
         for (p, d, inside) in [(self.u, du, self.inside[0]), (self.y, dy, self.inside[1])] {
@@ -206,7 +206,7 @@ impl<const D: usize> ConeScaling<D> {
     }
 }
 
-/// How far `u` can go along `du` inside the cone, at most 2.
+/// The longest step of `u` along `du` inside the cone, at most 2.
 pub(crate) fn farthest<const D: usize>(u: Pair<D>, du: Pair<D>) -> f64 {
     // The first positive root of det(u + t du) = c + 2 b t + a t^2.
     let a = du.0 * du.0 - dot(du.1, du.1);

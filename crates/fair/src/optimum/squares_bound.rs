@@ -13,6 +13,8 @@ use crate::optimum::second_order_cone::{V, axpy, dot};
 /// A bound on a sum of squares over unknowns, with its slack and its force.
 pub(crate) struct SquaresBound<const D: usize> {
     rows: SparseRows,
+    /// Values of the rows without a displacement.
+    offsets: Vec<V<D>>,
     most: f64,
     slack: f64,
     pub force: f64,
@@ -23,7 +25,7 @@ pub(crate) struct SquaresBound<const D: usize> {
     bend: f64,
 }
 
-/// What a Newton step changes of a bound.
+/// Changes of a bound by a Newton step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BoundStep {
     slack: f64,
@@ -40,9 +42,19 @@ impl BoundStep {
 }
 
 impl<const D: usize> SquaresBound<D> {
-    pub fn new(rows: SparseRows, most: f64, unknowns: usize) -> Self {
+    pub fn new(rows: SparseRows, offsets: Vec<V<D>>, most: f64, unknowns: usize) -> Self {
         let zero = vec![[0.0; D]; unknowns];
-        Self { rows, most, slack: most, force: 0.0, slope: zero.clone(), answer: zero, bend: 0.0 }
+        let (slope, answer) = (zero.clone(), zero);
+        Self { rows, offsets, most, slack: most, force: 0.0, slope, answer, bend: 0.0 }
+    }
+
+    /// Row `k` at a displacement.
+    fn row_at(&self, k: usize, x: &[V<D>]) -> V<D> {
+        let mut r = apply(&self.rows, k, x);
+        if let Some(offset) = self.offsets.get(k) {
+            axpy(&mut r, 1.0, *offset);
+        }
+        r
     }
 
     fn sum_sq(&self, x: &[V<D>]) -> f64 {
@@ -64,7 +76,7 @@ impl<const D: usize> SquaresBound<D> {
         self.slope.fill([0.0; D]);
         let mut squares = 0.0;
         for k in 0..self.rows.len() {
-            let r = apply(&self.rows, k, x);
+            let r = self.row_at(k, x);
             squares += dot(r, r);
             spread(&self.rows, k, r.map(|c| 2.0 * c), &mut self.slope);
         }
@@ -83,10 +95,10 @@ impl<const D: usize> SquaresBound<D> {
         }
     }
 
-    /// Takes in the factored band.
-    pub fn factored(&mut self, band: &Band) {
+    /// Updates the rank-one term of the matrix by the inverse of its band.
+    pub fn factored(&mut self, inverse: impl FnOnce(&mut [V<D>])) {
         self.answer.copy_from_slice(&self.slope);
-        band.solve(self.answer.as_flattened_mut());
+        inverse(&mut self.answer);
         self.bend = self.slope.iter().zip(&self.answer).map(|(a, b)| dot(*a, *b)).sum();
     }
 
@@ -100,7 +112,7 @@ impl<const D: usize> SquaresBound<D> {
         }
     }
 
-    /// What the complementarity should change by: towards the centre `mu` with the second-order term of
+    /// The change of the complementarity that is aimed at: towards the centre `mu` with the second-order term of
     /// an earlier step, or to zero.
     fn goal(&self, towards: Option<(f64, &BoundStep)>) -> f64 {
         let taken = -self.slack * self.force;
@@ -132,7 +144,7 @@ impl<const D: usize> SquaresBound<D> {
         BoundStep { slack, force, along, square: self.sum_sq(x) }
     }
 
-    /// How far along a step slack and force stay positive, at most `step`.
+    /// The longest part of a step along which slack and force stay positive, at most `step`.
     pub fn longest(&self, d: &BoundStep, mut step: f64) -> f64 {
         if d.force < 0.0 {
             step = step.min(-self.force / d.force);
@@ -154,7 +166,7 @@ impl<const D: usize> SquaresBound<D> {
     pub fn certify(&self, x: &[V<D>], slope: &mut [V<D>]) -> f64 {
         let mut squares = 0.0;
         for k in 0..self.rows.len() {
-            let r = apply(&self.rows, k, x);
+            let r = self.row_at(k, x);
             squares += dot(r, r);
             spread(&self.rows, k, r.map(|c| 2.0 * self.force * c), slope);
         }

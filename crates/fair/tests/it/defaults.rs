@@ -208,6 +208,7 @@ fn hull(of: &dyn Fn(f64, f64) -> f64, noise: f64, seed: u64) -> (Vec<Vec3<f64>>,
             points: own,
             weights: None,
             marks: Vec::new(),
+            runs: Vec::new(),
             ends: [EndContinuity::Points(1); 2],
             at: Some(at),
         }

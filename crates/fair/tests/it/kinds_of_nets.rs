@@ -84,7 +84,7 @@ fn curves_still_meet_in_their_points() {
     }
     assert_eq!(net[0].trace(), Trace::Own([Some(Key(0)), Some(Key(6))]));
     assert_eq!(net[3].trace(), Trace::Own([None, None]));
-    let kept = vec![("keep", Value::text("ends"))];
+    let kept = vec![("kept_ends", Value::text("ends"))];
     let net = curves(call("FairNet", vec![lists(&points), number(2e-3)], kept).unwrap());
     assert_eq!(net[3].trace(), Trace::Own([Some(Key(21)), Some(Key(27))]));
 }
@@ -322,7 +322,7 @@ fn faults_of_networks_name_their_argument() {
     assert_eq!(fault(twice, vec![]), ("point-twice", Some(0), Some(0)));
     let stranger = vec![("breaks", list(&[60]))];
     assert_eq!(fault(Value::list([good.clone()]), stranger), ("not-a-parent", Some(3), Some(0)));
-    let keep = vec![("keep", Value::text("all"))];
+    let keep = vec![("kept_ends", Value::text("all"))];
     assert_eq!(fault(Value::list([good.clone()]), keep).0, "unknown-name");
     let along = vec![("along", Value::Vector(Vec3::zero()))];
     assert_eq!(fault(Value::list([good.clone()]), along), ("zero-direction", Some(5), None));

@@ -8,6 +8,7 @@ mod findings;
 mod fit;
 mod fixtures;
 mod grid;
+mod hulls;
 mod interrogate;
 mod joined;
 mod joins;

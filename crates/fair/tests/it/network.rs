@@ -156,6 +156,7 @@ fn a_network_moves_shared_points_once() {
         points,
         weights: None,
         marks: vec![],
+        runs: Vec::new(),
         ends: [EndContinuity::Points(2); 2],
     };
     let mut strands: Vec<_> = (0..NV)
@@ -306,6 +307,7 @@ fn uneven_stations_and_waterlines() {
                     points: own,
                     weights: None,
                     marks: Vec::new(),
+                    runs: Vec::new(),
                     ends: [EndContinuity::Points(0); 2],
                     at: (!index).then_some(at),
                 }
@@ -575,6 +577,7 @@ fn lines_and_stations(data: &[Vec3<f64>], n: usize, radii: Vec<f64>) -> Network 
         points,
         weights: None,
         marks: Vec::new(),
+        runs: Vec::new(),
         ends: [EndContinuity::Points(0); 2],
     };
     let stations = (0..m).map(|i| curve((0..n).map(|j| i * n + j).collect()));

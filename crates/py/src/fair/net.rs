@@ -6,9 +6,10 @@ use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::{Spline, spacing};
 use crate::arrays;
 use moldloft::fair::{
-    Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure,
-    NETWORK_BUDGET, Network, NetworkCurve, NetworkMode, NetworkReport, ParameterSpacing, PatchNet,
-    SURFACE_BUDGET, Seam, Space, fair_grid, grid_parameters, grid_spacing, parameters_across,
+    Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure, Motion,
+    NETWORK_BUDGET, NamedCurves, Network, NetworkCondition, NetworkCurve, NetworkMode,
+    NetworkReport, ParameterSpacing, PatchNet, SURFACE_BUDGET, Seam, Space, fair_grid,
+    grid_parameters, grid_spacing, one_way, parameters_across,
 };
 use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -27,7 +28,7 @@ type Option1<'py> = Option<PyReadonlyArray1<'py, f64>>;
 
 impl Net {
     fn network(&self, radii: Vec<f64>) -> PyResult<Network> {
-        let limit = Limit::new(moldloft::fair::Motion::Ball, radii).map_err(fair_error)?;
+        let limit = Limit::new(Motion::Ball, radii).map_err(fair_error)?;
         let (spaces, points) = (self.spaces.clone(), self.points.clone());
         Network::net(spaces, points, self.weights.clone(), limit).map_err(fair_error)
     }
@@ -136,7 +137,7 @@ impl Net {
             let nv = self.spaces[1].count();
             network.strands.rotate_left(nv);
         }
-        let (reported, points) = solved(py, network, &options)?;
+        let (reported, points) = solved(py, network, &options, &[])?;
         let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
         Ok((Self { spaces, points, weights }, reported))
     }
@@ -251,7 +252,7 @@ impl Net {
             }
         }
         let network = Network::joined(&sheets, &seams).map_err(fair_error)?;
-        let (reported, points) = solved(py, network.clone(), &options)?;
+        let (reported, points) = solved(py, network.clone(), &options, &[])?;
         let net = |(k, old): (usize, &PyRef<'_, Net>)| Self {
             spaces: old.spaces.clone(),
             points: network.sheet(k, &points),
@@ -308,22 +309,31 @@ impl Web {
         let mut strands = Vec::new();
         let word: String = get(&options, "spacing")?;
         let spaced = spacing(&word, get(&options, "spacing_direction")?)?;
+        let names: Vec<String> = get(&options, "names")?;
+        let lists: Vec<(Vec<usize>, bool)> =
+            self.curves.iter().map(|c| (c.0.clone(), c.1)).collect();
+        let named = NamedCurves { curves: &lists, names: &names };
+        let held: Vec<(usize, [f64; 3])> = get(&options, "held")?;
+        let held: Vec<(usize, Vec3)> = held.into_iter().map(|(i, d)| (i, d.into())).collect();
         for (k, (own, closed, marks)) in self.curves.iter().enumerate() {
             let form = if *closed { "closed" } else { "floating" };
             let space = space(self.degree, own.len(), form, None, None)
-                .map_err(|e| refused(format!("curve {}: {e}", k + 1)))?;
+                .map_err(|e| refused(format!("{}: {e}", named.name(k))))?;
             strands.push(NetworkCurve {
                 space,
                 points: own.clone(),
                 weights: None,
                 marks: marks.clone(),
+                runs: Vec::new(),
                 ends: [EndContinuity::Points(1); 2],
                 at: match spaced {
                     ParameterSpacing::Uniform => None,
                     spaced => {
                         let list: Vec<Vec3> = own.iter().map(|&i| self.points[i]).collect();
                         let radii: Vec<f64> = own.iter().map(|&i| limit.radii[i]).collect();
-                        let limits = (motion, &radii[..]);
+                        // Chords are measured across the way in which the curve's own points move.
+                        let way = one_way(motion, &held, own);
+                        let limits = (way.map_or(motion, Motion::Along), &radii[..]);
                         let at =
                             parameters_across(&list, spaced, *closed, limits).or_else(|error| {
                                 match error {
@@ -341,18 +351,24 @@ impl Web {
                                     error => Err(error),
                                 }
                             });
-                        Some(at.map_err(|e| refused(format!("curve {}: {e}", k + 1)))?)
+                        Some(at.map_err(|e| refused(format!("{}: {e}", named.name(k))))?)
                     }
                 },
             });
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
         network.kept = get(&options, "fixed")?;
-        for (point, across) in get::<Vec<(usize, [f64; 3])>>(&options, "held")? {
-            network.hold(point, Vec3::from(across)).map_err(fair_error)?;
-        }
+        let mut network = network.with_held(held).map_err(fair_error)?;
         network.bound = bound(&get::<String>(&options, "bound")?)?;
-        let (reported, points) = solved(py, network.clone(), &options)?;
+        let (wanted, labels) = network_conditions(&network, named, &options)?;
+        if !wanted.is_empty() {
+            network = network.with_conditions(wanted).map_err(|e| shape_error(e, &labels))?;
+        }
+        let (reported, points) = solved(py, network.clone(), &options, &labels)?;
+        // What was released has no place to be far from.
+        for i in get::<Vec<usize>>(&options, "release")? {
+            network.points[i] = points[i];
+        }
         let pair = |k: usize| -> PyResult<PairOfCurves> {
             let pair = network.curve_pair(k, &points).map_err(fair_error)?;
             let far = pair.deviation().map_err(fair_error)?;
@@ -365,10 +381,64 @@ impl Web {
     }
 }
 
+/// What a network has to have, and how each condition is called.
+fn network_conditions(
+    network: &Network,
+    named: NamedCurves<'_>,
+    options: &Bound<'_, PyDict>,
+) -> PyResult<(Vec<NetworkCondition>, Vec<String>)> {
+    let (mut wanted, mut labels) = (Vec::new(), Vec::new());
+    for text in get::<Vec<String>>(options, "shape")? {
+        for condition in NetworkCondition::read(&text, named).map_err(refused)? {
+            labels.push(match &condition {
+                NetworkCondition::Curve { curve, .. } | NetworkCondition::Tangent { curve, .. } => {
+                    let name = named.name(*curve);
+                    if text.starts_with(&format!("{name}: ")) {
+                        text.clone()
+                    } else {
+                        format!("{text} ({name})")
+                    }
+                }
+                _ => text.clone(),
+            });
+            wanted.push(condition);
+        }
+    }
+    for word in get::<Vec<String>>(options, "keep")? {
+        let way = match network.limit.motion {
+            Motion::Along(way) => Some(way),
+            _ => None,
+        };
+        let kept = NetworkCondition::kept(&word, way).ok_or_else(|| {
+            refused(format!("`{word}` of a network cannot be kept; what can: volume, centroid"))
+        })?;
+        wanted.push(kept);
+        labels.push(format!("keep {word}"));
+    }
+    Ok((wanted, labels))
+}
+
+/// A fault of conditions with their names.
+fn shape_error(error: FairError, labels: &[String]) -> PyErr {
+    let name = |k: &usize| labels.get(*k).map_or("a condition", String::as_str);
+    match error {
+        FairError::Shapeless { shape, why } => refused(format!("{}: {why}", name(&shape))),
+        FairError::Shape { shapes, miss } => {
+            let all: Vec<&str> = shapes.iter().map(name).collect();
+            refused(format!(
+                "no network with these shapes was found within the tolerances (missed by {miss:.3e}): {}",
+                all.join("; ")
+            ))
+        }
+        other => fair_error(other),
+    }
+}
+
 fn solved<'py>(
     py: Python<'py>,
     network: Network,
     options: &Bound<'py, PyDict>,
+    shapes: &[String],
 ) -> PyResult<(Bound<'py, PyDict>, Vec<Vec3>)> {
     let measure = measure(&get::<String>(options, "measure")?)?;
     let mode: String = get(options, "mode")?;
@@ -409,7 +479,7 @@ fn solved<'py>(
         (Err(FairError::Contradiction { conditions, ends, miss }), owners) => {
             return Err(contradiction(&conditions, ends, miss, &owners, &labels));
         }
-        (Err(other), _) => return Err(fair_error(other)),
+        (Err(other), _) => return Err(shape_error(other, shapes)),
     };
     let dict = dictionary(py, &reported)?;
     Ok((dict, reported.points))
@@ -424,6 +494,7 @@ fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, Py
     dict.set_item("certified", r.certified)?;
     dict.set_item("sampled", r.sampled)?;
     dict.set_item("used", r.used)?;
+    dict.set_item("bent", &r.bent)?;
     dict.set_item("certificate", certificate(py, &r.certificate)?)?;
     Ok(dict)
 }

@@ -400,6 +400,18 @@ pub fn line_findings(
     Ok(found.into_iter().map(|(line, f)| (line, told_of(&points, f))).collect())
 }
 
+/// The knuckles among these findings as what lines share: of each the line that turns and its point.
+#[pyfunction]
+pub fn shared_knuckles(
+    points: PyReadonlyArray2<'_, f64>,
+    lines: Vec<(Vec<usize>, bool)>,
+) -> PyResult<Vec<(usize, usize)>> {
+    let points = vectors(&points)?;
+    check_lines(&points, &lines)?;
+    let found = moldloft::fair::line_findings(&points, &lines, &[]);
+    Ok(moldloft::fair::shared_knuckles(&lines, &found))
+}
+
 /// True if the points between breaks are exact; see `moldloft::fair::is_exact`.
 #[pyfunction]
 pub fn is_exact(

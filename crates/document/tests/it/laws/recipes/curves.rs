@@ -158,7 +158,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             format!("{{{points}}}, {tolerance}, {words}, closed = {}", u8::from(closed))
         }
         "FairNet" => {
-            let words = ["", ", keep = \"ends\"", ", mode = \"faithful\""][p.random.below(3)];
+            let words = ["", ", kept_ends = \"ends\"", ", mode = \"faithful\""][p.random.below(3)];
             format!("{}{words}", net(p))
         }
         "FairPatches" => super::surfaces::patches(p),

@@ -1,0 +1,98 @@
+//! Reports of the fairing of networks.
+
+use crate::optimum::certificate::gap;
+use crate::{Bound, Certificate, Condition, FairError, Goal, Measure, Network};
+use moldloft_num::Vec3;
+
+/// Report of the fairing of a network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkReport {
+    /// The faired points.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure over all curves, before and after.
+    pub measure: [f64; 2],
+    /// Sum of squared jumps over all curves, before and after.
+    pub jumps: [f64; 2],
+    /// No point of the surface (or control point of a network) moved farther.
+    pub certified: f64,
+    /// The largest distance found by sampling.
+    pub sampled: f64,
+    /// The measure and the optimality gap within the limits.
+    pub certificate: Certificate,
+    /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
+    pub used: f64,
+    /// Curves with more inflections than their points within the tolerances require, under the goal
+    /// [`Goal::Near`]: conditions or crossing curves leave no others.
+    pub bent: Vec<usize>,
+}
+
+/// Method of fairing a network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NetworkMode {
+    /// All curves at once, with a ball round each point, towards a goal.
+    Toward(Goal),
+    /// All curves at once: the fairest.
+    Joint(Bound),
+    /// All curves at once by so many sweeps over single points.
+    Sweeps(usize),
+    /// Curve after curve: so many passes of so many steps per point.
+    Passes(usize, usize),
+}
+
+impl Network {
+    /// Fairs and reports.
+    ///
+    /// # Errors
+    /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
+    pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
+        self.report_with(measure, mode, Vec::new())
+    }
+
+    /// The same under linear conditions, which the joint optimum alone can keep.
+    ///
+    /// # Errors
+    /// As [`Network::report`].
+    pub fn report_with(
+        &self,
+        measure: Measure,
+        mode: NetworkMode,
+        conditions: Vec<Condition>,
+    ) -> Result<NetworkReport, FairError> {
+        let (mut used, mut bent) = (f64::NAN, Vec::new());
+        let (points, certificate) = match mode {
+            NetworkMode::Toward(goal) => {
+                let (found, own) = self.reached(measure, goal, conditions, 1e-9)?;
+                (used, bent) = (found.used, own);
+                (found.optimum.points, found.optimum.certificate)
+            }
+            NetworkMode::Joint(bound) => {
+                let best = self.optimum(measure, bound, conditions, 1e-9)?;
+                (best.points, best.certificate)
+            }
+            NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,
+            NetworkMode::Passes(passes, steps) => {
+                let points = self.passes(passes, steps)?;
+                let rows = self.rows(measure)?;
+                let relative = self.relative(&points);
+                let frozen = vec![false; points.len()];
+                let norm = measure.norm();
+                let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
+                (points, left)
+            }
+        };
+        let all = 0..self.strands.len();
+        let both = |m: Measure| -> Result<[f64; 2], FairError> {
+            Ok([self.value(m, all.clone(), &self.points)?, self.value(m, all.clone(), &points)?])
+        };
+        Ok(NetworkReport {
+            measure: both(measure)?,
+            jumps: both(Measure::Jumps)?,
+            certified: self.certified(&points),
+            sampled: self.sampled(&points),
+            certificate,
+            used,
+            bent,
+            points,
+        })
+    }
+}

@@ -1,0 +1,230 @@
+"""Networks with conditions: shapes, knuckles, releases, motions and tolerances of curves."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from moldloft import FairingError
+from moldloft.fairing import network
+
+X = np.linspace(0, 12, 13)
+Z = np.linspace(0, 3, 9)
+NOISE = 0.02
+
+
+def hull(x, z):
+    """A hull with a parallel body from 4 to 8 and a flat side from 1.5 on."""
+    out = np.maximum(np.maximum(4 - x, x - 8), 0) / 4
+    section = 2 - 1.5 * np.maximum(1.5 - z, 0) ** 2 / 2.25
+    return section * (1 - 0.8 * out**2.5)
+
+
+def table(of=hull, seed=0, noise=NOISE):
+    """The points of a table, its curves and their names, and the exact offsets."""
+    x, z = np.meshgrid(X, Z, indexing="ij")
+    exact = of(x, z)
+    y = exact + np.random.default_rng(seed).uniform(-noise, noise, x.shape)
+    at = np.arange(x.size).reshape(x.shape)
+    names = [f"station {k}" for k in range(len(X))] + [f"WL {k}" for k in range(len(Z))]
+    return np.stack([x, y, z], -1).reshape(-1, 3), [*at.tolist(), *at.T.tolist()], names, exact
+
+
+def offsets(faired):
+    return faired.points[:, 1].reshape(len(X), len(Z))
+
+
+BODY = "WL 0..WL 8 at station 4..station 8: straight:1,0,0"
+SIDE = "WL 5..WL 8 at station 4..station 8: flat:0,1,0"
+
+
+def test_parallel_bodies_and_flats_are_exact():
+    points, curves, names, exact = table()
+    made = network(points, curves, NOISE, names=names, motion=(0, 1, 0), shape=[BODY, SIDE])
+    y = offsets(made)
+    assert np.ptp(y[4:9], axis=0).max() <= 1e-9
+    assert np.ptp(y[4:9, 5:]) <= 1e-9
+    assert np.abs(made.points - points).max() <= NOISE * (1 + 1e-12)
+    # The curves, too, and what follows leaves them along their tangents.
+    for k, name in enumerate(names[13:]):
+        assert name == f"WL {k}"
+        curve = made.curves[13 + k]
+        samples = curve.at(np.linspace(0, 1, 1201))
+        inside = (samples.points[:, 0] > 4) & (samples.points[:, 0] < 8)
+        assert np.abs(samples.points[inside, 1] - y[4, k]).max() <= 1e-9
+        slopes = samples.first[:, 1] / samples.first[:, 0]
+        assert np.abs(np.diff(slopes)).max() < 0.05
+    plain = network(points, curves, NOISE, names=names, motion=(0, 1, 0))
+
+    def rms(y):
+        return np.sqrt(((y - exact) ** 2).mean())
+
+    assert rms(y) < rms(offsets(plain)) < rms(points[:, 1].reshape(exact.shape))
+
+
+def test_conditions_that_cannot_hold_are_named():
+    points, curves, names, _ = table()
+    options = {"names": names, "motion": (0, 1, 0)}
+    for shape, said in (
+        ("WL 3: straight:1,0,0", "WL 3: straight:1,0,0"),
+        ("WL 9: convex", "WL 9"),
+        ("WL 3: round", "convex=4-10"),
+        ("WL 3: straight=2-40", "WL 3"),
+        ("WL 3: pieces=2", "single curves"),
+        ("WL 2: tangent=start:0,0,0", "direction"),
+        ("station 2 at WL 0..WL 4: flat:1,0.1,0", "station 2"),
+    ):
+        with pytest.raises(FairingError) as caught:
+            network(points, curves, NOISE, shape=[shape], **options)
+        assert said in str(caught.value), (shape, str(caught.value))
+    with pytest.raises(FairingError, match="names of curves"):
+        network(points, curves, NOISE, names=names[1:])
+    with pytest.raises(FairingError, match="WL 0"):
+        network(points, [*curves[:13], curves[13][:4]], NOISE, names=names[:14])
+    with pytest.raises(FairingError, match="direction"):
+        network(points, curves, NOISE, names=names, keep="volume")
+
+
+def test_signs_hold_all_along_curves():
+    # Waterlines that fall to both ends turn to the right as x rises.
+    points, curves, names, _ = table(lambda x, z: 1.5 - 0.004 * (x - 6) ** 2 + 0.1 * z)
+    options = {"names": names, "motion": (0, 1, 0), "goal": ("budget", 0.2)}
+    plain = network(points, curves, NOISE, **options)
+    made = network(points, curves, NOISE, shape="WL 0..WL 8: concave", **options)
+    one_way = network(points, curves, NOISE, shape="WL 0..WL 8: one-way", **options)
+
+    def turns(faired):
+        return [c.curvature(np.linspace(0, 1, 301)) for c in faired.curves[13:]]
+
+    assert max(k.max() for k in turns(plain)) > 1e-4
+    for held in (made, one_way):
+        assert max(k.max() for k in turns(held)) <= 1e-9
+    with pytest.raises(FairingError, match=r"WL 4: convex"):
+        network(points, curves, NOISE, shape="WL 4: convex", **options)
+
+
+def test_the_displacement_and_its_centroid_stay():
+    points, curves, names, _ = table()
+
+    def moments(y):
+        area = np.array([CubicSpline(Z, row).integrate(0, 3) for row in y])
+        high = np.array([CubicSpline(Z, row * Z).integrate(0, 3) for row in y])
+        volume = CubicSpline(X, area).integrate(0, 12)
+        return volume, CubicSpline(X, area * X).integrate(0, 12) / volume, high.sum()
+
+    before = moments(points[:, 1].reshape(len(X), len(Z)))
+    options = {"names": names, "motion": (0, 1, 0), "goal": "fairest", "fixed": "none"}
+    free = moments(offsets(network(points, curves, NOISE, **options)))
+    kept = moments(offsets(network(points, curves, NOISE, keep="volume", **options)))
+    both = network(points, curves, NOISE, keep=["volume", "centroid"], **options)
+    assert abs(free[0] - before[0]) > 1e-4
+    assert abs(kept[0] - before[0]) < 1e-9
+    assert np.abs(np.subtract(moments(offsets(both))[:2], before[:2])).max() < 1e-9
+
+
+def test_tolerances_of_curves():
+    points, curves, names, _ = table()
+    options = {"names": names, "motion": (0, 1, 0), "goal": "fairest"}
+    made = network(points, curves, {"WL 3": 0.001, "": NOISE}, **options)
+    moved = np.abs(made.points - points)[:, 1].reshape(len(X), len(Z))
+    assert moved[:, 3].max() <= 0.001 * (1 + 1e-12) < moved[:, 4].max()
+    with pytest.raises(FairingError, match="all other curves"):
+        network(points, curves, {"WL 3": 0.001}, **options)
+    with pytest.raises(FairingError, match="WL 12"):
+        network(points, curves, {"WL 12": 0.001, "": 1}, **options)
+
+
+def test_released_points_count_in_no_distance():
+    points, curves, names, exact = table()
+    wrong = 6 * len(Z) + 4
+    points[wrong, 1] += 1.0
+    options = {"names": names, "motion": (0, 1, 0)}
+    made = network(points, curves, NOISE, release=[wrong], **options)
+    assert made.deviation_sampled <= NOISE * (1 + 1e-12)
+    assert abs(made.points[wrong, 1] - exact[6, 4]) < NOISE
+    assert made.released == (wrong,)
+    assert any(f"point {wrong + 1} was released" in note for note in made.notes)
+    found = network(points, curves, NOISE, release="auto", **options)
+    assert found.released == (wrong,)
+    assert (found.points == made.points).all()
+
+
+def chined(x, z):
+    """A hull with a chine at the fifth waterline."""
+    fore, up = 1 - 0.5 * (x / 12) ** 2, z - Z[4]
+    return fore * (1 + np.where(up < 0, 0.6, 0.1) * up - 0.02 * up**2)
+
+
+def test_knuckles_are_shared_along_a_curve():
+    points, curves, names, exact = table(chined, noise=0.004)
+    options = {"names": names, "motion": (0, 1, 0)}
+    made = network(points, curves, 0.004, breaks="auto", **options)
+    named = network(points, curves, 0.004, breaks=["WL 4"], **options)
+    assert (made.points == named.points).all()
+    # The chine itself is faired, and the stations turn in it.
+    chine = offsets(made)[:, 4] - exact[:, 4]
+    assert np.abs(offsets(made)[1:-1, 4] - points[:, 1].reshape(exact.shape)[1:-1, 4]).max() > 0
+    assert np.abs(chine).max() <= 0.008
+    curve = made.curves[6]
+    samples = curve.at(np.linspace(0, 1, 2001))
+    slope = samples.first[:, 1] / samples.first[:, 2]
+    assert np.abs(np.diff(slope)).max() > 0.2
+    plain = network(points, curves, 0.004, **options)
+
+    def rms(result):
+        return np.sqrt(((offsets(result) - exact) ** 2).mean())
+
+    assert rms(made) < rms(plain)
+
+
+def test_cells_without_a_hull_end_curves():
+    points, curves, names, _ = table()
+    # A tunnel through the middle of the lowest waterlines.
+    gap = [6 * len(Z), 6 * len(Z) + 1, 7 * len(Z)]
+    points[gap] = np.nan
+    made = network(points, curves, NOISE, names=names, motion=(0, 1, 0))
+    assert np.isnan(made.points[gap]).all()
+    assert np.isfinite(np.delete(made.points, gap, axis=0)).all()
+    used = {i for own in made.lists for i in own}
+    assert used.isdisjoint(gap)
+    assert {"WL 0, part 1", "WL 0, part 2", "WL 2", "station 6"} <= set(made.names)
+    assert made.deviation_sampled <= NOISE * (1 + 1e-12)
+
+
+def test_curves_in_space_move_in_directions_of_their_own():
+    points, curves, names, _ = table()
+    rng = np.random.default_rng(3)
+    sheer = np.c_[X, 2.2 - 0.03 * (X - 5) ** 2, 3.4 + 0.01 * (X - 7) ** 2]
+    sheer[:, 1:] += rng.uniform(-NOISE, NOISE, (len(X), 2)) / 2
+    base = len(points)
+    points = np.vstack([points, sheer])
+    curves = [[*own, base + k] if k < len(X) else own for k, own in enumerate(curves)]
+    curves.append(list(range(base, base + len(X))))
+    names = [*names, "sheer"]
+    made = network(
+        points, curves, NOISE, names=names, fixed="none",
+        motion={"": (0, 1, 0), "sheer": ("across", (1, 0, 0))},
+    )  # fmt: skip
+    moved = made.points - points
+    assert np.abs(moved[:, 0]).max() <= 1e-12
+    assert np.abs(moved[:base, 2]).max() <= 1e-12 < np.abs(moved[base:, 2]).max()
+    assert np.linalg.norm(moved, axis=1).max() <= NOISE * (1 + 1e-12)
+    diagonal = network(
+        points, curves, NOISE, names=names, motion={"": (0, 1, 0), "sheer": (0, 0.6, 0.8)}
+    )
+    moved = diagonal.points - points
+    assert np.abs(np.cross(moved[base:], [0, 0.6, 0.8])).max() <= 1e-12
+    assert np.abs(moved[:base, [0, 2]]).max() <= 1e-12
+
+
+def test_the_tolerance_file_of_a_network(cli, tmp_path):
+    points, curves, _, _ = table()
+    blocks = ["\n".join(",".join(map(repr, points[i].tolist())) for i in own) for own in curves]
+    (tmp_path / "hull.csv").write_text("\n\n".join(blocks) + "\n")
+    (tmp_path / "tol.txt").write_text("0.02\n" * len(points))
+    (tmp_path / "short.txt").write_text("0.02\n" * 7)
+    cli("fair", tmp_path / "hull.csv", "--tol", tmp_path / "tol.txt", "--along", "0,1,0")
+    error = cli(
+        "fair", tmp_path / "hull.csv", "--tol", tmp_path / "short.txt", "--along", "0,1,0", status=1
+    ).stderr
+    assert "117 tolerances" in error
+    assert "234" in error
