@@ -206,8 +206,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="shape of the curve: convex, concave, one-way (no inflection), straight, arc, for the "
         "whole curve or between two points (arc=9-15; straight=1-9:0,1 in a direction); "
         "pieces=K of monotone curvature; within=X,Y:MAX; side=X,Y; repeatable; of a network behind "
-        "the name of a curve, `waterline 2: straight=3-9`, or of several, `waterline 2..waterline 5 "
-        "at station 4..station 8: flat`",
+        "the name of a curve, `waterline 2: straight=3-9`, or of several, "
+        "`waterline 2..waterline 5 at station 4..station 8: flat`",
     )
     parser.add_argument(
         "--release",
