@@ -205,9 +205,9 @@ def _build(
         inexact: list[Any] = []
         folder = Path("." if options.output == "-" else options.output)
         stem = stem_of(options) if options.to else ""
-        names = list(dict.fromkeys(options.to))
-        for number, name in enumerate(names):
-            progress.stage("writing", name, number / len(names))
+        chosen = list(dict.fromkeys(options.to))
+        for number, name in enumerate(chosen):
+            progress.stage("writing", name, number / len(chosen))
             path = folder / file_name(stem, name)
             row = formats()[name]
             lids = options.lids and row.lids
