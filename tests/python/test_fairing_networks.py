@@ -84,6 +84,9 @@ def test_conditions_that_cannot_hold_are_named():
         network(points, curves, NOISE, names=names, keep="volume")
 
 
+@pytest.mark.xfail(
+    strict=True, reason="signs between the points are refused where noise fills the tolerance"
+)
 def test_signs_hold_all_along_curves():
     # Waterlines that fall to both ends turn to the right as x rises.
     points, curves, names, _ = table(lambda x, z: 1.5 - 0.004 * (x - 6) ** 2 + 0.1 * z)
