@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Any
 from moldloft import _core
 from moldloft.adapted import Adapted
 from moldloft.arguments import explain, names_of
+from moldloft.derivatives import Differentiable
 from moldloft.errors import Error, ModelError, UnknownNameError
 from moldloft.floating import Floating
 from moldloft.objects import object_of, wrapped
 from moldloft.writing import Writable
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from moldloft.blocks import Blocks
     from moldloft.loading import Origin
     from moldloft.mesh import Mesh
@@ -71,7 +69,7 @@ class Solution:
     """Steps of the search."""
 
 
-class Model(Floating, Writable, Adapted):
+class Model(Differentiable, Floating, Writable, Adapted):
     """A model: named objects that depend on each other, and the text that declares them.
 
     ``m["beam"]`` is a parameter's value and ``m["hull"]`` an object; ``m["beam"] = 4.5`` changes
@@ -705,130 +703,6 @@ class Model(Floating, Writable, Adapted):
         from moldloft.blocks import Blocks
 
         return Blocks(self._document.blocks(), self.symmetry, self.units.length)
-
-    def block_jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
-        """Exact derivatives of every vertex of :meth:`blocks`, ``(n, 3, len(by))``.
-
-        Parameters
-        ----------
-        by
-            Parameters, or literals such as ``"P21.x"``.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape ``(n, 3, len(by))``: the change of each vertex per unit of each parameter.
-
-        Raises
-        ------
-        UnknownNameError
-            If there is no such parameter or number.
-        ModelError
-            See :meth:`blocks`.
-        """
-        return self._document.block_jacobian(names_of(by))
-
-    def jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
-        """Exact derivatives of every mesh vertex.
-
-        Parameters
-        ----------
-        by
-            Parameters, or literals of objects such as ``"P21.y"``.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape ``(vertices, 3, len(by))``.
-
-        Raises
-        ------
-        UnknownNameError
-            If there is no such parameter or number.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float beam = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint C(0, beam, 0);
-        ... AbsPoint B(1, 0, 0); AbsPoint D(1, beam, 0);
-        ... Line a(A, B); Line b(C, D);
-        ... RuledSurf plate(a, b, divisions = {1, 1});
-        ... ''')
-        >>> m.jacobian(["beam"]).shape
-        (4, 3, 1)
-        >>> float(m.jacobian(["beam"])[:, 1, 0].sum())
-        2.0
-        """
-        return self._document.jacobian(names_of(by))
-
-    def derivative(self, expression: str, by: str) -> Any:
-        """The exact derivative of a number or vector with respect to a parameter or literal.
-
-        Parameters
-        ----------
-        expression
-            Anything that :meth:`eval` takes, such as ``"hull.volume"`` or ``"length(keel)"``.
-        by
-            A parameter, or a literal such as ``"P21.y"``.
-
-        Returns
-        -------
-        float or numpy.ndarray
-            An array of the shape of the value, per unit of the parameter.
-
-        Raises
-        ------
-        ModelError
-            If the text is not an expression, or has no number as value.
-        UnknownNameError
-            If there is no such parameter or number.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads("param float a = 3 in [0, 9]; AbsPoint P(a * a, 0, 0);")
-        >>> m.derivative("P.x", "a")
-        6.0
-        """
-        return self._document.derivatives([expression], [by])[0][0]
-
-    def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
-        """Exact derivatives of expressions with respect to parameters, ``[expression][by]``.
-
-        Parameters
-        ----------
-        expressions
-            Expressions of the language with a number or a vector as value.
-        by
-            Names of parameters.
-
-        Returns
-        -------
-        list of list
-            A row for each expression, in it a number or array for each parameter.
-
-        Raises
-        ------
-        ModelError
-            If a text is not an expression, or has no number as value.
-        UnknownNameError
-            If there is no such parameter or number.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float b = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
-        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
-        ... ''')
-        >>> [[change]] = m.derivatives(["plate.area"], ["b"])
-        >>> round(change, 9)
-        4.0
-        """
-        return self._document.derivatives(names_of(expressions), names_of(by))
 
     # -- for other packages ----------------------------------------------------------------
 

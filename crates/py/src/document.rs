@@ -83,7 +83,7 @@ impl PyDocument {
     }
 
     /// Work that may take long or find fault.
-    fn long_checked<R: Send + 'static>(
+    pub(crate) fn long_checked<R: Send + 'static>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Document) -> Outcome<R> + Send + 'static,

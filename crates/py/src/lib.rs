@@ -17,6 +17,7 @@ mod error;
 mod fair;
 mod foreign;
 mod formats;
+mod gradients;
 mod grids;
 mod implicit;
 mod language_server;
@@ -60,6 +61,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::formats::{formats, spline_patch_grid, spline_patch_knots};
+    #[pymodule_export]
+    use crate::gradients::{jvp, literals, state, vjp};
     #[pymodule_export]
     use crate::grids::{
         grid_with_fields, grids_as_stl, points_csv, points_text, read_aerofoil, read_cgns,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["Function", "function"]
+
+#: So many times more inputs than numbers of the outputs, and gradients take less time than columns.
+_FEW_NUMBERS = 4
 
 
 class Function:
@@ -42,7 +46,7 @@ class Function:
         # What cannot be differentiated or set is an error now, not in the midst of a study.
         start = self.start
         self.model.set(dict(zip(self.inputs, start.tolist(), strict=True)))
-        self._derivatives()
+        self._pulled(np.ones((1, sum(self.sizes.values()))))
 
     @property
     def start(self) -> Floats:
@@ -98,6 +102,10 @@ class Function:
         return self._derivatives()
 
     def _derivatives(self) -> Floats:
+        total = sum(self.sizes.values())
+        # A row of weights for each number costs less than four inputs at a time.
+        if _FEW_NUMBERS * total <= len(self.inputs):
+            return self._pulled(np.eye(total))
         rows = self.model.derivatives(list(self.outputs.values()), list(self.inputs))
         blocks = []
         for row, size in zip(rows, self.sizes.values(), strict=True):
@@ -107,6 +115,72 @@ class Function:
             blocks.append(np.stack(columns, axis=1))
         found: Floats = np.concatenate(blocks)
         return found
+
+    def _pulled(self, weights: Floats) -> Floats:
+        """Derivatives of weighted sums of the outputs, (sums, inputs)."""
+        ends = np.cumsum(list(self.sizes.values()))[:-1]
+        parts = [np.ascontiguousarray(part) for part in np.split(weights, ends, axis=1)]
+        outputs = list(zip(self.outputs.values(), parts, strict=True))
+        rows, _ = _core.vjp(self.model._document, outputs, list(self.inputs), "")
+        return rows
+
+    def vjp(self, x: ArrayLike, weights: ArrayLike) -> Floats:
+        """The exact derivatives of a weighted sum of the outputs by all inputs at once.
+
+        Parameters
+        ----------
+        x
+            Values of the inputs, ``(inputs,)``.
+        weights
+            Weights of the outputs, ``(outputs,)``, or ``(N, outputs)`` for N sums.
+
+        Returns
+        -------
+        numpy.ndarray
+            The product of the weights with :meth:`jacobian`: ``(inputs,)``, or ``(N, inputs)``. See
+            :meth:`moldloft.Model.vjp` for the cost.
+
+        Raises
+        ------
+        Error
+            When weights do not fit the outputs.
+        """
+        w: Floats = np.asarray(weights, dtype=np.float64)
+        total = sum(self.sizes.values())
+        if w.ndim not in (1, 2) or w.shape[-1] != total:
+            raise Error(f"weights ({total},) or (N, {total}) are needed, {w.shape} were given")
+        self._set(x)
+        rows = self._pulled(np.atleast_2d(w))
+        return rows[0] if w.ndim == 1 else rows
+
+    def jvp(self, x: ArrayLike, rates: ArrayLike) -> Floats:
+        """The change of the outputs when the inputs change at these rates.
+
+        Parameters
+        ----------
+        x
+            Values of the inputs, ``(inputs,)``.
+        rates
+            Rates of the inputs, ``(inputs,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            The product of :meth:`jacobian` with the rates, ``(outputs,)``, by one evaluation.
+
+        Raises
+        ------
+        Error
+            When there are not as many rates as inputs.
+        """
+        given: Floats = np.asarray(rates, dtype=np.float64)
+        if given.shape != (len(self.inputs),):
+            raise Error(f"rates ({len(self.inputs)},) are needed, {given.shape} were given")
+        self._set(x)
+        directions = list(zip(self.inputs, given.tolist(), strict=True))
+        return np.concatenate(
+            _core.jvp(self.model._document, list(self.outputs.values()), directions)
+        )
 
     def value_and_jacobian(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Outputs and derivatives at these inputs.

@@ -29,7 +29,11 @@ def _plain(name: str) -> str:
 
 
 def component(
-    model: Model, inputs: Sequence[str], outputs: Sequence[str] | Mapping[str, str]
+    model: Model,
+    inputs: Sequence[str],
+    outputs: Sequence[str] | Mapping[str, str],
+    *,
+    matrix_free: bool = False,
 ) -> Any:
     """An ``openmdao.api.ExplicitComponent`` with exact partial derivatives.
 
@@ -44,6 +48,9 @@ def component(
         Parameters, or literals such as ``"P21.y"`` (named ``P21_y`` in OpenMDAO).
     outputs
         Expressions, or names with expressions.
+    matrix_free
+        Products with the Jacobian instead of the matrix, which is never formed: for many inputs and
+        iterative linear solvers.
 
     Returns
     -------
@@ -68,7 +75,8 @@ def component(
                 self.add_input(name, val=value)
             for name, size in zip(outs, of.sizes.values(), strict=True):
                 self.add_output(name, shape=(size,))
-            self.declare_partials("*", "*")
+            if not matrix_free:
+                self.declare_partials("*", "*")
 
         def _point(self, values: Any) -> Floats:
             point: Floats = np.array([float(np.ravel(values[name])[0]) for name in ins])
@@ -84,6 +92,7 @@ def component(
                 outputs[name] = values[at : at + size]
                 at += size
 
+    class ByMatrix(ModelComponent):
         def compute_partials(self, inputs: Any, partials: Any) -> None:
             try:
                 slopes = of.jacobian(self._point(inputs))
@@ -95,7 +104,33 @@ def component(
                     partials[name, own] = slopes[at : at + size, k : k + 1]
                 at += size
 
-    return ModelComponent()
+    class ByProducts(ModelComponent):
+        def compute_jacvec_product(
+            self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str
+        ) -> None:
+            point = self._point(inputs)
+            ends = np.cumsum(list(of.sizes.values()))[:-1]
+            try:
+                if mode == "fwd":
+                    rates = [float(np.ravel(d_inputs[n])[0]) if n in d_inputs else 0 for n in ins]
+                    changes = np.split(of.jvp(point, rates), ends)
+                    for name, change in zip(outs, changes, strict=True):
+                        if name in d_outputs:
+                            d_outputs[name] += change
+                    return
+                sizes = of.sizes.values()
+                weights = [
+                    np.ravel(d_outputs[name]) if name in d_outputs else np.zeros(size)
+                    for name, size in zip(outs, sizes, strict=True)
+                ]
+                slopes = of.vjp(point, np.concatenate(weights))
+                for name, slope in zip(ins, slopes, strict=True):
+                    if name in d_inputs:
+                        d_inputs[name] += slope
+            except Error as error:
+                raise om.AnalysisError(str(error)) from error
+
+    return ByProducts() if matrix_free else ByMatrix()
 
 
 explain(globals())

@@ -6,6 +6,7 @@
 
 use crate::document::Document;
 use crate::measures::expressions::{Wholes, is_numbers, not_numbers};
+use crate::measures::pulled::Pulled;
 use crate::set::LiteralPlace;
 use moldloft_diag::Diagnostic;
 use moldloft_lang::source::env::Evaluation;
@@ -62,17 +63,25 @@ impl Document {
             GradientMode::Forward => true,
             GradientMode::Reverse => false,
         };
-        // Figures of floating bodies refine their cells by derivatives, which a tape does not have yet.
+        // Figures of floating bodies refine their cells by derivatives, which a tape does not have.
         let is_forward = |output: &&WeightedOutput| {
             forward || self.whole_name(&output.name).is_some_and(|(group, _)| group != "mesh")
         };
-        let (mut ahead, back): (Vec<_>, Vec<_>) = outputs.iter().partition(is_forward);
+        let (mut ahead, mut back): (Vec<_>, Vec<_>) = outputs.iter().partition(is_forward);
         let sums = outputs.first().map_or(0, |output| output.weights.len());
         let mut rows = vec![vec![0.0; by.len()]; sums];
-        if !back.is_empty() {
+        while !back.is_empty() {
             match self.pulled(&back, by)? {
-                Some(pulled) => add_rows(&mut rows, &pulled),
-                None => ahead = outputs.iter().collect(),
+                Pulled::Gradients(pulled) => {
+                    add_rows(&mut rows, &pulled);
+                    break;
+                }
+                Pulled::Refused(names) => {
+                    let refused = |output: &&WeightedOutput| names.contains(&output.name);
+                    let (refused, rest): (Vec<_>, Vec<_>) = back.into_iter().partition(refused);
+                    ahead.extend(refused);
+                    back = rest;
+                }
             }
         }
         if !ahead.is_empty() || by.is_empty() {

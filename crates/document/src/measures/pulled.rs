@@ -2,8 +2,8 @@
 //!
 //! `inputs -> run (one thread) -> expressions, blocks -> panels a part at a time -> Adjoints -> gradients`
 //!
-//! Run, graph and tape live for one gradient. What a tape cannot do is no error: the answer is then `None`, and forward mode
-//! has the last word, also on what is wrong with the model.
+//! Run, graph and tape live for one gradient. What a tape cannot do is no error: the outputs that need it are named, and
+//! forward mode has the last word, also on what is wrong with the model.
 
 use crate::document::{Document, Panelled};
 use crate::measures::expressions::Seeds;
@@ -24,13 +24,23 @@ use std::sync::Arc;
 struct WeightedMesh {
     panelled: Arc<Panelled>,
     weights: Vec<Vec<Vec3>>,
+    /// The outputs that they are of.
+    names: Vec<String>,
+}
+
+/// An attempt to find gradients by reverse mode.
+pub(crate) enum Pulled {
+    /// The gradients of all sums.
+    Gradients(Vec<Vec<f64>>),
+    /// The names of some outputs that have no reverse mode.
+    Refused(Vec<String>),
 }
 
 /// Outputs that are the mesh's, and all others.
 type Split<'a> = (Option<WeightedMesh>, Vec<&'a WeightedOutput>);
 
 impl Document {
-    /// The gradients of the sums of outputs, by reverse mode; `None` when something has none.
+    /// The gradients of the sums of outputs by reverse mode, if all of them have one.
     ///
     /// # Errors
     /// What is wrong with an output, its weights or a name.
@@ -38,17 +48,18 @@ impl Document {
         &mut self,
         outputs: &[&WeightedOutput],
         by: &[String],
-    ) -> Result<Option<Vec<Vec<f64>>>, Vec<Diagnostic>> {
+    ) -> Result<Pulled, Vec<Diagnostic>> {
         let seeds = self.seeds(by)?;
         let (mesh, others) = self.split(outputs)?;
         let sums = outputs.first().map_or(0, |output| output.weights.len());
+        let all = || outputs.iter().map(|output| output.name.clone()).collect();
         let pulled = on_one_thread(|| {
             Tape::clear();
             let inputs: Vec<Rev> = by.iter().map(|_| Tape::input(0.0)).collect();
             let mut adjoints = vec![Adjoints::new(); sums];
-            let recorded = self.recorded(&seeds, &inputs, mesh.as_ref(), &others, &mut adjoints)?;
-            if !recorded || !Tape::is_sound() {
-                return Ok(None);
+            let refused = self.recorded(&seeds, &inputs, mesh.as_ref(), &others, &mut adjoints)?;
+            if let Some(names) = refused {
+                return Ok(Pulled::Refused(if names.is_empty() { all() } else { names }));
             }
             let rows: Vec<Vec<f64>> = adjoints
                 .iter_mut()
@@ -58,10 +69,12 @@ impl Document {
                 })
                 .collect();
             let finite = rows.iter().flatten().all(|x| x.is_finite());
-            let sound = finite && adjoints.iter().all(Adjoints::are_sound);
-            Ok(sound.then_some(rows))
+            if finite && adjoints.iter().all(Adjoints::are_sound) {
+                return Ok(Pulled::Gradients(rows));
+            }
+            Ok(Pulled::Refused(all()))
         });
-        pulled.unwrap_or(Ok(None))
+        pulled.unwrap_or_else(|| Ok(Pulled::Refused(all())))
     }
 
     /// The weights of vertices, those that follow from measures of the mesh included; and the other outputs.
@@ -81,9 +94,11 @@ impl Document {
             if mesh.is_none() {
                 let panelled = self.entire_panels().map_err(|d| vec![d])?;
                 let none = vec![Vec3::zero(); panelled.mesh.positions().len()];
-                mesh = Some(WeightedMesh { panelled, weights: vec![none; output.weights.len()] });
+                let weights = vec![none; output.weights.len()];
+                mesh = Some(WeightedMesh { panelled, weights, names: Vec::new() });
             }
-            let Some(WeightedMesh { panelled, weights }) = &mut mesh else { continue };
+            let Some(WeightedMesh { panelled, weights, names }) = &mut mesh else { continue };
+            names.push(output.name.clone());
             let count = if measure.is_some() { 1 } else { 3 * panelled.mesh.positions().len() };
             let given = output.checked(count)?;
             let rates = measure.map(|[area, volume]| pulled_measures(&panelled.mesh, area, volume));
@@ -99,7 +114,8 @@ impl Document {
         Ok((mesh, others))
     }
 
-    /// Runs the model on the tape of this thread and adds the outputs; false when one has no reverse mode.
+    /// Runs the model on the tape of this thread and adds the outputs; the names of those that have no reverse mode, none
+    /// where it is the model that has none.
     fn recorded(
         &mut self,
         seeds: &Seeds,
@@ -107,7 +123,7 @@ impl Document {
         mesh: Option<&WeightedMesh>,
         others: &[&WeightedOutput],
         adjoints: &mut [Adjoints],
-    ) -> Result<bool, Vec<Diagnostic>> {
+    ) -> Result<Option<Vec<String>>, Vec<Diagnostic>> {
         let seed = |name: &str, x: Rev| seeded(x, seeds.of(name), inputs);
         let mut evaluation = Evaluation::<Rev>::default();
         let unknowns = self.taped_unknowns(&mut evaluation, &seed, &seeds.objects);
@@ -118,19 +134,26 @@ impl Document {
         let budget = self.budget();
         let spent = || budget.poll().map_err(|spent| vec![unplaced(&CallError::from(spent))]);
         spent()?;
+        if !Tape::is_sound() {
+            return Ok(Some(Vec::new()));
+        }
         for output in others {
-            let Some(numbers) = self.taped_numbers(&mut evaluation, &output.name)? else {
-                return spent().map(|()| false);
+            let numbers = self.taped_numbers(&mut evaluation, &output.name)?;
+            spent()?;
+            // Results that are kept for later outputs may depend on what the tape does not have.
+            let sound =
+                |numbers: &Vec<Rev>| Tape::is_sound() && numbers.iter().all(|x| x.is_finite());
+            let Some(numbers) = numbers.filter(sound) else {
+                return Ok(Some(vec![output.name.clone()]));
             };
             for (adjoints, weights) in adjoints.iter_mut().zip(output.checked(numbers.len())?) {
                 numbers.iter().zip(weights).for_each(|(x, w)| adjoints.add(*x, *w));
             }
         }
-        let pulled = mesh.is_none_or(|WeightedMesh { panelled, weights }| {
-            Tape::is_sound()
-                && panelled.panelling.pull(&evaluation.graph, weights, adjoints).is_some()
-        });
-        spent().map(|()| pulled)
+        let Some(WeightedMesh { panelled, weights, names }) = mesh else { return Ok(None) };
+        let pulled = panelled.panelling.pull(&evaluation.graph, weights, adjoints);
+        spent()?;
+        Ok((pulled.is_none() || !Tape::is_sound()).then(|| names.clone()))
     }
 
     /// The unknowns on the tape of this thread: x_j with the derivatives of -(J^-1)_ji c_i, by the conditions c at the

@@ -10,6 +10,7 @@ mod faults;
 mod follow;
 mod functions;
 mod fused;
+mod gradients;
 mod grid_writers;
 mod hull;
 mod identities;

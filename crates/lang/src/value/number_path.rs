@@ -75,27 +75,25 @@ pub fn seed<T: Scalar>(
     seed: crate::source::env::Seed<'_, T>,
 ) {
     // The few paths an object can have are tried: the seeding function knows the names.
+    const AXES: [&str; 3] = ["x", "y", "z"];
     for (at, field) in row.fields.iter().enumerate() {
-        let mut try_path = |path: NumberPath, name: String| {
-            let _ = path.change(args, |x| seed(&name, x));
-        };
-        let base = format!("{object}.{}", field.name);
-        try_path(NumberPath { field: at, item: None, component: None }, base.clone());
-        for (c, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            let path = NumberPath { field: at, item: None, component: Some(c) };
-            try_path(path, format!("{base}.{axis}"));
-        }
+        let name = field.name;
         let count = if field.many { length(&args[at]) } else { 0 };
+        let mut try_path = |item: Option<usize>, component: Option<usize>| {
+            let path = NumberPath { field: at, item, component };
+            let _ = path.change(args, |x| {
+                let item = item.map(|k| format!("[{}]", k + 1)).unwrap_or_default();
+                let name = match component {
+                    Some(c) => format!("{object}.{name}{item}.{}", AXES[c]),
+                    None => format!("{object}.{name}{item}"),
+                };
+                seed(&name, x)
+            });
+        };
+        let components = || std::iter::once(None).chain((0..3).map(Some));
+        components().for_each(|component| try_path(None, component));
         for k in 0..count {
-            let mut try_path = |path: NumberPath, name: String| {
-                let _ = path.change(args, |x| seed(&name, x));
-            };
-            let base = format!("{base}[{}]", k + 1);
-            try_path(NumberPath { field: at, item: Some(k), component: None }, base.clone());
-            for (c, axis) in ["x", "y", "z"].into_iter().enumerate() {
-                let path = NumberPath { field: at, item: Some(k), component: Some(c) };
-                try_path(path, format!("{base}.{axis}"));
-            }
+            components().for_each(|component| try_path(Some(k), component));
         }
     }
 }

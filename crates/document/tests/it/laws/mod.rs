@@ -3,7 +3,7 @@
 mod program;
 mod recipes;
 
-use self::program::{model, parts};
+pub use self::program::{model, parts};
 use crate::common::{line, open, rounds};
 use moldloft_document::Document;
 use moldloft_hydro::surface_measures;
@@ -28,7 +28,7 @@ const US: [f64; 5] = [0.0, 0.23, 0.5, 0.71, 1.0];
 const LEVELS: usize = 5;
 
 /// The expressions that are measured: positions of objects, and numbers.
-fn expressions(document: &Document) -> (Vec<String>, Vec<String>) {
+pub fn expressions(document: &Document) -> (Vec<String>, Vec<String>) {
     let (mut positions, mut numbers) = (Vec::new(), Vec::new());
     for object in document.graph().objects() {
         let name = &object.name;
