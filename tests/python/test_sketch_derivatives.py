@@ -189,4 +189,4 @@ def test_a_model_refuses_a_derivative_that_does_not_exist(tmp_path: Path) -> Non
     model = moldloft.load(tmp_path / "two.sdl")
     assert model.eval("U.volume") == pytest.approx(128, rel=1e-12)
     with pytest.raises(moldloft.Error, match=r"no-derivative.*`U.volume` has no derivative here"):
-        model.derivatives(["U.volume"], ["U.MZ"])
+        model.derivatives(["U.volume"], ["B.MZ"])

@@ -848,14 +848,27 @@ impl Document {
 
     /// The warning of a sketch that states no unit of length, for files that state one.
     pub fn assumed_unit(&self) -> Option<Diagnostic> {
-        let ObjectSource::Sketch(sketch) = &self.source else { return None };
-        let message =
-            format!("the sketch states no unit of length; millimetres are taken ({})", sketch.path);
+        let of = match &self.source {
+            ObjectSource::Sketch(sketch) => sketch.unit().is_none().then(|| sketch.path.clone())?,
+            ObjectSource::Program => self.unitless_sketch()?.to_owned(),
+            _ => return None,
+        };
+        let message = format!("the sketch states no unit of length; millimetres are taken ({of})");
         let warning = Diagnostic::warning("assumed-unit", message);
-        sketch.unit().is_none().then(|| warning.help("SET UNITS in the sketch states one"))
+        Some(warning.help("SET UNITS in the sketch states one"))
     }
 
-    /// The units that a program states; its length is in the unit of the sketches that it loads when it states none.
+    /// The first sketch of a program where nothing states a unit of length.
+    fn unitless_sketch(&self) -> Option<&str> {
+        let stated = moldloft_lang::model_file::header::text(&self.plain.graph, "units");
+        let known = units::parsed(&stated).unwrap_or_default();
+        let length = known.iter().any(|u| u.1 == PhysicalDimension::Length);
+        let none = !length && self.plain.env.sketch_units.is_empty();
+        self.plain.env.sketches.first().filter(|_| none).map(String::as_str)
+    }
+
+    /// The units that a program states; its length is in the unit of the sketches that it loads when it states none, and
+    /// in millimetres when those state none either.
     fn units_of_program(&self) -> String {
         let stated = moldloft_lang::model_file::header::text(&self.plain.graph, "units");
         let known = units::parsed(&stated).unwrap_or_default();
@@ -863,6 +876,10 @@ impl Document {
         match self.plain.env.sketch_units.first().filter(|_| !length) {
             Some((_, unit, _)) if stated.is_empty() => unit.clone(),
             Some((_, unit, _)) => format!("{unit} {stated}"),
+            None if self.unitless_sketch().is_some() && stated.is_empty() => {
+                ASSUMED_UNIT.to_owned()
+            }
+            None if self.unitless_sketch().is_some() => format!("{ASSUMED_UNIT} {stated}"),
             None => stated,
         }
     }

@@ -14,7 +14,7 @@ use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Options, StyledPolyline, render};
 use moldloft::sketch::{
     CommandReply, DimensionMark, DrawingHit, Files, ObjectChange, PointId, ReplySubject,
-    SketchSession, SketchSolid, Suggestion, script,
+    SketchSession, SketchSolid, Suggestion, scripts,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -371,10 +371,9 @@ impl PySketch {
     fn text(&self, py: Python<'_>, name: Option<&str>) -> PyResult<String> {
         let session = self.lock(py);
         let names = name.map_or_else(|| session.names(), |n| vec![n.to_owned()]);
-        names
-            .iter()
-            .map(|n| session.object(n).map(script).ok_or_else(|| no_object(n)))
-            .collect::<PyResult<String>>()
+        let objects = names.iter().map(|n| session.object(n).ok_or_else(|| no_object(n)));
+        let objects = objects.collect::<PyResult<Vec<_>>>()?;
+        Ok(scripts(&objects).into_iter().map(|(_, text)| text).collect())
     }
 
     /// Rows of name, value, low, high of dimensions and variables; `None` for no value or range.

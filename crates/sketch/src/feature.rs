@@ -1,6 +1,7 @@
 //! Definition of a feature: operands and operation. Its body is computed by [`crate::body`].
 
 use crate::object::SketchObject;
+use crate::solid::merge::identifier;
 use crate::solid::operation::Operation;
 use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 use std::sync::Arc;
@@ -162,6 +163,8 @@ pub enum FeatureKind {
     },
     /// One body at another position.
     Place(Placement),
+    /// The first body moved along an axis until its origin is on a plane face of the second, square to that axis.
+    OnFace(FaceChoice),
     /// Copies, each placed as the next from the last, united.
     Pattern {
         /// Placement of a copy relative to the one before.
@@ -213,7 +216,7 @@ impl FeatureKind {
     /// The expressions that it reads, to change them.
     pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
         match self {
-            FeatureKind::Boolean(_) => vec![],
+            FeatureKind::Boolean(_) | FeatureKind::OnFace(_) => vec![],
             FeatureKind::Revolve { angle, .. } => vec![angle],
             FeatureKind::Place(place) => place.numbers_mut(),
             FeatureKind::Pattern { step, count } => {
@@ -244,6 +247,30 @@ pub struct FeatureOperand {
     pub object: Arc<SketchObject>,
     /// Prefix of its names in the feature.
     pub prefix: String,
+    /// True if it is another object of the session, whose changes it takes over; false for a part that the feature
+    /// alone has.
+    pub follows: bool,
+}
+
+impl FeatureOperand {
+    /// A part that a feature alone has, whose names stay as they are.
+    pub fn part(object: impl Into<Arc<SketchObject>>) -> FeatureOperand {
+        FeatureOperand { object: object.into(), prefix: String::new(), follows: false }
+    }
+
+    /// The name of an object that is followed.
+    pub fn followed(&self) -> Option<&str> {
+        self.follows.then_some(self.object.name.as_str())
+    }
+
+    /// What comes before the names of its numbers, in lower case: of an object that is followed, its name, as in
+    /// expressions.
+    pub fn path(&self) -> String {
+        match self.follows {
+            true => format!("{}.", identifier(&self.object.name).to_ascii_lowercase()),
+            false => self.prefix.to_ascii_lowercase(),
+        }
+    }
 }
 
 /// An object made of others.

@@ -94,7 +94,7 @@ pub use feature::{
     Placement,
 };
 pub use format::dimension_marks::DimensionMark;
-pub use format::script::script;
+pub use format::script::{script, scripts};
 pub use format::{dxf, export, json, json_format, page_shapes};
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject, results};

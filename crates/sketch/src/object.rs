@@ -1,12 +1,14 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
-use crate::feature::Feature;
+use crate::feature::{Feature, FeatureOperand};
 use crate::solid::curve::SketchCurve;
+use crate::solid::merge::identifier;
 use crate::{
-    CoordinateAxis, Dimension, Drawing, FaceId, LineId, MeasuredQuantity, PointId, Variable,
+    CoordinateAxis, Dimension, DimensionExpr, DimensionRole, Drawing, FaceId, LineId,
+    MeasuredQuantity, PointId, Variable,
 };
 use indexmap::IndexMap;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A plane face: cycles of points, counter-clockwise seen from outside, holes clockwise.
@@ -72,17 +74,10 @@ pub struct SketchObject {
     pub feature: Option<Arc<Feature>>,
 }
 
-/// For each of several objects, true if it is a result: not used by another one, or kept.
+/// For each of several objects, true if it is a result: no other one follows it, or it is kept.
 pub fn results(objects: &[&SketchObject]) -> Vec<bool> {
-    let operands = |object: &SketchObject| -> Vec<String> {
-        let all = object.feature.iter().flat_map(|f| &f.operands);
-        all.map(|o| o.object.name.to_lowercase()).collect()
-    };
-    let used: Vec<(String, Vec<String>)> =
-        objects.iter().map(|o| (o.name.to_lowercase(), operands(o))).collect();
-    let consumed =
-        |name: &String| used.iter().any(|(other, of)| other != name && of.contains(name));
-    objects.iter().zip(&used).map(|(object, (name, _))| object.keep || !consumed(name)).collect()
+    let used: BTreeSet<String> = objects.iter().flat_map(|o| o.followed()).collect();
+    objects.iter().map(|o| o.keep || !used.contains(&o.name.to_lowercase())).collect()
 }
 
 impl SketchObject {
@@ -99,6 +94,94 @@ impl SketchObject {
             drawing: Arc::new(drawing),
             ..SketchObject::default()
         }
+    }
+
+    /// The folded names of the objects that it is made of and follows.
+    pub fn followed(&self) -> BTreeSet<String> {
+        let operands = self.feature.iter().flat_map(|f| &f.operands);
+        let names = operands.flat_map(|operand| match operand.followed() {
+            Some(name) => BTreeSet::from([name.to_lowercase()]),
+            None => operand.object.followed(),
+        });
+        names.collect()
+    }
+
+    /// Its variables and driving dimensions with a value: name, value and range.
+    pub fn own_numbers(&self) -> impl Iterator<Item = (&String, &DimensionExpr, Option<[f64; 2]>)> {
+        let variables = self.variables.values().map(|v| (&v.name, &v.value, v.range));
+        let dimensions = (self.dimensions.values())
+            .filter(|d| d.role == DimensionRole::Driving)
+            .filter_map(|d| Some((&d.name, d.value.as_ref()?, d.range)));
+        variables.chain(dimensions)
+    }
+
+    /// The numbers of the objects that it is made of and follows, each with the object's name and a dot before it:
+    /// name, value and range.
+    pub fn followed_numbers(&self) -> Vec<(String, DimensionExpr, Option<[f64; 2]>)> {
+        let mut out: Vec<(String, DimensionExpr, Option<[f64; 2]>)> = Vec::new();
+        for operand in self.feature.iter().flat_map(|f| &f.operands) {
+            let inner = &operand.object;
+            if operand.follows {
+                let of = identifier(&inner.name);
+                let own = inner.own_numbers().filter(|n| inner.alias(n.0).is_none());
+                out.extend(
+                    own.map(|(n, value, range)| (format!("{of}.{n}"), value.clone(), range)),
+                );
+            }
+            for row in inner.followed_numbers() {
+                if out.iter().all(|known| known.0 != row.0) {
+                    out.push(row);
+                }
+            }
+        }
+        out
+    }
+
+    /// The number of an object that this one follows, if one of its own variables only stands for it.
+    pub fn alias(&self, name: &str) -> Option<&str> {
+        let variable = self.variables.get(&name.to_ascii_lowercase())?;
+        let (of, number) = variable.value.text().split_once('.')?;
+        let stands = |operand: &FeatureOperand| match operand.follows {
+            true => {
+                operand.prefix.is_empty()
+                    && number.eq_ignore_ascii_case(&variable.name)
+                    && of.eq_ignore_ascii_case(&identifier(&operand.object.name))
+            }
+            false => {
+                let inner = variable.name.get(operand.prefix.len()..);
+                inner.and_then(|n| operand.object.alias(n)) == Some(variable.value.text())
+            }
+        };
+        let mut operands = self.feature.iter().flat_map(|f| &f.operands);
+        operands.any(stands).then_some(variable.value.text())
+    }
+
+    /// The folded name of a number, or of the one of another object that it stands for, with that object's name and a
+    /// dot before it.
+    pub fn source(&self, name: &str) -> String {
+        let mut key = name.to_ascii_lowercase();
+        let mut at = self.alias(&key).map(str::to_owned).or_else(|| self.alias_of(&key));
+        while let Some(path) = at {
+            key = path.to_ascii_lowercase();
+            at = self.alias_of(&key);
+        }
+        key
+    }
+
+    /// What a number of an object that this one follows stands for there.
+    fn alias_of(&self, path: &str) -> Option<String> {
+        let (of, number) = path.split_once('.')?;
+        for operand in self.feature.iter().flat_map(|f| &f.operands) {
+            let inner = &operand.object;
+            let found = match operand.follows && of.eq_ignore_ascii_case(&identifier(&inner.name)) {
+                true => inner.alias(number).map(str::to_owned),
+                false => inner.alias_of(path),
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
     }
 
     /// The drawing, to change it.
@@ -126,10 +209,13 @@ impl SketchObject {
 
     /// True if a dimension, variable or curve has this name.
     pub fn has_name(&self, name: &str) -> bool {
+        self.has_number(name) || self.curves.contains_key(&name.to_ascii_lowercase())
+    }
+
+    /// True if a dimension or variable has this name.
+    pub fn has_number(&self, name: &str) -> bool {
         let key = name.to_ascii_lowercase();
-        self.dimensions.contains_key(&key)
-            || self.variables.contains_key(&key)
-            || self.curves.contains_key(&key)
+        self.dimensions.contains_key(&key) || self.variables.contains_key(&key)
     }
 
     /// Adds a dimension.

@@ -279,6 +279,16 @@ fn a_sketch_has_the_unit_that_it_states_and_only_one() {
     assert_eq!(unstated.units(), "mm");
     assert!(unstated.assumed_unit().is_some_and(|d| d.id == "assumed-unit"));
     assert!(open(SHED).assumed_unit().is_none());
+    // A program that loads it has the same unit, with the same warning, unless it states one.
+    let bare = BRACKET.replace("SET UNITS MM\n", "");
+    let world = || shelf(&[("bracket.skt", bare.as_str())]);
+    let model = |text: &str| Document::from_text(registry(), world(), "site.sdl", text);
+    let loaded = model("load \"bracket.skt\";");
+    assert_eq!(loaded.units(), "mm");
+    let warned = |m: &Document| m.assumed_unit().is_some_and(|d| d.message.contains("bracket"));
+    assert!(warned(&loaded));
+    let stated = model("Model info(units = \"ft\"); load \"bracket.skt\";");
+    assert_eq!((stated.units().as_str(), warned(&stated)), ("ft", false));
     // The second object is the first under another name, in another unit.
     let other = SHED.replace("SKETCH SHED", "SKETCH BARN").replace("UNITS M\n", "UNITS FT\n");
     let both = open(&format!("{SHED}\n{other}"));

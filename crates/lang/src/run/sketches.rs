@@ -192,24 +192,29 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let path = path.ok_or_else(|| wants(span))?;
         let file = self.modules.load_sketch(self.current, &path, span, &mut self.loader)?;
-        let [drawn] = &file.objects[..] else {
+        let results: Vec<usize> = (file.objects.iter().enumerate())
+            .filter_map(|(k, drawn)| drawn.result.then_some(k))
+            .collect();
+        let [own] = results[..] else {
             file.faults.iter().for_each(|fault| self.report(fault.clone()));
-            let found = format!("{} objects in `{path}`", file.objects.len());
-            return Err(Diagnostic::error("wrong-count", "a named sketch must have one object")
+            let found = format!("{} objects in `{path}`", results.len());
+            return Err(Diagnostic::error("wrong-count", "a named sketch must have one result")
                 .at(span)
-                .expected("a file with one object")
+                .expected("a file with one object, and those that it is made of")
                 .found(found)
                 .help(format!("load \"{path}\" brings all of them in")));
         };
         file.faults.iter().for_each(|fault| self.report(fault.clone()));
-        let mut values = BTreeMap::new();
+        let drawn = &file.objects[own];
+        let mut values: Vec<(String, BTreeMap<String, T>)> =
+            file.objects.iter().map(|_| (String::new(), BTreeMap::new())).collect();
         for (ident, x) in given {
             let word = m.program.name(ident.symbol);
-            let key = word.to_ascii_lowercase();
-            if !drawn.object.dimensions.contains_key(&key)
-                && !drawn.object.variables.contains_key(&key)
-            {
-                let known: Vec<&str> = drawn.parameters().map(|p| p.1.as_str()).collect();
+            if !drawn.object.has_number(word) {
+                let stands = drawn.object.variables.values().map(|v| v.name.as_str());
+                let stands = stands.filter(|name| drawn.object.alias(name).is_some());
+                let known = drawn.parameters().map(|p| p.1.as_str());
+                let known: Vec<&str> = known.chain(stands).collect();
                 return Err(Diagnostic::error(
                     "unknown-argument",
                     format!("the sketch has no dimension `{word}`"),
@@ -218,12 +223,23 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected(known.join(", "))
                 .suggest(word, known.iter().copied()));
             }
-            values.insert(key, x);
+            // A number of an object that this one follows is given to that object.
+            let source = drawn.object.source(word);
+            let of = source.split_once('.').filter(|_| !drawn.object.has_number(&source));
+            let called = |d: &Drawn, of: &str| {
+                moldloft_sketch::identifier(&d.object.name).eq_ignore_ascii_case(of)
+            };
+            let other = of.and_then(|(of, number)| {
+                Some((file.objects.iter().position(|d| called(d, of))?, number.to_owned()))
+            });
+            let (k, key) = other.unwrap_or((own, source));
+            values[k].1.insert(key, x);
         }
+        share_numbers(&file.objects, &mut values);
         self.note_unit(&file, span);
         let full = self.instance_name(m, name)?;
         let origin = self.sketch_origin(id);
-        self.drawn(drawn, &full, &values, Site { origin, span });
+        self.drawn(drawn, &full, &values[own].1, Site { origin, span });
         Ok(())
     }
 

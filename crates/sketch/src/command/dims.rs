@@ -438,9 +438,19 @@ impl SketchSession {
                 ));
             }
             let object = self.active()?;
+            let followers = self.followers(&object.name);
+            if convert && object.units.as_ref().is_some_and(|u| *u != unit) && !followers.is_empty()
+            {
+                return Err(CommandError::text(
+                    format!("{} made of {}", followers.join(", "), object.name),
+                    "convert it before others are made of it",
+                )
+                .about(ReplySubject::of("made-of-others").names(&followers)));
+            }
             let size = |name: &str| UNITS.iter().find(|u| u.0 == name).map(|u| u.1);
             let old = object.units.clone().filter(|u| *u != unit);
-            let given = !object.dimensions.is_empty() || !object.variables.is_empty();
+            let own = !object.dimensions.is_empty() || !object.variables.is_empty();
+            let given = own || object.feature.is_some();
             match old {
                 // Lengths are not relabelled: they are converted on request, otherwise refused.
                 Some(old) if given && !convert => {
@@ -483,13 +493,9 @@ impl SketchSession {
             return Ok(());
         }
         let name = args.name("the name of a dimension or variable, or a setting")?;
-        // A number of another object, as expressions name it.
-        let own = self.active()?.has_name(&name);
-        let of = name.split_once('.').filter(|_| !own).and_then(|(of, number)| {
-            let other = self.state.called(&of.to_ascii_lowercase())?;
-            Some((other.name.to_lowercase(), number.to_owned()))
-        });
-        if let Some((of, number)) = of.filter(|o| self.state.objects.contains_key(&o.0)) {
+        self.active()?;
+        // A number of another object, as expressions name it, or one that the active object follows.
+        if let Some((of, number)) = self.followed_number(&name) {
             let active = self.state.active.replace(of);
             let done = self.set_number(&number, args);
             self.state.active = active;

@@ -316,12 +316,15 @@ impl SketchSession {
             args.end()?;
             self.known(&name)?;
             let key = name.to_lowercase();
+            self.state.objects.shift_remove(&key);
+            // What follows it keeps it as a part, with its numbers.
+            let before = self.state.clone();
+            self.follow(&before);
             for (reader, names) in self.readers(&name) {
                 let text = format!("{reader} reads {}, which has no value now", names.join(", "));
                 let about = ReplySubject::of("no-value").names(names.iter());
                 self.out.push(CommandReply { about, ..CommandReply::warning(text) });
             }
-            self.state.objects.shift_remove(&key);
             if self.state.active.as_ref() == Some(&key) {
                 self.state.active = None;
             }

@@ -9,9 +9,11 @@ use crate::SketchObject;
 use crate::dimension::expr::DimensionExpr;
 use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
 use crate::solid::combine::CombineError;
-use crate::solid::feature::{NoBody, body};
+use crate::solid::feature::NoBody;
+use crate::solid::merge::identifier;
 use crate::solid::operation::Operation;
 use moldloft_syntax::number::plain;
+use std::sync::Arc;
 
 impl SketchSession {
     /// Combines two bodies. The result is made of both and computed again with every change of theirs.
@@ -25,9 +27,9 @@ impl SketchSession {
             [args.name("the name of an object")?, args.name("the name of a second object")?];
         let target = self.target(args, &names[0])?;
         args.end()?;
-        let mut parts: Vec<SketchObject> = Vec::new();
+        let mut parts: Vec<Arc<SketchObject>> = Vec::new();
         for name in &names {
-            let object = self.known(name)?.clone();
+            let object = self.operand(name)?;
             if object.drawing.section.is_some() {
                 return Err(CommandError::new(
                     114,
@@ -46,7 +48,8 @@ impl SketchSession {
             )
             .about(ReplySubject::of("object-twice").names([&parts[0].name])));
         }
-        let operands = Feature::operands(&[&parts[0], &parts[1]]);
+        let followed = |o: &Arc<SketchObject>| (Arc::clone(o), self.follows(&o.name, &target));
+        let operands = Feature::operands(parts.iter().map(followed).collect());
         let feature = Feature { kind: FeatureKind::Boolean(operation), operands };
         self.make(feature, &target, |why| match why {
             NoBody::Combine(CombineError::Empty) => Some(
@@ -66,7 +69,7 @@ impl SketchSession {
         let target = if args.take_short("INTO") {
             args.name("a name")?
         } else {
-            self.known(default)?.name.clone()
+            self.operand(default)?.name.clone()
         };
         if target.is_empty() || target.chars().count() > 32 {
             return Err(args.wants("a name of 1 to 32 characters"));
@@ -75,7 +78,7 @@ impl SketchSession {
     }
 
     /// Refuses an object without a body, with the reason.
-    pub(super) fn require_body(&mut self, object: &SketchObject) -> Result<(), CommandError> {
+    pub(super) fn require_body(&mut self, object: &Arc<SketchObject>) -> Result<(), CommandError> {
         if object.feature.is_none() {
             self.placed(object)?;
             if object.faces.is_empty() {
@@ -87,10 +90,9 @@ impl SketchSession {
                 .about(ReplySubject::of("no-faces").names([&object.name])));
             }
         }
-        let (view, layout) = self.laid_out(object);
-        match body(object, &view.planes, &layout) {
+        match self.worked(object).body() {
             Ok(_) => Ok(()),
-            Err(why) => Err(no_body(object, &why)),
+            Err(why) => Err(no_body(object, why)),
         }
     }
 
@@ -112,12 +114,39 @@ impl SketchSession {
         target: &str,
         refused: impl Fn(&NoBody) -> Option<CommandError>,
     ) -> Result<(), CommandError> {
+        let mut feature = feature;
+        for operand in &mut feature.operands {
+            operand.follows = self.follows(&operand.object.name, target);
+            let name = operand.object.name.to_lowercase();
+            let called = identifier(&name).to_ascii_lowercase();
+            let namesake = self.state.called(&called).filter(|o| o.name.to_lowercase() != name);
+            if let Some(other) = namesake.filter(|_| operand.follows) {
+                return Err(CommandError::text(
+                    format!(
+                        "{} and {} are one name in expressions",
+                        other.name, operand.object.name
+                    ),
+                    "RENAME one of them",
+                )
+                .about(ReplySubject::of("name-not-free").names([&other.name])));
+            }
+        }
         let mut made = feature.object(target);
+        self.no_circle(&made)?;
+        let twice = made.followed_numbers().into_iter().find(|n| made.has_number(&n.0));
+        if let Some((name, ..)) = twice {
+            return Err(CommandError::text(
+                format!("{name} is a number of two objects of {target}"),
+                "RENAME the one that is followed",
+            )
+            .about(ReplySubject::of("name-not-free").names([&name])));
+        }
         made.variables.extend(own.into_iter().map(|v| (v.name.to_ascii_lowercase(), v)));
-        let (view, layout) = self.laid_out(&made);
-        let solid = match body(&made, &view.planes, &layout) {
+        let made = Arc::new(made);
+        let worked = self.worked(&made);
+        let solid = match worked.body() {
             Ok(solid) => solid,
-            Err(why) => return Err(refused(&why).unwrap_or_else(|| no_body(&made, &why))),
+            Err(why) => return Err(refused(why).unwrap_or_else(|| no_body(&made, why))),
         };
         let text = format!(
             "{target}: {} vertices, {} edges, {} faces, volume {}",
@@ -127,20 +156,23 @@ impl SketchSession {
             plain(solid.mass().volume)
         );
         self.out.push(CommandReply::note(text));
-        self.insert(made);
+        let key = made.name.to_lowercase();
+        self.state.objects.insert(key.clone(), made);
+        self.state.active = Some(key);
         Ok(())
     }
 
     /// `REVOLVE [name] line [angle] [INTO name]`.
     pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        if !args.at_number() {
-            if let Some(token) = args.peek() {
-                self.known(&token.text)?;
-            }
-            self.take_object(args)?;
-        }
+        let named = match args.at_number() {
+            true => None,
+            false => Some(args.name("the name of a cross section")?),
+        };
         let line = args.line()?;
-        let mut object = self.active()?.clone();
+        let mut object = match named {
+            Some(name) => self.operand(&name)?,
+            None => self.active_arc()?,
+        };
         let angle = if args.len() > 0 && !args.tokens_at(0, "INTO") {
             args.value(None)?
         } else {
@@ -166,12 +198,13 @@ impl SketchSession {
         }
         self.placed(&object)?;
         if object.faces.is_empty() {
+            self.state.active = Some(object.name.to_lowercase());
             self.generate(&mut Args::new(&[super::solids::faces_word()], ""))?;
-            object = self.active()?.clone();
+            object = self.active_arc()?;
         }
         self.require_body(&object)?;
         // Its numbers keep their names.
-        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand::part(object)];
         let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };
         self.make(Feature { kind, operands }, &target, |why| match why {
             NoBody::Axis => Some(CommandError::new(
@@ -187,7 +220,7 @@ impl SketchSession {
     /// [INTO name]`.
     pub(super) fn pattern(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = args.name("the name of an object")?;
-        let object = self.known(&name)?.clone();
+        let object = self.operand(&name)?;
         let units = object.units.clone();
         let (step, count) = if args.take("LINEAR") {
             let count = args.value(None)?;
@@ -213,7 +246,7 @@ impl SketchSession {
         let target = self.target(args, &name)?;
         args.end()?;
         self.require_body(&object)?;
-        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand::part(object)];
         self.make(Feature { kind: FeatureKind::Pattern { step, count }, operands }, &target, |_| {
             None
         })
@@ -231,11 +264,45 @@ impl SketchSession {
         Ok([args.value(units)?, args.value(units)?, args.value(units)?])
     }
 
+    /// `MOVE a ON b face [INTO c]`.
+    fn place_on(&mut self, object: Arc<SketchObject>, args: &mut Args) -> Result<(), CommandError> {
+        let base = args.name("the name of a body")?;
+        let base = self.operand(&base)?;
+        let face = super::treatments::face_choice(args)?;
+        let target = self.target(args, &object.name)?;
+        args.end()?;
+        for part in [&object, &base] {
+            if part.drawing.section.is_some() {
+                return Err(CommandError::new(
+                    114,
+                    format!("{} is a cross section; only solids are placed on faces", part.name),
+                    "EXTRUDE it first",
+                )
+                .about(ReplySubject::of("cross-section").names([&part.name])));
+            }
+            self.require_body(part)?;
+        }
+        if base.name.eq_ignore_ascii_case(&object.name) || base.name.eq_ignore_ascii_case(&target) {
+            return Err(CommandError::text(
+                format!("{} cannot be placed on itself", base.name),
+                "COPY makes another",
+            )
+            .about(ReplySubject::of("object-twice").names([&base.name])));
+        }
+        let prefix = format!("{}.", identifier(&base.name));
+        let base = FeatureOperand { object: base, prefix, follows: true };
+        let operands = vec![FeatureOperand::part(object), base];
+        self.make(Feature { kind: FeatureKind::OnFace(face), operands }, &target, |_| None)
+    }
+
     /// MOVE, ROTATE, MIRROR, SCALE of objects without a drawing, or by any angle.
     pub(super) fn place(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let name = args.name("the name of an object")?;
-        let object = self.known(&name)?.clone();
+        let object = self.operand(&name)?;
         let units = object.units.clone();
+        if verb == "MOVE" && args.take_short("ON") {
+            return self.place_on(object, args);
+        }
         let place = match verb {
             "MOVE" => Placement::Move([
                 args.value(units.as_deref())?,
@@ -281,7 +348,7 @@ impl SketchSession {
             .about(ReplySubject::of("cross-section").names([&object.name])));
         }
         self.require_body(&object)?;
-        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand::part(object)];
         self.make(Feature { kind: FeatureKind::Place(place), operands }, &target, |_| None)
     }
 }

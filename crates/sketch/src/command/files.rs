@@ -8,7 +8,7 @@ use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
 use crate::format::page_shapes::PageShapes;
 pub(super) use crate::format::script::measure_text;
-use crate::format::script::script;
+use crate::format::script::{script, scripts};
 use crate::{
     CoordinateAxis, Dimension, DimensionRole, MeasuredQuantity, SketchObject, SketchSolid,
     Variable, export,
@@ -72,10 +72,11 @@ impl SketchSession {
             ));
         }
         let objects: Vec<&SketchObject> = names.iter().filter_map(|n| self.object(n)).collect();
+        let texts = scripts(&objects).into_iter();
         let text = if file.to_ascii_lowercase().ends_with(".json") {
-            Json::list(objects.iter().map(|o| to_json(o))).to_string() + "\n"
+            Json::list(texts.map(|(o, text)| to_json(o, &text))).to_string() + "\n"
         } else {
-            objects.iter().map(|o| script(o)).collect()
+            texts.map(|(_, text)| text).collect()
         };
         self.write(&file, text.into_bytes());
         Ok(())
@@ -103,10 +104,16 @@ impl SketchSession {
         if let Some(new) = into {
             let added: Vec<String> =
                 self.state.objects.keys().filter(|k| !before.contains(k)).cloned().collect();
-            let [one] = &added[..] else {
+            // What it is made of keeps its names.
+            let objects: Vec<&SketchObject> =
+                added.iter().filter_map(|key| self.object(key)).collect();
+            let made: Vec<&String> = (added.iter().zip(crate::results(&objects)))
+                .filter_map(|(key, result)| result.then_some(key))
+                .collect();
+            let [one] = made[..] else {
                 return Err(CommandError::new(
                     110,
-                    format!("{file} brought {} objects, so INTO cannot name them", added.len()),
+                    format!("{file} brought {} objects, so INTO cannot name them", made.len()),
                     "INPUT it without INTO, then RENAME",
                 ));
             };

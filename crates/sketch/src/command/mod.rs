@@ -8,6 +8,7 @@ mod draw;
 mod error;
 mod features;
 mod files;
+mod follow;
 mod info;
 mod no_body;
 mod objects;

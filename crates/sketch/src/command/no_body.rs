@@ -73,6 +73,16 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             let text = format!("{name}: {}", inner.text);
             CommandError { text, ..inner }
         }
+        NoBody::Section { name: inner, wanted } => {
+            let (is, next) = match wanted {
+                true => {
+                    ("no cross section now", "UNDO; or DELETE it, and the body keeps what it was")
+                }
+                false => ("a cross section", "EXTRUDE it"),
+            };
+            CommandError::text(format!("{name} is made of {inner}, which is {is}"), next)
+                .about(ReplySubject::of("cross-section").names([name, inner]))
+        }
         NoBody::NoValue(reads) => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),

@@ -45,13 +45,16 @@ impl SketchSession {
         let (from, to) = (old.to_lowercase(), new.to_lowercase());
         if from != to {
             self.free_name(&new)?;
+            self.no_part(&old, &new)?;
         }
-        self.rename_read(&object.name, &new);
-        object.name = new;
+        let former = std::mem::replace(&mut object.name, new);
+        let object = Arc::new(object);
+        self.rename_followed(&former, &object);
+        self.rename_read(&former, &object.name);
         // It keeps its index in the list.
         let place = self.state.objects.get_index_of(&from).unwrap_or(0);
         self.state.objects.shift_remove(&from);
-        self.state.objects.shift_insert(place, to.clone(), Arc::new(object));
+        self.state.objects.shift_insert(place, to.clone(), object);
         if self.state.active.as_ref() == Some(&from) {
             self.state.active = Some(to);
         }
@@ -94,6 +97,7 @@ impl SketchSession {
         let object = self.known(&name)?.clone();
         self.state.outside.pop();
         self.state.objects = objects;
+        self.no_circle(&object)?;
         self.insert(object);
         Ok(())
     }
@@ -104,7 +108,8 @@ impl SketchSession {
         }
         self.take_object(args)?;
         args.end()?;
-        let text = crate::format::json_format::to_json(self.active()?).to_string();
+        let object = self.active()?;
+        let text = crate::format::json_format::to_json(object, &crate::script(object)).to_string();
         self.out.push(CommandReply::note(text));
         Ok(())
     }

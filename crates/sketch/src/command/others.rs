@@ -4,6 +4,7 @@ use super::session::{SessionState, SketchSession};
 use crate::solid::feature::foreign;
 use crate::solid::merge::identifier;
 use crate::{DimensionExpr, SketchObject, numbers};
+use moldloft_num::Real;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -14,23 +15,36 @@ impl SessionState {
     /// Numbers of other objects that the expressions of one refer to. An object with a reference
     /// back to this one has none.
     pub fn others(&self, object: &SketchObject) -> OtherNumbers {
-        let mut known = BTreeMap::from([(key(object), BTreeMap::new())]);
-        self.read_by(object, &mut known)
+        self.others_with(object, &BTreeMap::new())
     }
 
-    fn read_by(
+    /// The same with some of these numbers replaced.
+    pub fn others_with<T: Real>(
         &self,
         object: &SketchObject,
-        known: &mut BTreeMap<String, OtherNumbers>,
-    ) -> OtherNumbers {
-        let mut found = OtherNumbers::new();
+        given: &BTreeMap<String, T>,
+    ) -> BTreeMap<String, T> {
+        let mut known = BTreeMap::from([(key(object), BTreeMap::new())]);
+        self.read_by(object, given, &mut known)
+    }
+
+    fn read_by<T: Real>(
+        &self,
+        object: &SketchObject,
+        given: &BTreeMap<String, T>,
+        known: &mut BTreeMap<String, BTreeMap<String, T>>,
+    ) -> BTreeMap<String, T> {
+        let mut found = BTreeMap::new();
         for name in foreign(object) {
             let Some((of, number)) = name.split_once('.') else { continue };
             let Some(other) = self.called(of) else { continue };
             if !known.contains_key(of) {
                 // In progress: excludes circular references.
-                known.insert(of.to_owned(), OtherNumbers::new());
-                let read = self.read_by(other, known);
+                known.insert(of.to_owned(), BTreeMap::new());
+                let mut read = self.read_by(other, given, known);
+                let prefix = format!("{of}.");
+                let own = given.iter().filter_map(|(n, x)| Some((n.strip_prefix(&prefix)?, *x)));
+                read.extend(own.map(|(n, x)| (n.to_owned(), x)));
                 known.insert(of.to_owned(), numbers(other, &read));
             }
             if let Some(value) = known[of].get(number) {

@@ -2,6 +2,7 @@
 
 use super::SketchSession;
 use crate::{DimensionFault, Estimate, Planes, SolidGradient, Swept, gradient, solid, solve};
+use std::collections::BTreeMap;
 
 impl SketchSession {
     /// The body at each of the values of a dimension or variable; the session stays as it is.
@@ -15,16 +16,17 @@ impl SketchSession {
         values: &[f64],
     ) -> Result<Vec<Swept>, String> {
         let object = self.object(object).ok_or(object)?.clone();
-        let key = name.to_ascii_lowercase();
-        if !object.dimensions.contains_key(&key) && !object.variables.contains_key(&key) {
+        let key = object.source(name);
+        let mut followed = object.followed_numbers().into_iter();
+        if !object.has_number(&key) && !followed.any(|n| n.0.eq_ignore_ascii_case(&key)) {
             return Err(name.to_owned());
         }
         let planes = Planes::of(&object.drawing);
-        let others = self.state.others(&object);
         let estimate = || Estimate::of(&object.drawing, &planes, object.reference()?.point);
         let at = |&value: &f64| {
-            let mut given = others.clone();
-            given.insert(key.clone(), value);
+            let own = BTreeMap::from([(key.clone(), value)]);
+            let mut given = self.state.others_with(&object, &own);
+            given.extend(own);
             let layout = solve(&object, &planes, &given, &estimate);
             let refused =
                 layout.faults.iter().any(|f| !matches!(f, DimensionFault::Redundant { .. }));
@@ -41,6 +43,7 @@ impl SketchSession {
     /// As there; an unknown object's name is the error.
     pub fn gradient(&self, object: &str, by: &[String]) -> Result<SolidGradient, String> {
         let object = self.object(object).ok_or(object)?;
-        gradient(object, &Planes::of(&object.drawing), by, &self.state.others(object))
+        let others = |given: &_| self.state.others_with(object, given);
+        gradient(object, &Planes::of(&object.drawing), by, &others)
     }
 }

@@ -6,7 +6,8 @@ use super::question::Question;
 use super::subject::ReplySubject;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
-use crate::solid::feature::{NoBody, body};
+use crate::solid::feature::{NoBody, body_kept};
+use crate::solid::kept::KeptBodies;
 use crate::solid::{SketchSolid, solid};
 use crate::{DimensionLayout, Estimate, Planes, PointId, SketchObject, solve};
 use indexmap::IndexMap;
@@ -174,13 +175,14 @@ pub(crate) struct Worked {
     pub layout: DimensionLayout<f64>,
     /// Numbers of other objects that it reads.
     others: OtherNumbers,
+    kept: Arc<KeptBodies>,
     body: std::sync::OnceLock<Result<SketchSolid<f64>, NoBody>>,
 }
 
 impl Worked {
     /// The valid body, or the reason for its absence.
     pub fn body(&self) -> Result<&SketchSolid<f64>, &NoBody> {
-        let make = || body(&self.object, &self.view.planes, &self.layout);
+        let make = || body_kept(&self.object, &self.view.planes, &self.layout, &self.kept);
         self.body.get_or_init(make).as_ref()
     }
 
@@ -220,6 +222,7 @@ pub struct SketchSession {
     begun: String,
     views: Vec<Arc<DrawingCache>>,
     worked: Vec<Arc<Worked>>,
+    kept: Arc<KeptBodies>,
     depth: usize,
     over: bool,
     /// Files written by SAVE and EXPORT in the current line, not passed to the host yet.
@@ -249,6 +252,8 @@ const LOOKS: [&str; 12] = [
 ];
 /// Commands that can invalidate a body and do not check it themselves.
 const LOSES: [&str; 7] = ["WELD", "DELETE", "TYPE", "ALIGN", "UNALIGN", "LINE", "POLYLINE"];
+/// Objects whose derived data are kept.
+const MAX_WORKED: usize = 8;
 /// Maximum number of undo steps.
 const MAX_UNDO: usize = 500;
 /// Maximum number of points, lines and faces in all undo states together.
@@ -301,6 +306,7 @@ impl SketchSession {
             begun: String::new(),
             views: Vec::new(),
             worked: Vec::new(),
+            kept: Arc::default(),
             depth: 0,
             over: false,
             written: BTreeMap::new(),
@@ -360,6 +366,9 @@ impl SketchSession {
         if result.is_ok() && LOSES.contains(&verb) {
             self.report_lost(&before);
         }
+        if result.is_ok() && !same_objects(&before, &self.state) {
+            self.follow(&before);
+        }
         let mut replies = std::mem::replace(&mut self.out, outer);
         match result {
             Ok(()) => {
@@ -392,6 +401,15 @@ impl SketchSession {
         replies
     }
 
+    /// True if an object had a body that was computed already: a text of many commands does not make one for each.
+    pub(super) fn had_body(&self, before: &SessionState, key: &str) -> bool {
+        let Some(old) = before.objects.get(key) else { return false };
+        let had = |w: &Arc<Worked>| {
+            Arc::ptr_eq(&w.object, old) && w.body.get().is_some_and(Result::is_ok)
+        };
+        self.worked.iter().any(had)
+    }
+
     /// Reports that the active object has lost its body by a command.
     fn report_lost(&mut self, before: &SessionState) {
         let Some(key) = self.state.active.clone() else { return };
@@ -400,12 +418,7 @@ impl SketchSession {
             return;
         };
         let (old, new) = (Arc::clone(old), Arc::clone(new));
-        // Only a body that was computed already, so that a text of many commands does not make one
-        // for each.
-        let had = |w: &Arc<Worked>| {
-            Arc::ptr_eq(&w.object, &old) && w.body.get().is_some_and(Result::is_ok)
-        };
-        if Arc::ptr_eq(&old, &new) || !self.worked.iter().any(had) {
+        if Arc::ptr_eq(&old, &new) || !self.had_body(before, &key) {
             return;
         }
         let worked = self.worked(&new);
@@ -594,7 +607,8 @@ impl SketchSession {
         self.state.objects.values().map(|o| o.name.clone()).collect()
     }
 
-    /// Dimensions and variables of an object with value and range, in the order of entry.
+    /// Dimensions and variables of an object with value and range, in the order of entry, then those of the objects
+    /// that it follows, as `object.number`.
     pub fn numbers(&mut self, name: &str) -> Option<Vec<(String, Option<f64>, Option<[f64; 2]>)>> {
         let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
         let worked = self.worked(&object);
@@ -602,7 +616,15 @@ impl SketchSession {
         let variables = object.variables.iter().map(|(k, v)| (k, &v.name, v.range));
         let dimensions = object.dimensions.iter().map(|(k, d)| (k, &d.name, d.range));
         let row = |(k, n, r): (&String, &String, _)| (n.clone(), values.get(k).copied(), r);
-        Some(variables.chain(dimensions).map(row).collect())
+        let stands = object.variables.values().filter(|v| object.alias(&v.name).is_some());
+        let known: Vec<String> = stands.map(|v| object.source(&v.name)).collect();
+        let followed = object.followed_numbers().into_iter();
+        let followed = followed.filter(|n| !known.contains(&n.0.to_ascii_lowercase()));
+        let followed = followed.map(|(n, _, r)| {
+            let value = values.get(&n.to_ascii_lowercase()).copied();
+            (n, value, r)
+        });
+        Some(variables.chain(dimensions).map(row).chain(followed).collect())
     }
 
     /// The body of an object, once it has faces and all dimensions.
@@ -739,9 +761,10 @@ impl SketchSession {
         }
         let view = self.view(object);
         let layout = lay_out(object, &view, &others);
-        let body = std::sync::OnceLock::new();
-        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, others, body });
-        if self.worked.len() >= 4 {
+        let (kept, body) = (Arc::clone(&self.kept), std::sync::OnceLock::new());
+        let object = Arc::clone(object);
+        let worked = Arc::new(Worked { object, view, layout, others, kept, body });
+        if self.worked.len() >= MAX_WORKED {
             self.worked.remove(0);
         }
         self.worked.push(Arc::clone(&worked));
@@ -846,6 +869,12 @@ pub(crate) fn lay_out<T: Real>(
     overrides: &BTreeMap<String, T>,
 ) -> DimensionLayout<T> {
     solve(object, &view.planes, overrides, &|| view.estimate().cloned())
+}
+
+/// True if all objects are as they were.
+fn same_objects(a: &SessionState, b: &SessionState) -> bool {
+    let pairs = || a.objects.iter().zip(&b.objects);
+    a.objects.len() == b.objects.len() && pairs().all(|(x, y)| x.0 == y.0 && Arc::ptr_eq(x.1, y.1))
 }
 
 /// True if nothing was changed: unchanged objects are shared.

@@ -146,13 +146,19 @@ impl SketchSession {
         let object = self.active()?.clone();
         let first = outline.points[0];
         let (_, layout) = self.laid_out(&object);
-        let known = |name: &str| {
-            let own = outline.numbers.iter().find(|n| n.0.eq_ignore_ascii_case(name));
-            own.map(|n| n.1).or_else(|| layout.values.get(name).copied())
+        let own = |name: &str| {
+            outline.numbers.iter().find(|n| n.0.eq_ignore_ascii_case(name)).map(|n| n.1)
         };
+        let known = |name: &str| own(name).or_else(|| layout.values.get(name).copied());
         let Some(reference) = object.reference() else {
             // The first shape of the section stays where it is put.
             let Some(at) = at else { return Ok([0.0; 2]) };
+            if let Some(e) = at.iter().find(|e| e.names().any(|n| own(n).is_none())) {
+                return Err(CommandError::text(
+                    format!("{e} places the first outline of a section, which has a fixed place"),
+                    "give a number, and MOVE the finished body by the expression",
+                ));
+            }
             let (p, q) = (now(&at[0], &known)?, now(&at[1], &known)?);
             let mut xyz = [0.0; 3];
             for (axis, x) in outline.axes.into_iter().zip([p, q]) {

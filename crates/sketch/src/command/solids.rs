@@ -660,7 +660,7 @@ impl SketchSession {
         let Some(name) = args.peek().map(|t| t.text.clone()) else {
             return Err(args.wants("the name of an object"));
         };
-        let object = self.known(&name)?.clone();
+        let object = SketchObject::clone(&*self.operand(&name)?);
         let key = name.to_lowercase();
         // By expressions, by angles other than quarter turns, about points other than the origin,
         // and for objects without a drawing: a feature.

@@ -11,6 +11,7 @@ use crate::feature::{
     Placement,
 };
 use crate::{CoordinateAxis, SketchObject, Variable};
+use std::sync::Arc;
 
 /// Numbers of a feature itself: each becomes a variable, so that SET changes it.
 struct OwnNumbers {
@@ -19,7 +20,7 @@ struct OwnNumbers {
 }
 
 impl OwnNumbers {
-    fn of(object: &SketchObject) -> Self {
+    fn of(object: &Arc<SketchObject>) -> Self {
         // The names that the feature takes over.
         let nothing = [0.0; 3].map(DimensionExpr::number);
         let feature = Feature {
@@ -38,15 +39,15 @@ impl OwnNumbers {
     }
 }
 
-fn operand(object: &SketchObject) -> Vec<FeatureOperand> {
-    vec![FeatureOperand { object: object.clone().into(), prefix: String::new() }]
+fn operand(object: &Arc<SketchObject>) -> Vec<FeatureOperand> {
+    vec![FeatureOperand::part(Arc::clone(object))]
 }
 
 impl SketchSession {
     /// The object of a treatment, with a body.
-    fn treated(&mut self, args: &mut Args) -> Result<SketchObject, CommandError> {
+    fn treated(&mut self, args: &mut Args) -> Result<Arc<SketchObject>, CommandError> {
         let name = args.name("the name of an object")?;
-        let object = self.known(&name)?.clone();
+        let object = self.operand(&name)?;
         if object.drawing.section.is_some() {
             return Err(CommandError::new(
                 114,
@@ -219,7 +220,7 @@ fn edge_choice(args: &mut Args) -> Result<Option<EdgeChoice>, CommandError> {
 }
 
 /// A face: `TOP axis`, `BOTTOM axis`, its number or its name.
-fn face_choice(args: &mut Args) -> Result<FaceChoice, CommandError> {
+pub(super) fn face_choice(args: &mut Args) -> Result<FaceChoice, CommandError> {
     for (word, top) in [("TOP", true), ("BOTTOM", false)] {
         if args.take(word) {
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;

@@ -66,6 +66,11 @@ impl DimensionExpr {
         }
     }
 
+    /// The number of a name.
+    pub fn name(name: &str) -> DimensionExpr {
+        DimensionExpr { text: name.to_owned(), ops: vec![ExprOp::Name(name.to_ascii_lowercase())] }
+    }
+
     /// Parses a text.
     ///
     /// # Errors

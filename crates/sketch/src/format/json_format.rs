@@ -174,8 +174,8 @@ impl ObjectData {
 }
 
 /// The JSON form: format and version, the fields of the object as data, and the commands that make
-/// it, which are what is read back.
-pub fn to_json(object: &SketchObject) -> Json {
+/// it ([`crate::script`]), which are what is read back.
+pub fn to_json(object: &SketchObject, script: &str) -> Json {
     let d = &object.drawing;
     let points = d
         .points
@@ -191,7 +191,6 @@ pub fn to_json(object: &SketchObject) -> Json {
             ("confidence", l.confidence.into()),
         ])
     });
-    let script = crate::format::script::script(object);
     Json::map([
         ("format", Json::from("sketch")),
         ("version", Json::from(1.0)),

@@ -56,11 +56,43 @@ fn edge_text(edge: &EdgeChoice) -> String {
     }
 }
 
-/// The commands that make an object. Running them gives the same object.
+/// The commands that make an object, after those of the objects that it follows. Running them gives the same object.
 pub fn script(object: &SketchObject) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(object, &mut out);
+    scripts(&[object]).into_iter().map(|(_, text)| text).collect()
+}
+
+/// Objects, and those that they follow, each after what it is made of, with the commands that make it.
+pub fn scripts<'a>(objects: &[&'a SketchObject]) -> Vec<(&'a SketchObject, String)> {
+    fn add<'a>(
+        object: &'a SketchObject,
+        given: &[&'a SketchObject],
+        out: &mut Vec<(&'a SketchObject, String)>,
+    ) {
+        let namesake = |o: &&SketchObject| o.name.eq_ignore_ascii_case(&object.name);
+        if out.iter().any(|(known, _)| namesake(known)) {
+            return;
+        }
+        let object = given.iter().copied().find(namesake).unwrap_or(object);
+        add_followed(object, given, out);
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = write(object, &mut text);
+        out.push((object, text));
+    }
+    fn add_followed<'a>(
+        object: &'a SketchObject,
+        given: &[&'a SketchObject],
+        out: &mut Vec<(&'a SketchObject, String)>,
+    ) {
+        for operand in object.feature.iter().flat_map(|f| &f.operands) {
+            match operand.follows {
+                true => add(&operand.object, given, out),
+                false => add_followed(&operand.object, given, out),
+            }
+        }
+    }
+    let mut out = Vec::new();
+    objects.iter().for_each(|object| add(object, objects, &mut out));
     out
 }
 
@@ -68,7 +100,7 @@ pub fn script(object: &SketchObject) -> String {
 fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> std::fmt::Result {
     let name = quoted(&object.name);
     writeln!(out, "WITHIN {name}")?;
-    for operand in &feature.operands {
+    for operand in feature.operands.iter().filter(|o| !o.follows) {
         write(&operand.object, out)?;
     }
     let parts: Vec<String> = feature.operands.iter().map(|o| quoted(&o.object.name)).collect();
@@ -93,7 +125,8 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         if all.is_empty() { String::new() } else { format!(" {word} {}", all.join(" ")) }
     };
     // The command may contain numbers of the feature itself.
-    let own: Vec<&crate::Variable> = object.variables.values().collect();
+    let own = object.variables.values().filter(|v| object.alias(&v.name).is_none());
+    let own: Vec<&crate::Variable> = own.collect();
     let command = match &feature.kind {
         FeatureKind::Boolean(operation) => format!("{} {parts} INTO {name}", operation.word()),
         FeatureKind::Revolve { line: [p, q], angle } => {
@@ -109,6 +142,10 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
                 Placement::Scale(_) => "SCALE",
             };
             format!("{word} {parts} {} FEATURE INTO {name}", place(p))
+        }
+        FeatureKind::OnFace(face) => {
+            let [object, base] = [0, 1].map(|k| quoted(&feature.operands[k].object.name));
+            format!("MOVE {object} ON {base} {} INTO {name}", face_text(face))
         }
         FeatureKind::Pattern { step, count } => {
             let word = match step {

@@ -44,9 +44,11 @@ impl Feature {
         };
         match &self.kind {
             FeatureKind::Boolean(operation) => Some(BodyTree::Combined(*operation, operands()?)),
-            FeatureKind::Place(_) | FeatureKind::Pattern { .. } => {
-                let images = self.images(layout).ok()?;
-                let one = operands()?.pop()?;
+            FeatureKind::Place(_) | FeatureKind::OnFace(_) | FeatureKind::Pattern { .. } => {
+                let laid = self.laid(layout);
+                let images = self.images(layout, &laid, &FacetPlan::default()).ok()?;
+                let (planes, own) = laid.first()?;
+                let one = body_tree(&self.operands.first()?.object, planes, own)?;
                 let mut copies: Vec<BodyTree<T>> =
                     images.iter().map(|image| one.placed(image)).collect();
                 match copies.len() {

@@ -3,7 +3,9 @@
 use super::blend::blended;
 use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
+use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
+use super::kept::KeptBodies;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
 use super::one_sided::confirm;
@@ -13,7 +15,7 @@ use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
-use crate::feature::{EdgeBlend, Feature, FeatureKind, FeatureOperand, Placement};
+use crate::feature::{EdgeBlend, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,9 +45,19 @@ pub enum NoBody {
     Copies(f64),
     /// Edges or faces cannot be treated.
     Treatment(TreatmentFault),
+    /// An operand that is a cross section, or is none.
+    Section {
+        /// Its name.
+        name: String,
+        /// True if it should be one.
+        wanted: bool,
+    },
     /// The section is on both sides of the axis of rotation, or the axis has zero length.
     Axis,
 }
+
+/// Components of a normal below this are zero, and coordinates within this share of the extent equal.
+const SQUARE: f64 = 1e-9;
 
 /// More copies than this are refused.
 pub(crate) const MAX_COPIES: u32 = 400;
@@ -69,19 +81,37 @@ pub fn body<T: Real>(
     planes: &Planes,
     layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let mut made = body_of_facets(object, planes, layout)?;
+    let first = |plan: &FacetPlan| body_at(object, planes, layout, plan);
+    let mut made = body_of_facets(object, planes, layout, None, &first)?;
     confirm(&mut made, layout, &|layout| Some(body(object, planes, layout).ok()?.mass()));
     Ok(made)
+}
+
+/// The same, with those of its operands that are kept.
+pub(crate) fn body_kept(
+    object: &Arc<SketchObject>,
+    planes: &Planes,
+    layout: &DimensionLayout<f64>,
+    kept: &Arc<KeptBodies>,
+) -> Result<SketchSolid<f64>, NoBody> {
+    let first = |plan: &FacetPlan| match object.feature {
+        Some(_) => kept.get(object, layout, || body_at(object, planes, layout, plan)),
+        // Drawings change at every move of a drag.
+        None => body_at(object, planes, layout, plan),
+    };
+    body_of_facets(object, planes, layout, Some(kept), &first)
 }
 
 fn body_of_facets<T: Real>(
     object: &SketchObject,
     planes: &Planes,
     layout: &DimensionLayout<T>,
+    kept: Option<&Arc<KeptBodies>>,
+    first: &dyn Fn(&FacetPlan) -> Result<SketchSolid<T>, NoBody>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let first = body_at(object, planes, layout, &FacetPlan::default());
+    let mut plan = FacetPlan { kept: kept.cloned(), ..FacetPlan::default() };
+    let first = first(&plan);
     let Err(why) = &first else { return first };
-    let mut plan = FacetPlan::default();
     let mut unclear = why.unclear();
     for _ in 0..ROUNDS {
         let Some((path, places)) = unclear.take() else { break };
@@ -100,7 +130,8 @@ fn body_of_facets<T: Real>(
     }
     // The points at which surfaces touch are not all known.
     for everywhere in 1..=FINEST_EVERYWHERE {
-        match body_at(object, planes, layout, &FacetPlan { everywhere, ..FacetPlan::default() }) {
+        let plan = FacetPlan { everywhere, kept: kept.cloned(), ..FacetPlan::default() };
+        match body_at(object, planes, layout, &plan) {
             Err(why) if why.unclear().is_some() => {}
             Err(why) if why.too_large() => break,
             found => return found,
@@ -117,6 +148,8 @@ pub(super) struct FacetPlan {
     /// Refinements of the features that have this one as an operand, in its own coordinates.
     inherited: Vec<(Vec3, u32)>,
     way: Vec<usize>,
+    /// Bodies of operands as they are without refinement.
+    kept: Option<Arc<KeptBodies>>,
 }
 
 /// Points near which facets are finer, each with the number of subdivisions, and the number of
@@ -141,6 +174,13 @@ impl FacetPlan {
         let own = self.near.get(&self.way).into_iter().flat_map(|n| &n.places);
         let near = self.inherited.iter().chain(own).copied().collect();
         FacetDensity { everywhere: self.everywhere, near }
+    }
+
+    /// True if nothing is refined, so that a body may be a kept one.
+    fn is_plain(&self) -> bool {
+        self.everywhere == 0
+            && self.inherited.is_empty()
+            && !self.near.keys().any(|way| way.starts_with(&self.way))
     }
 
     /// The plan of an operand that is used at several positions.
@@ -208,7 +248,7 @@ pub(super) fn body_at<T: Real>(
 ) -> Result<SketchSolid<T>, NoBody> {
     let made = match &object.feature {
         // A moved body closes as it did.
-        Some(feature) if matches!(feature.kind, FeatureKind::Place(_)) => {
+        Some(feature) if matches!(feature.kind, FeatureKind::Place(_) | FeatureKind::OnFace(_)) => {
             return feature.body(layout, plan);
         }
         Some(feature) => feature.body(layout, plan)?,
@@ -238,13 +278,17 @@ impl Feature {
         for operand in &self.operands {
             let inner = &operand.object;
             let named = |n: &str| inner.has_name(n).then(|| format!("{}{n}", operand.prefix));
-            let variables = inner.variables.values().map(|v| (&v.name, &v.value, v.range));
-            let dimensions = (inner.dimensions.values())
-                .filter(|d| d.role == crate::DimensionRole::Driving)
-                .filter_map(|d| Some((&d.name, d.value.as_ref()?, d.range)));
-            for (name, value, range) in variables.chain(dimensions) {
+            for (name, value, range) in inner.own_numbers() {
+                // A number of an object that is followed stays there; here is its name alone.
+                let (value, range) = match operand.follows {
+                    true if !operand.prefix.is_empty() => continue,
+                    true => {
+                        let of = crate::solid::merge::identifier(&inner.name);
+                        (DimensionExpr::name(&format!("{of}.{name}")), None)
+                    }
+                    false => (value.renamed(&named), range),
+                };
                 let name = format!("{}{name}", operand.prefix);
-                let value = value.renamed(&named);
                 let key = name.to_ascii_lowercase();
                 out.variables.insert(key, Variable { name, value, range });
             }
@@ -253,24 +297,65 @@ impl Feature {
         out
     }
 
-    /// The operands of objects, with the prefixes that keep their names apart.
-    pub fn operands(objects: &[&SketchObject]) -> Vec<FeatureOperand> {
+    /// The operands of objects, each with true if it is followed, with the prefixes that keep their names apart.
+    pub fn operands(objects: Vec<(Arc<SketchObject>, bool)>) -> Vec<FeatureOperand> {
+        let own = |object: &SketchObject| -> Vec<String> {
+            object.own_numbers().map(|n| n.0.to_ascii_lowercase()).collect()
+        };
+        let of_others = |object: &SketchObject| -> Vec<String> {
+            object.followed_numbers().iter().map(|n| n.0.to_ascii_lowercase()).collect()
+        };
+        let path = |object: &SketchObject| {
+            format!("{}.", crate::solid::merge::identifier(&object.name).to_ascii_lowercase())
+        };
+        // The names of numbers that are followed, wherever they are read.
         let mut taken: Vec<String> = Vec::new();
-        objects
-            .iter()
-            .map(|&object| {
-                // The names of a feature differ already.
-                let names = || object.variables.keys().chain(object.dimensions.keys());
-                let plain = object.feature.is_some() && !names().any(|n| taken.contains(n));
-                let prefix = if plain {
-                    String::new()
-                } else {
-                    format!("{}.", crate::solid::merge::identifier(&object.name))
-                };
-                taken.extend(names().map(|n| format!("{}{n}", prefix.to_ascii_lowercase())));
-                FeatureOperand { object: Arc::new(object.clone()), prefix }
-            })
-            .collect()
+        for (object, follows) in &objects {
+            taken.extend(of_others(object));
+            if *follows {
+                taken.extend(own(object).iter().map(|n| format!("{}{n}", path(object))));
+            }
+        }
+        let mut shared: Vec<String> = Vec::new();
+        let mut operands = Vec::new();
+        for (object, follows) in objects {
+            // The names of a feature differ already.
+            let (names, others) = (own(&object), of_others(&object));
+            let plain = object.feature.is_some()
+                && !names.iter().any(|n| taken.contains(n) || shared.contains(n))
+                && !others.iter().any(|n| shared.contains(n));
+            let prefix = match plain {
+                true => String::new(),
+                false => format!("{}.", crate::solid::merge::identifier(&object.name)),
+            };
+            shared.extend(names.iter().map(|n| format!("{}{n}", prefix.to_ascii_lowercase())));
+            shared.extend(others);
+            operands.push(FeatureOperand { object, prefix, follows });
+        }
+        operands
+    }
+
+    /// The same feature of the present states of the objects that it follows, by their folded names; `None` if they are
+    /// as they were. One that is no more becomes a part.
+    pub(crate) fn refreshed(
+        &self,
+        live: &dyn Fn(&str) -> Option<Arc<SketchObject>>,
+    ) -> Option<Feature> {
+        let mut changed = false;
+        let mut operands = self.operands.clone();
+        for operand in &mut operands {
+            let now = match operand.followed() {
+                Some(name) => live(&name.to_lowercase()),
+                None => operand.object.refreshed(live),
+            };
+            match now {
+                Some(now) if !Arc::ptr_eq(&now, &operand.object) => operand.object = now,
+                None if operand.follows => operand.follows = false,
+                _ => continue,
+            }
+            changed = true;
+        }
+        changed.then(|| Feature { kind: self.kind.clone(), operands })
     }
 
     /// The planes and positions of each operand.
@@ -280,9 +365,9 @@ impl Feature {
     ) -> Vec<(Planes, DimensionLayout<T>)> {
         let of = |operand: &FeatureOperand| {
             let inner = &operand.object;
-            let prefix = operand.prefix.to_ascii_lowercase();
+            let path = operand.path();
             let mut own: BTreeMap<String, T> = (layout.values.iter())
-                .filter_map(|(k, v)| Some((k.strip_prefix(&prefix)?.to_owned(), *v)))
+                .filter_map(|(k, v)| Some((k.strip_prefix(&path)?.to_owned(), *v)))
                 .collect();
             // Numbers of other objects have the same names everywhere.
             for name in foreign(inner) {
@@ -303,8 +388,14 @@ impl Feature {
     pub(super) fn images<T: Real>(
         &self,
         layout: &DimensionLayout<T>,
+        laid: &[(Planes, DimensionLayout<T>)],
+        plan: &FacetPlan,
     ) -> Result<Vec<Similarity<T>>, NoBody> {
         match &self.kind {
+            FeatureKind::OnFace(face) => {
+                let base = self.operand_body(1, &laid[1], plan, &[])?;
+                Ok(vec![on_face(&base, face)?])
+            }
             FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
             FeatureKind::Pattern { step, count } => {
                 let step = step.similarity(&|e| number(layout, e))?;
@@ -324,24 +415,29 @@ impl Feature {
         plan: &FacetPlan,
     ) -> Result<SketchSolid<T>, NoBody> {
         let value = |e: &DimensionExpr| number(layout, e);
-        let images = self.images(layout)?;
+        // An object that is followed may have become a solid, or a section.
+        let section = matches!(self.kind, FeatureKind::Revolve { .. });
+        let other = self.operands.iter().find(|o| o.object.drawing.section.is_some() != section);
+        if let Some(operand) = other {
+            return Err(NoBody::Section { name: operand.object.name.clone(), wanted: section });
+        }
         let laid = self.laid(layout);
+        let images = self.images(layout, &laid, plan)?;
         let mut bodies = Vec::new();
         let mut empty = Vec::new();
-        for (k, (operand, (planes, own))) in self.operands.iter().zip(&laid).enumerate() {
-            let inner = &operand.object;
-            let name = inner.name.clone();
-            let body = body_at(inner, planes, own, &plan.of_operand(k, &images)).map(|mut body| {
-                body.prefix_names(&operand.prefix);
-                body
-            });
+        let used = match self.kind {
+            FeatureKind::OnFace(_) => 1,
+            _ => self.operands.len(),
+        };
+        for (k, own) in laid.iter().enumerate().take(used) {
+            let body = self.operand_body(k, own, plan, &images);
             // An empty operand is valid: the result may have a body.
-            let nothing = matches!(body, Err(NoBody::Combine(CombineError::Empty)));
+            let nothing = matches!(&body, Err(NoBody::Operand { why, .. })
+                if **why == NoBody::Combine(CombineError::Empty));
             empty.push(nothing);
             bodies.push(match body {
-                Ok(body) => body,
                 Err(_) if nothing => SketchSolid::default(),
-                Err(why) => return Err(NoBody::Operand { name, number: k, why: Box::new(why) }),
+                body => body?,
             });
         }
         let nothing = || NoBody::Combine(CombineError::Empty);
@@ -364,7 +460,7 @@ impl Feature {
                 let [Some(p), Some(q)] = ends else { return Err(NoBody::Unfinished) };
                 self.turned(section, [p, q], value(angle)?, plan.density())
             }
-            (FeatureKind::Place(_), [body]) => Ok(body.placed(&images[0])),
+            (FeatureKind::Place(_) | FeatureKind::OnFace(_), [body]) => Ok(body.placed(&images[0])),
             (FeatureKind::Pattern { .. }, [body]) => repeated(body, &images),
             (FeatureKind::Blend { blend, edges }, [body]) => {
                 let size = match blend {
@@ -386,6 +482,33 @@ impl Feature {
                 drafted(body, angle, *axis, value(at)?, faces)
             }
             _ => Err(NoBody::Unfinished),
+        }
+    }
+
+    /// The body of an operand that is used at some positions, with the names of its faces.
+    fn operand_body<T: Real>(
+        &self,
+        k: usize,
+        (planes, own): &(Planes, DimensionLayout<T>),
+        plan: &FacetPlan,
+        images: &[Similarity<T>],
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let FeatureOperand { object, prefix, .. } = &self.operands[k];
+        let plan = plan.of_operand(k, images);
+        let make = || body_at(object, planes, own, &plan);
+        let made = match plan.kept.as_ref().filter(|_| plan.is_plain()) {
+            Some(kept) => kept.get(object, own, make),
+            None => make(),
+        };
+        match made {
+            Ok(mut body) => {
+                body.prefix_names(prefix);
+                Ok(body)
+            }
+            Err(why) => {
+                let name = object.name.clone();
+                Err(NoBody::Operand { name, number: k, why: Box::new(why) })
+            }
         }
     }
 
@@ -414,7 +537,7 @@ impl Feature {
         by: T,
         still: &BTreeSet<String>,
     ) -> Result<SketchSolid<T>, NoBody> {
-        let FeatureOperand { object, prefix } = &self.operands[k];
+        let FeatureOperand { object, prefix, .. } = &self.operands[k];
         let own = still.iter().filter_map(|n| n.strip_prefix(&**prefix)).map(str::to_owned);
         let mut body = moved_object(object, planes, layout, plan, by, &own.collect())?;
         body.prefix_names(prefix);
@@ -432,11 +555,11 @@ impl Feature {
         by: T,
         still: &BTreeSet<String>,
     ) -> Option<Result<SketchSolid<T>, NoBody>> {
-        let images = match self.images(layout) {
+        let laid = self.laid(layout);
+        let images = match self.images(layout, &laid, plan) {
             Ok(images) => images,
             Err(why) => return Some(Err(why)),
         };
-        let laid = self.laid(layout);
         let part = |k: usize, by: T| {
             let (planes, own) = &laid[k];
             self.operand_moved(k, (planes, own), &plan.of_operand(k, &images), by, still)
@@ -459,7 +582,7 @@ impl Feature {
                     b => combined([&a, &b?], *operation).map_err(NoBody::Combine),
                 }))
             }
-            FeatureKind::Place(_) => {
+            FeatureKind::Place(_) | FeatureKind::OnFace(_) => {
                 let scale = images[0].columns[0].norm();
                 Some(part(0, by / scale).map(|body| body.placed(&images[0])))
             }
@@ -519,6 +642,39 @@ pub(super) fn repeated<T: Real>(
     }
     let all: Vec<&SketchSolid<T>> = copies.iter().collect();
     united(&all).map_err(NoBody::Combine)
+}
+
+/// The move along an axis that brings the origin onto a plane face of a body.
+fn on_face<T: Real>(base: &SketchSolid<T>, face: &FaceChoice) -> Result<Similarity<T>, NoBody> {
+    let refuse = |text: String| {
+        let next = "name a plane face that is square to an axis; LIST FACES names them";
+        NoBody::Treatment(TreatmentFault::new(text, None, next))
+    };
+    let faces = base.chosen_faces(face).map_err(NoBody::Treatment)?;
+    let mut found: Option<(usize, T)> = None;
+    let size = base.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
+    for f in faces {
+        let FaceForm::Plane { at, normal } = base.form(f) else {
+            return Err(refuse(format!("face {face} is round")));
+        };
+        // Also its derivatives: it stays square to the axis.
+        let zero = |x: T| (0..T::PARTS).all(|part| x.part(part).abs() <= SQUARE);
+        let square = |k: &usize| (0..3).all(|j| j == *k || zero(normal[j]));
+        let Some(k) = (0..3).find(square) else {
+            return Err(refuse(format!("face {face} is inclined")));
+        };
+        match &found {
+            Some((axis, level)) if *axis != k || (*level - at[k]).re().abs() > SQUARE * size => {
+                return Err(refuse(format!("face {face} is in several planes")));
+            }
+            Some(_) => {}
+            None => found = Some((k, at[k])),
+        }
+    }
+    let (k, level) = found.ok_or_else(|| refuse(format!("there is no face {face}")))?;
+    let mut shift = [T::zero(); 3];
+    shift[k] = level;
+    Ok(Similarity::moved(Vec3::from(shift)))
 }
 
 /// The value of a number of a feature.
@@ -621,7 +777,44 @@ pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
     let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
     let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
-    // References of its operands are references of the feature.
-    let inner = feature.flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
-    own.chain(inner).filter(|n| n.contains('.') && !object.has_name(n)).collect()
+    // References of its operands are references of the feature, and so are the numbers of those that it follows.
+    let inner = feature.clone().flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
+    let follows = feature.flat_map(|f| &f.operands).filter(|o| o.follows).flat_map(|o| {
+        let path = o.path();
+        let all: Vec<String> = o.object.own_numbers().map(|n| n.0.to_ascii_lowercase()).collect();
+        all.into_iter().map(move |n| format!("{path}{n}"))
+    });
+    let all = own.chain(inner).chain(follows);
+    all.filter(|n| n.contains('.') && !object.has_name(n)).collect()
+}
+
+impl SketchObject {
+    /// The same object of the present states of those that it follows, by their folded names; `None` if they are as
+    /// they were.
+    pub(crate) fn refreshed(
+        &self,
+        live: &dyn Fn(&str) -> Option<Arc<SketchObject>>,
+    ) -> Option<Arc<SketchObject>> {
+        let old = self.feature.as_ref()?;
+        let new = old.refreshed(live)?;
+        let before = Feature::clone(old).object(&self.name);
+        let made = new.object(&self.name);
+        let mut out = self.clone();
+        for (key, variable) in &made.variables {
+            let known = before.variables.get(key);
+            // Numbers of its own, and changed copies, stay.
+            if out.variables.get(key) == known && known != Some(variable) {
+                out.variables.insert(key.clone(), variable.clone());
+            }
+        }
+        let gone = |key: &String, v: &Variable| {
+            !made.variables.contains_key(key) && before.variables.get(key) == Some(v)
+        };
+        out.variables.retain(|key, v| !gone(key, v));
+        if out.units == before.units {
+            out.units = made.units;
+        }
+        out.feature = made.feature;
+        Some(Arc::new(out))
+    }
 }

@@ -3,7 +3,7 @@
 use crate::solid::Vertex;
 use crate::solid::coincidence::Kink;
 use crate::{Estimate, Planes, SketchObject, solid, solve};
-use moldloft_num::{Dual, Vec3};
+use moldloft_num::{Dual, Real, Vec3};
 use std::collections::BTreeMap;
 
 /// Directions of one pass.
@@ -26,8 +26,8 @@ pub struct SolidGradient {
 }
 
 /// Derivatives with respect to dimensions and variables (any case). A number computed by an
-/// expression is varied as an independent value. `others` are the numbers of other objects in
-/// expressions.
+/// expression is varied as an independent value. `others` gives the numbers of other objects that this one reads, with
+/// some of them replaced; they are named with the object's name and a dot.
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
@@ -35,11 +35,16 @@ pub fn gradient(
     object: &SketchObject,
     planes: &Planes,
     by: &[String],
-    others: &BTreeMap<String, f64>,
+    others: &dyn Fn(&BTreeMap<String, Dual<WIDTH>>) -> BTreeMap<String, Dual<WIDTH>>,
 ) -> Result<SolidGradient, String> {
     let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
-    let plain = solve(object, planes, others, &estimate);
-    let keys: Vec<String> = by.iter().map(|n| n.to_ascii_lowercase()).collect();
+    let present: BTreeMap<String, f64> =
+        others(&BTreeMap::new()).into_iter().map(|(name, x)| (name, x.re())).collect();
+    let plain = solve(object, planes, &present, &estimate);
+    let followed: BTreeMap<String, bool> = (object.followed_numbers().into_iter())
+        .map(|(name, value, _)| (name.to_ascii_lowercase(), value.literal().is_some()))
+        .collect();
+    let keys: Vec<String> = by.iter().map(|name| object.source(name)).collect();
     if let Some(k) = keys.iter().position(|k| !plain.values.contains_key(k)) {
         return Err(by[k].clone());
     }
@@ -47,9 +52,10 @@ pub fn gradient(
     // lost.
     let plain_number = |key: &String| {
         let dimension = object.dimensions.get(key).and_then(|d| d.value.as_ref());
-        dimension
-            .or(object.variables.get(key).map(|v| &v.value))
-            .is_some_and(|e| e.literal().is_some())
+        match dimension.or(object.variables.get(key).map(|v| &v.value)) {
+            Some(own) => own.literal().is_some(),
+            None => followed.get(key).copied().unwrap_or(false),
+        }
     };
     let (given, computed): (Vec<usize>, Vec<usize>) =
         (0..keys.len()).partition(|&k| plain_number(&keys[k]));
@@ -63,10 +69,11 @@ pub fn gradient(
         kinks: vec![None; n],
     };
     for pass in passes {
-        let given = others.iter().map(|(name, x)| (name.clone(), Dual::from(*x)));
-        let own = (pass.iter().enumerate())
-            .map(|(d, &k)| (keys[k].clone(), Dual::seeded(plain.values[&keys[k]], d)));
-        let seeded: BTreeMap<String, Dual<WIDTH>> = given.chain(own).collect();
+        let own: BTreeMap<String, Dual<WIDTH>> = (pass.iter().enumerate())
+            .map(|(d, &k)| (keys[k].clone(), Dual::seeded(plain.values[&keys[k]], d)))
+            .collect();
+        let mut seeded = others(&own);
+        seeded.extend(own);
         let layout = solve(object, planes, &seeded, &estimate);
         let body = solid(object, planes, &layout).ok_or_else(String::new)?;
         let mass = body.mass();

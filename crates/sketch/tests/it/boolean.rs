@@ -40,8 +40,7 @@ fn overlapping_boxes() {
     // The operands are as they were.
     check(&mut s, "B1", 24.0, 52.0);
     // The result is parametric: every dimension of both drives it.
-    let dims: Vec<String> =
-        s.object("U").unwrap().variables.values().map(|d| d.name.clone()).collect();
+    let dims: Vec<String> = s.numbers("U").unwrap().into_iter().map(|row| row.0).collect();
     assert_eq!(dims, ["B1.D1", "B1.D2", "B1.D3", "B2.D1", "B2.D2", "B2.D3"]);
     let mut s = two();
     run(&mut s, "UNION B1 B2");

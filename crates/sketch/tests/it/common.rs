@@ -30,6 +30,13 @@ fn cycle(json: &Json) -> Vec<PointId> {
 }
 
 /// A drawing with points but no lines.
+/// All objects of a session as commands.
+pub fn all_commands(s: &SketchSession) -> String {
+    let names = s.names();
+    let objects: Vec<&SketchObject> = names.iter().filter_map(|n| s.object(n)).collect();
+    scripts(&objects).into_iter().map(|(_, text)| text).collect()
+}
+
 pub fn drawn(axes: [f64; 3], points: &[(f64, f64)]) -> SketchObject {
     let mut object = SketchObject::new("A", None);
     let drawing = object.draw();

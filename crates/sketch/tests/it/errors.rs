@@ -36,8 +36,7 @@ pub fn session() -> SketchSession {
 }
 
 fn image(s: &mut SketchSession) -> (String, Option<String>) {
-    let text = s.names().iter().map(|n| script(s.object(n).unwrap())).collect();
-    (text, s.active_object().map(|o| o.name.clone()))
+    (crate::common::all_commands(s), s.active_object().map(|o| o.name.clone()))
 }
 
 pub const SQUARE: &str = "SKETCH A 2D XY; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POINT 4 0 9
@@ -273,7 +272,7 @@ fn the_tutorial_runs() {
     let left = volume(&mut s, "PIECE").unwrap();
     assert!(left < whole && left > 0.5 * whole, "{left} of {whole}");
     // Each object is made again, bit for bit, by its own file; and the same script gives the same bits.
-    let text: String = s.names().iter().map(|n| script(s.object(n).unwrap())).collect();
+    let text = crate::common::all_commands(&s);
     let mut again = SketchSession::new();
     assert!(again.run_text(&text).iter().all(|r| !r.is_error()));
     assert_eq!(image(&mut s).0, image(&mut again).0);

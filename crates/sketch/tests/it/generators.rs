@@ -193,7 +193,7 @@ fn closed_forms_of_round_bodies() {
     s.insert(bar("R", 4.0, [0.0; 2], [-5.0, 5.0]));
     s.insert(bar("S", 2.0, [0.0; 2], [-5.0, 5.0]));
     s.run_text(
-        "ROTATE S X 90\nCOMMON R S INTO K\nCUT R S INTO P\nMOVE S 0.5 0 0\nCOMMON R S INTO O",
+        "ROTATE S X 90\nCOMMON R S INTO K\nCUT R S INTO P\nCOPY S T; MOVE T 0.5 0 0\nCOMMON R T INTO O",
     );
     let volume = |s: &mut SketchSession, n: &str| measured(s, n).map(|m| m[0]);
     let close = |got: Option<f64>, want: f64| {

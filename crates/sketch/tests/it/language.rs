@@ -18,7 +18,7 @@ fn run(s: &mut SketchSession, text: &str) -> Vec<CommandReply> {
 
 /// All objects as commands.
 fn text(s: &SketchSession) -> String {
-    s.names().iter().map(|n| script(s.object(n).unwrap())).collect()
+    crate::common::all_commands(s)
 }
 
 fn volume(s: &mut SketchSession, name: &str) -> f64 {

@@ -11,6 +11,7 @@ mod errors_enumerated;
 mod exact_drawings;
 mod expressions;
 mod faces;
+mod follow;
 mod generators;
 mod gradient;
 mod holes;

@@ -107,7 +107,8 @@ fn settings_and_curves_survive_the_file() {
     let mut t = SketchSession::new();
     run(&mut t, &script(&one));
     assert_eq!(t.active_object().unwrap(), &one);
-    let twin = moldloft_sketch::json_format::to_json(&one).to_string();
+    let twin =
+        moldloft_sketch::json_format::to_json(&one, &moldloft_sketch::script(&one)).to_string();
     let mut t = SketchSession::new();
     run(&mut t, &moldloft_sketch::json_format::from_json(&twin).unwrap());
     assert_eq!(t.active_object().unwrap(), &one);
