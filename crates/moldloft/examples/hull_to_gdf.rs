@@ -1,6 +1,6 @@
 //! A model as WAMIT's panels: `cargo run -p moldloft --example hull_to_gdf -- MODEL.sdl > hull.gdf`.
 //!
-//! Without a model: half a hull of three B-spline stations, its beam changed before it is panelled.
+//! Without a model: half a hull of three B-spline stations and its transom, its beam changed before it is panelled.
 
 use moldloft::{
     Diagnostic, Document, FileWorld, NoFiles, WriteOptions, format_named, registry, render, write,
@@ -17,6 +17,7 @@ const HULL: &str = "
     BCurve MC1({P11, P12, P13}, degree = 2); BCurve MC2({P21, P22, P23}, degree = 2);
     BCurve MC3({P31, P32, P33}, degree = 2);
     CLoftSurf hull({MC1, MC2, MC3}, divisions = {16, 8});
+    AbsPoint P34(16, 0, 0); Line centre(P34, P33); RuledSurf transom(MC3, centre, divisions = {0, 4});
 ";
 
 /// The panels of the model at `path`, or of the hull above, as WAMIT reads them; else its faults.

@@ -15,12 +15,7 @@ impl SketchSession {
         let key = name.to_lowercase();
         let around = self.state.outside.iter().rev().map(|o| &o.0);
         let found = std::iter::once(&self.state.objects).chain(around).find_map(|o| o.get(&key));
-        match found {
-            Some(object) => Ok(Arc::clone(object)),
-            None => {
-                Err(self.known(name).map_or_else(|e| e, |_| CommandError::text(name, "RENAME")))
-            }
-        }
+        found.map(Arc::clone).ok_or_else(|| self.unknown(name))
     }
 
     /// True if a feature of the name `target` follows the operand of a name. In the text of a feature, those inside are

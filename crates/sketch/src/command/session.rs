@@ -662,15 +662,18 @@ impl SketchSession {
 
     /// The object of a name, or 110.
     pub(crate) fn known(&self, name: &str) -> Result<&SketchObject, CommandError> {
-        self.object(name).ok_or_else(|| {
-            let names = self.state.objects.values().map(|o| o.name.as_str());
-            let next = match moldloft_diag::nearest(name, names) {
-                Some(near) => format!("did you mean {near}?"),
-                None => "LIST OBJECTS lists them".to_owned(),
-            };
-            CommandError::new(110, format!("there is no object {name}"), next)
-                .about(ReplySubject::of("unknown-object").names([&name.to_owned()]))
-        })
+        self.object(name).ok_or_else(|| self.unknown(name))
+    }
+
+    /// The error of a name that no object has.
+    pub(super) fn unknown(&self, name: &str) -> CommandError {
+        let names = self.state.objects.values().map(|o| o.name.as_str());
+        let next = match moldloft_diag::nearest(name, names) {
+            Some(near) => format!("did you mean {near}?"),
+            None => "LIST OBJECTS lists them".to_owned(),
+        };
+        CommandError::new(110, format!("there is no object {name}"), next)
+            .about(ReplySubject::of("unknown-object").names([&name.to_owned()]))
     }
 
     pub(crate) fn active_mut(&mut self) -> Result<&mut SketchObject, CommandError> {

