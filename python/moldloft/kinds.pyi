@@ -2402,8 +2402,9 @@ def Join(
     from different objects. The result is the first edge.
 
     Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
-    Curves and snakes along whole edges are accepted too; the directions may be opposite. Patches on
-    the same curves and points join without a declaration. Edges farther apart than the tolerance at
+    Curves and snakes along edges are accepted too; the directions may be opposite. One of the two may
+    be a part of an edge, such as a `SubCurve` between beads: the whole other edge is on that part.
+    Patches on the same curves and points join without a declaration. Edges farther apart than the tolerance at
     any point are an error; the vertices are those of the patch declared first.
 
     Parameters
@@ -8158,7 +8159,7 @@ def FairNet(
     tolerance: _Number,
     measure: _Text | None = ...,
     breaks: _Vectors | None = ...,
-    keep: _Text | None = ...,
+    kept_ends: _Text | None = ...,
     along: _Vector | None = ...,
     motion: _Text | None = ...,
     degree: _Integer | None = ...,
@@ -8171,6 +8172,11 @@ def FairNet(
     tolerances: _Numbers | None = ...,
     tolerances_at: _Vectors | None = ...,
     steps: _Integer | None = ...,
+    bound: _Text | None = ...,
+    shape: Sequence[_Text] | _Any | None = ...,
+    knuckles: Sequence[_Integer] | _Array | _Any | None = ...,
+    release: _Vectors | None = ...,
+    keep: Sequence[_Text] | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8190,8 +8196,8 @@ def FairNet(
     by the tolerance, so that the sum of the measure over all curves is minimal; each curve
     then interpolates its moved points, so that intersections are preserved. A list that
     ends with its first point is a closed curve. The value is the list of the faired curves:
-    `net[2]` is the second, `NetCurve` makes it an object. The tolerance bounds the points:
-    there is no `bound`.
+    `net[2]` is the second, `NetCurve` makes it an object. Options refer to curves by number,
+    from 1.
 
     Parameters
     ----------
@@ -8206,7 +8212,7 @@ def FairNet(
     breaks : list of point, optional
         Intended breaks: these points do not move, nothing is smoothed across them, and the
         curves have corners there.
-    keep : text, optional
+    kept_ends : text, optional
         Fixed ends of open curves: "corners" (points at which every curve through them ends),
         "ends" (all) or "none". Default corners.
     along : vector, optional
@@ -8240,13 +8246,29 @@ def FairNet(
         for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
         of the measure, default 0.1. "energy": the largest measure, required.
     fixed : list of point, optional
-        Further points that do not move.
+        Points that do not move besides those of `kept_ends`.
     tolerances : list of number, optional
         Tolerances of the points in `tolerances_at`, instead of `tolerance`.
     tolerances_at : list of point, optional
         The points that `tolerances` belong to.
     steps : integer, optional
         Steps per point of each curve and pass in the mode "faithful". 1 to 1000, default 3.
+    bound : text, optional
+        What the tolerance bounds: "points", their moves; "curve": no curve is farther from the
+        one before than the smaller tolerance of the two points beside. No derivatives. Default
+        points.
+    shape : list of text, optional
+        What curves have to have, exactly, by their numbers: "2: convex", "2:
+        straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points
+        on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "1:
+        tangent=start:1,0,0". No derivatives.
+    knuckles : list of integer, optional
+        Numbers of curves, from 1, along which all curves that cross them break.
+    release : list of point, optional
+        Points that are wrong: they move wherever the curves through the others are.
+    keep : list of text, optional
+        "volume" and its "centroid" stay, by splines through the sections, where points move
+        along one direction. No derivatives.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.

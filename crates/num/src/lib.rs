@@ -54,7 +54,7 @@ pub use reparametrization::{
     Composed, Reparametrization, ReparametrizationJet, inv_reparametrization,
     inv_reparametrization_in, lift_reparametrization,
 };
-pub use rev::{Adjoints, Rev, Tape};
+pub use rev::{Adjoints, DerivativeTape, Rev};
 pub use roots::{NoRoot, find_root};
 pub use shape::{
     Curve, CurveFormula, CurveJet, Field, InnerPlane, Order, SurfJet, Surface, SurfaceFormula,

@@ -1,10 +1,10 @@
 //! Numbers of reverse differentiation: each knows its node on a tape, which holds what it was made of.
 //!
-//! `f64 in -> Rev ... Rev -> Tape (rows of a sparse, lower triangular matrix) -> Adjoints (products with its transpose)`
+//! `f64 in -> Rev ... Rev -> DerivativeTape (rows of a sparse, lower triangular matrix) -> Adjoints (products with its transpose)`
 //!
 //! A tape belongs to its thread, so that a recording runs on one. It never gives a number that may be wrong: a part of a
 //! [`Rev`] that does not exist, a node that was forgotten and a tape beyond its limit make it unsound
-//! ([`Tape::is_sound`]), and what was recorded is then of no use.
+//! ([`DerivativeTape::is_sound`]), and what was recorded is then of no use.
 
 use crate::real::Real;
 use std::cell::RefCell;
@@ -14,15 +14,15 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 ///
 /// # Example
 /// ```
-/// use moldloft_num::{Adjoints, Real, Rev, Tape};
-/// Tape::clear();
-/// let (x, y) = (Tape::input(3.0), Tape::input(4.0));
+/// use moldloft_num::{Adjoints, Real, Rev, DerivativeTape};
+/// DerivativeTape::clear();
+/// let (x, y) = (DerivativeTape::input(3.0), DerivativeTape::input(4.0));
 /// let length = (x * x + y * y).sqrt();
 /// let mut adjoints = Adjoints::new();
 /// adjoints.add(length, 1.0);
 /// adjoints.pull();
 /// assert_eq!(length.re(), 5.0);
-/// assert!(Tape::is_sound() && adjoints.are_sound());
+/// assert!(DerivativeTape::is_sound() && adjoints.are_sound());
 /// assert!((adjoints.of(x) - 0.6).abs() < 1e-15 && (adjoints.of(y) - 0.8).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,9 +48,9 @@ struct Dependence {
 
 /// A recording: for each node the nodes that it depends on, and the rates.
 ///
-/// Nodes up to [`Tape::keep`] stay; those after it are *local*, until [`Tape::forget`].
+/// Nodes up to [`DerivativeTape::keep`] stay; those after it are *local*, until [`DerivativeTape::forget`].
 #[derive(Debug)]
-pub struct Tape {
+pub struct DerivativeTape {
     /// Where the dependences of each node end.
     ends: Vec<u32>,
     dependences: Vec<Dependence>,
@@ -72,10 +72,10 @@ impl std::fmt::Debug for Dependence {
 }
 
 thread_local! {
-    static TAPE: RefCell<Tape> = const { RefCell::new(Tape::empty()) };
+    static TAPE: RefCell<DerivativeTape> = const { RefCell::new(DerivativeTape::empty()) };
 }
 
-impl Tape {
+impl DerivativeTape {
     const fn empty() -> Self {
         Self {
             ends: Vec::new(),
@@ -253,7 +253,7 @@ impl Adjoints {
         TAPE.with_borrow(|tape| self.pull_down_to(tape, 0));
     }
 
-    fn pull_down_to(&mut self, tape: &Tape, last: usize) {
+    fn pull_down_to(&mut self, tape: &DerivativeTape, last: usize) {
         self.weights.resize(tape.ends.len(), 0.0);
         for k in (last..tape.ends.len()).rev() {
             let weight = self.weights[k];
@@ -439,7 +439,7 @@ impl Real for Rev {
             0 => self.value,
             _ if self.node == 0 => 0.0,
             _ => {
-                Tape::refuse();
+                DerivativeTape::refuse();
                 f64::NAN
             }
         }
@@ -448,7 +448,7 @@ impl Real for Rev {
     fn from_parts(mut part: impl FnMut(usize) -> f64) -> Self {
         let value = part(0);
         if part(1) != 0.0 {
-            Tape::refuse();
+            DerivativeTape::refuse();
         }
         Self { value, node: 0 }
     }
@@ -596,7 +596,7 @@ mod tests {
         let mut adjoints = Adjoints::new();
         adjoints.add(y, 1.0);
         adjoints.pull();
-        assert!(Tape::is_sound() && adjoints.are_sound());
+        assert!(DerivativeTape::is_sound() && adjoints.are_sound());
         of.map(|x| adjoints.of(x))
     }
 
@@ -605,8 +605,8 @@ mod tests {
         for (a, b) in [(0.7, 1.3), (1.1, 0.4), (0.2, 2.9)] {
             let dual = formulas(D::seeded(a, 0), D::seeded(b, 1));
             let plain = formulas(a, b);
-            Tape::clear();
-            let of = [Tape::input(a), Tape::input(b)];
+            DerivativeTape::clear();
+            let of = [DerivativeTape::input(a), DerivativeTape::input(b)];
             let taped = formulas(of[0], of[1]);
             for (k, ((d, r), p)) in dual.iter().zip(&taped).zip(&plain).enumerate() {
                 assert_eq!(r.re().to_bits(), p.to_bits(), "formula {k}");
@@ -626,8 +626,8 @@ mod tests {
             let f = (u * v).sin().scaled(a) * (u + v.scaled(a)).exp();
             [f.uu, f.uv, f.vv]
         }
-        Tape::clear();
-        let a = Tape::input(0.6);
+        DerivativeTape::clear();
+        let a = DerivativeTape::input(0.6);
         let (taped, dual) = (second(a), second(Dual::<1>::seeded(0.6, 0)));
         for (r, d) in taped.into_iter().zip(dual) {
             assert!((gradient(r, [a, a])[0] - d.eps[0]).abs() < 1e-13);
@@ -636,49 +636,49 @@ mod tests {
 
     #[test]
     fn local_recordings_are_pulled_and_forgotten() {
-        Tape::clear();
-        let x = Tape::input(2.0);
+        DerivativeTape::clear();
+        let x = DerivativeTape::input(2.0);
         let y = x * x;
-        Tape::keep();
+        DerivativeTape::keep();
         let mut adjoints = Adjoints::new();
         let mut last = y;
         for k in 0..3 {
             let z = y * y * f64::from(k);
             adjoints.add(z, 1.0);
             adjoints.pull_local();
-            Tape::forget();
+            DerivativeTape::forget();
             last = z;
         }
         adjoints.pull();
         // 3 x^4 by x.
-        assert_eq!((adjoints.of(x), Tape::is_sound()), (96.0, true));
+        assert_eq!((adjoints.of(x), DerivativeTape::is_sound()), (96.0, true));
         // A number of a local recording is of no use after it.
         let _ = last + y;
-        assert!(!Tape::is_sound());
+        assert!(!DerivativeTape::is_sound());
     }
 
     #[test]
     fn what_has_no_derivative_is_not_finite() {
-        Tape::clear();
-        let x = Tape::input(0.0);
+        DerivativeTape::clear();
+        let x = DerivativeTape::input(0.0);
         assert!(Rev::from(0.0).sqrt().is_finite() && x.is_finite());
         let root = x.sqrt();
         assert!(!root.is_finite() && !(root * 0.0).is_finite() && !(x + root).is_finite());
         let mut adjoints = Adjoints::new();
         adjoints.add(root * 2.0, 1.0);
-        assert!(!adjoints.are_sound() && Tape::is_sound());
+        assert!(!adjoints.are_sound() && DerivativeTape::is_sound());
         assert!(D::seeded(0.0, 0).sqrt().is_finite() == root.is_finite());
     }
 
     #[test]
     fn parts_that_do_not_exist_make_the_tape_unsound() {
-        Tape::clear();
-        let x = Tape::input(1.0);
+        DerivativeTape::clear();
+        let x = DerivativeTape::input(1.0);
         assert_eq!((Rev::from(2.0).part(1), x.part(0)), (0.0, 1.0));
-        assert!(Tape::is_sound());
+        assert!(DerivativeTape::is_sound());
         let _ = Rev::from_parts(|k| x.part(k));
-        assert!(!Tape::is_sound());
-        Tape::clear();
-        assert!(Tape::is_sound());
+        assert!(!DerivativeTape::is_sound());
+        DerivativeTape::clear();
+        assert!(DerivativeTape::is_sound());
     }
 }

@@ -8,7 +8,7 @@ use crate::edges::{along_edge, evaluated_in_parts};
 use crate::panelling::Panelling;
 use crate::patch_values::PatchValues;
 use moldloft_model::Graph;
-use moldloft_num::{Adjoints, Rev, Tape, Vec3};
+use moldloft_num::{Adjoints, DerivativeTape, Rev, Vec3};
 use std::ops::Range;
 
 /// Number of points that are recorded together: their tape stays in the cache.
@@ -16,7 +16,7 @@ const PART: usize = 2048;
 
 impl Panelling {
     /// Adds the derivatives of weighted sums of the vertices by the nodes of this thread's tape, of which `graph` consists:
-    /// `weights` and `adjoints` are those of each sum. What was recorded before stays on the tape ([`Tape::keep`]); nothing
+    /// `weights` and `adjoints` are those of each sum. What was recorded before stays on the tape ([`DerivativeTape::keep`]); nothing
     /// can be recorded after it.
     ///
     /// `None` when a surface has no value there, or another one than the panelling was made of.
@@ -37,7 +37,7 @@ impl Panelling {
         };
         // Marks on edges are nodes that several parts of a patch refer to.
         let edges: Option<Vec<_>> = owned.iter().map(|(patch, _)| edges(*patch)).collect();
-        Tape::keep();
+        DerivativeTape::keep();
         for ((patch, owned), edges) in owned.iter().zip(edges?) {
             graph.budget().poll().ok()?;
             let plain = self.own_points(*patch);
@@ -56,7 +56,7 @@ impl Panelling {
                     }
                     adjoints.pull_local();
                 }
-                Tape::forget();
+                DerivativeTape::forget();
             });
             if !same {
                 return None;

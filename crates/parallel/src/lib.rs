@@ -28,7 +28,7 @@ pub use many as prelude;
 pub use single as prelude;
 
 #[cfg(not(target_family = "wasm"))]
-pub use pool::on_one_thread;
+pub use pool::{is_alone, on_one_thread};
 
 #[cfg(test)]
 mod tests {

@@ -42,13 +42,15 @@ thread_local! {
     static ALONE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Size of the stack of a thread that works alone: that of a main thread.
-const STACK_BYTES: usize = 16 << 20;
+/// True on a thread of [`on_one_thread`]: its work must stay on it.
+pub fn is_alone() -> bool {
+    ALONE.get()
+}
 
 /// Does work with all its parallel loops on one thread, a new one: data kept by thread are found again.
 /// `None` when the system refuses a thread.
-pub fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> Option<R> {
-    let builder = ThreadPoolBuilder::new().num_threads(1).stack_size(STACK_BYTES);
+pub fn on_one_thread<R: Send>(stack_bytes: usize, work: impl FnOnce() -> R + Send) -> Option<R> {
+    let builder = ThreadPoolBuilder::new().num_threads(1).stack_size(stack_bytes);
     let alone = builder.build().ok()?;
     Some(alone.install(|| {
         ALONE.set(true);
@@ -114,7 +116,7 @@ mod tests {
     #[test]
     fn one_thread_does_all_the_work_of_its_loops() {
         use crate::many::*;
-        let threads = on_one_thread(|| {
+        let threads = on_one_thread(1 << 20, || {
             let inner = || (0..8u32).into_par_iter().map(|_| std::thread::current().id());
             let outer = (0..8u32).into_par_iter().flat_map_iter(|_| inner().collect::<Vec<_>>());
             outer.collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! Calls with numbers of a tape: the row's own body, or for functions without one their Jacobian as one node a number.
 
 use crate::{CallError, Context, Implementation, Row, Scalar, Value};
-use moldloft_num::{Dual4, Real, Rev, Tape};
+use moldloft_num::{DerivativeTape, Dual4, Real, Rev};
 use std::collections::HashMap;
 
 /// A body for numbers of a tape; in a page, whose engine has no reverse differentiation, none.
@@ -52,7 +52,7 @@ fn by_jacobian(row: &Row, args: &[Value<Rev>], context: &Context) -> Result<Valu
         });
     }
     // By more numbers than the gradient has it would take longer than forward differentiation as a whole.
-    if inputs.len() > Tape::inputs().max(DIRECTIONS) {
+    if inputs.len() > DerivativeTape::inputs().max(DIRECTIONS) {
         return Err(no_tape(row));
     }
     let mut rates: Vec<Vec<(f64, Rev)>> = Vec::new();

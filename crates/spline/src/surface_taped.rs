@@ -76,7 +76,7 @@ impl<T: Real> BSplineSurface<T> {
 mod tests {
     use super::*;
     use crate::KnotVector;
-    use moldloft_num::{Adjoints, Dual, Rev, Tape};
+    use moldloft_num::{Adjoints, DerivativeTape, Dual, Rev};
 
     /// A surface of inputs `x`: coordinates, then weights.
     fn surface<T: Real>(x: &[T], rational: bool) -> BSplineSurface<T> {
@@ -105,14 +105,14 @@ mod tests {
         let x: Vec<f64> = (0..96).map(|k| 1.0 + 0.3 * f64::from(k * k % 17).sin()).collect();
         for rational in [false, true] {
             let plain = numbers(&surface(&x, rational));
-            Tape::clear();
-            let inputs: Vec<Rev> = x.iter().map(|&x| Tape::input(x)).collect();
+            DerivativeTape::clear();
+            let inputs: Vec<Rev> = x.iter().map(|&x| DerivativeTape::input(x)).collect();
             let taped = numbers(&surface(&inputs, rational));
             let weight = |k: usize| f64::from(k as u32 * 7919 % 101) / 50.0 - 1.0;
             let mut adjoints = Adjoints::new();
             taped.iter().enumerate().for_each(|(k, y)| adjoints.add(*y, weight(k)));
             adjoints.pull();
-            assert!(Tape::is_sound() && adjoints.are_sound());
+            assert!(DerivativeTape::is_sound() && adjoints.are_sound());
             assert!(taped.iter().zip(&plain).all(|(a, b)| a.re() == *b));
             for (at, input) in inputs.iter().enumerate() {
                 let seeded = x.iter().enumerate().map(|(k, &x)| match k == at {

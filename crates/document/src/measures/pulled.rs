@@ -11,10 +11,11 @@ use crate::measures::gradients::{WeightedOutput, numbers};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_lang::SolveStatus;
+use moldloft_lang::run::program::STACK_BYTES;
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::source::fault_location::unplaced;
 use moldloft_mesh::pulled_measures;
-use moldloft_num::{Adjoints, Real, Rev, Tape, Vec3, solve_pivoting_fully};
+use moldloft_num::{Adjoints, DerivativeTape, Real, Rev, Vec3, solve_pivoting_fully};
 use moldloft_parallel::on_one_thread;
 use moldloft_registry::CallError;
 use std::collections::HashSet;
@@ -53,9 +54,9 @@ impl Document {
         let (mesh, others) = self.split(outputs)?;
         let sums = outputs.first().map_or(0, |output| output.weights.len());
         let all = || outputs.iter().map(|output| output.name.clone()).collect();
-        let pulled = on_one_thread(|| {
-            Tape::clear();
-            let inputs: Vec<Rev> = by.iter().map(|_| Tape::input(0.0)).collect();
+        let pulled = on_one_thread(STACK_BYTES, || {
+            DerivativeTape::clear();
+            let inputs: Vec<Rev> = by.iter().map(|_| DerivativeTape::input(0.0)).collect();
             let mut adjoints = vec![Adjoints::new(); sums];
             let refused = self.recorded(&seeds, &inputs, mesh.as_ref(), &others, &mut adjoints)?;
             if let Some(names) = refused {
@@ -134,15 +135,16 @@ impl Document {
         let budget = self.budget();
         let spent = || budget.poll().map_err(|spent| vec![unplaced(&CallError::from(spent))]);
         spent()?;
-        if !Tape::is_sound() {
+        if !DerivativeTape::is_sound() {
             return Ok(Some(Vec::new()));
         }
         for output in others {
             let numbers = self.taped_numbers(&mut evaluation, &output.name)?;
             spent()?;
             // Results that are kept for later outputs may depend on what the tape does not have.
-            let sound =
-                |numbers: &Vec<Rev>| Tape::is_sound() && numbers.iter().all(|x| x.is_finite());
+            let sound = |numbers: &Vec<Rev>| {
+                DerivativeTape::is_sound() && numbers.iter().all(|x| x.is_finite())
+            };
             let Some(numbers) = numbers.filter(sound) else {
                 return Ok(Some(vec![output.name.clone()]));
             };
@@ -153,7 +155,7 @@ impl Document {
         let Some(WeightedMesh { panelled, weights, names }) = mesh else { return Ok(None) };
         let pulled = panelled.panelling.pull(&evaluation.graph, weights, adjoints);
         spent()?;
-        Ok((pulled.is_none() || !Tape::is_sound()).then(|| names.clone()))
+        Ok((pulled.is_none() || !DerivativeTape::is_sound()).then(|| names.clone()))
     }
 
     /// The unknowns on the tape of this thread: x_j with the derivatives of -(J^-1)_ji c_i, by the conditions c at the

@@ -43,7 +43,7 @@ pub(super) const MOST_CALLS: usize = 12_000;
 
 /// Stack of a run: maximum nesting times the largest frame, with a reserve.
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) const STACK_BYTES: usize = 192 << 20;
+pub const STACK_BYTES: usize = 192 << 20;
 
 /// The id of a diagnostic that is not shown, because its cause was reported already.
 pub(crate) const SILENT: &str = "silent";

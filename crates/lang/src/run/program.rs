@@ -2,7 +2,7 @@
 
 use crate::model_file::names::plain_name;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::run::interpreter::STACK_BYTES;
+pub use crate::run::interpreter::STACK_BYTES;
 use crate::run::interpreter::{Inputs, Interpreter};
 use crate::run::sketches::Site;
 use crate::source::env::{Environment, Evaluation};
@@ -62,9 +62,13 @@ pub enum ArgumentInText {
     After(Span),
 }
 
-/// Runs `f` where a deeply nested program finds enough stack.
+/// Runs `f` where a deeply nested program finds enough stack: a thread of its own, except where all work
+/// stays on one thread, whose stack has [`STACK_BYTES`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    if moldloft_parallel::is_alone() {
+        return f();
+    }
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
         match thread.expect("a thread can be started").join() {
@@ -79,9 +83,13 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
 #[cfg(not(target_arch = "wasm32"))]
 const MORE_STACK: u32 = 64 << 20;
 
-/// Runs `f` on a stack of its own, which counts as memory; `None` without memory for it.
+/// Runs `f` on a stack of its own, which counts as memory; `None` without memory for it, and where all work stays on
+/// one thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn on_new_stack<R: Send>(budget: &Budget, f: impl FnOnce() -> R + Send) -> Option<R> {
+    if moldloft_parallel::is_alone() {
+        return None;
+    }
     budget.grow(MORE_STACK.into()).ok()?;
     let _held = moldloft_budget::beside(MORE_STACK);
     std::thread::scope(|scope| {

@@ -116,7 +116,7 @@ fn what_cannot_be_dragged_says_so() {
     let mut s = session("AbsPoint P(1, 2, 3); XPlane p(1);");
     for (request, part) in [
         (json!({"kind": "drag_begin", "object": "nothing"}), "nothing"),
-        (json!({"kind": "drag_begin", "object": "p"}), "not at a place"),
+        (json!({"kind": "drag_begin", "object": "p"}), "not a position"),
         (json!({"kind": "drag_to", "target": [0, 0, 0], "basis": []}), "nothing is dragged"),
         (json!({"kind": "nonsense"}), "unknown variant"),
         (json!({"kind": "set", "values": {"Q.x": 1}}), "Q.x"),
