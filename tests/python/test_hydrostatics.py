@@ -254,7 +254,7 @@ def test_what_cannot_float(barge):
         barge.equilibrium(-1, density=1)
     with pytest.raises(moldloft.ModelError, match="centre of gravity"):
         barge.equilibrium(50, free=["trim"], density=1)
-    with pytest.raises(moldloft.ModelError, match="one side"):
+    with pytest.raises(moldloft.ModelError, match="half a body cannot heel"):
         barge.equilibrium(20, cg=(6, 0, 1), free=["heel"], sides="one", density=1)
     with pytest.raises(moldloft.Error, match="not both"):
         barge.hydrostatics(level=1, draft=1)
