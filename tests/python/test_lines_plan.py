@@ -136,7 +136,7 @@ def test_bad_requests(options, words):
 
 def test_a_model_without_surfaces(tmp_path):
     model = moldloft.loads("AbsPoint a(0, 0, 0);")
-    with pytest.raises(moldloft.Error, match="shows none"):
+    with pytest.raises(moldloft.Error, match="shows no surface"):
         lines_plan(model)
     with pytest.raises(moldloft.Error, match=r"\.jpg"):
         draw(model, tmp_path / "plan.jpg")

@@ -335,7 +335,7 @@ def test_panel_files_are_what_capytaine_reads(
         ("mar", "2 0\n1 2 3 4\n2 1 0 0\n3 1 1 0\n4 0 1 0\n0 0 0 0\n 0 0 0\n1 2 3 4\n", "no panels"),
         ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n", "zeros"),
         ("mar", "2 0\n1 0 0 0\n3 1 1 0\n0 0 0 0\n1 2 2 2\n", "vertex 2"),
-        ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n0 0 0 0\n1 2 9\n", "none of the 3"),
+        ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n0 0 0 0\n1 2 9\n", "beyond the 3 vertices"),
         ("gdf", "a\n1 9.8\n0 0\n1\n0 0 0 1 0 0 1 1\n", "expected 12 numbers, found 8"),
         ("gdf", "a\n1 9.8\n0 2\n1\n", "line 3"),
         ("pnl", "a\nb\nc\n1 3 0 0\n\n\n1 0 0 0\n2 1 0 0\n3 1 1 0\n\n\n\n1 5 1 2 3\n", "line 13"),
