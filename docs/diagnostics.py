@@ -57,6 +57,7 @@ WITHOUT = {
     "no-curvature",
     "no-grid",
     "no-plane",
+    "no-reverse",
     "no-text",
     "no-weights",
     "not-faired",

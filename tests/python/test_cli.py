@@ -220,7 +220,6 @@ def test_version_and_help(cli):
 @pytest.mark.parametrize(
     "wrong",
     [
-        [],
         ["bild"],
         ["build"],
         ["build", HULL, "--to", "dwg"],

@@ -590,7 +590,7 @@ def test_edits_are_data():
         on_line is not None and on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
     )
     assert s.snap(1e6, 1e5, reach=1) is None
-    with pytest.raises(SketchError, match="not a row"):
+    with pytest.raises(SketchError, match="expected indices"):
         s.draw([[0, 0]], [[0, 1]])
     with pytest.raises(SketchError):
         s.edit("SET NOTHING 5")

@@ -16,6 +16,8 @@ struct Template {
 /// Said where no short command leads: guards against a fault of our own, or against sizes that take minutes to reach.
 const GUARDS: &[&str] = &[
     "an edge vanishes when the other edges of its corner are blended",
+    // Names of numbers of other objects have a dot, which own ones have not.
+    "{name} is a number of two objects of {target}",
     // The reference of an open question is dropped with its object.
     "there is no object {key}",
     // A curve waits for its points without a word; bodies of objects without positions are not begun.
@@ -195,6 +197,10 @@ const BOX: &str = "SKETCH B
     LINE 9 5 6 TYPE X; LINE 10 6 7 TYPE Y; LINE 11 7 8 TYPE X; LINE 12 8 5 TYPE Y
     DIM W X 1 2 = 4; DIM D Y 1 4 = 3; DIM H Z 1 5 = 2; GENERATE FACES";
 
+/// A plate that follows its drill.
+const DRILLED: &str = "SKETCH A 2D XY; RECTANGLE 60 40; EXTRUDE A 8
+    SKETCH D 2D XY; CIRCLE DIAMETER 10 AT 0 0; EXTRUDE D 12; MOVE D 20 15 -2; CUT A D INTO P";
+
 /// A square section of 8 with its faces.
 const SECTION: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 2; POINT 3 91 90; POINT 4 1 89
     POLYLINE 1 2 3 4 CLOSE; DIM W X 1 2 8; DIM H Z 1 4 8; GENERATE FACES";
@@ -224,8 +230,27 @@ const HOLED: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 100 0; POINT 3 100 80;
 /// Preparation (a name in capitals is one of the texts above) and command: with [`TABLE`], one for
 /// each error.
 const CASES: &[(&str, &str)] = &[
+    (DRILLED, "COPY D E; MOVE E 20 0 0; CUT P E INTO A"),
+    (DRILLED, "COPY D F; MOVE F 20 0 0; CUT P F; RENAME P Q; RENAME F P"),
+    (
+        "SKETCH S 2D XZ; RECTANGLE 10 20 AT 5 0; REVOLVE S 4 90 INTO T",
+        "MEASURE T; EXTRUDE S 4",
+    ),
     // Words and numbers.
     ("", "FROBNICATE"),
+    (
+        "SKETCH S 2D XY; RECTANGLE 4 4; EXTRUDE S 2; SKETCH T 2D XY; RECTANGLE 2 2",
+        "MOVE T ON S TOP Z",
+    ),
+    (
+        "SKETCH S 2D XY; RECTANGLE 4 4; EXTRUDE S 2",
+        "MOVE S ON S TOP Z",
+    ),
+    (
+        "SKETCH \"A-B\" 2D XY; RECTANGLE 4 4; EXTRUDE \"A-B\" 2; SKETCH A_B 2D XY; RECTANGLE 2 2; \
+         EXTRUDE A_B 1; MOVE A_B 1 1 1.5",
+        "CUT \"A-B\" A_B INTO P",
+    ),
     ("", "S"),
     ("", "REVE A B"),
     ("", "SAVE \"x"),
