@@ -675,7 +675,7 @@ PLOT3D_FAULTS = {
     "volume": ("1\n2 2 2\n" + "0 " * 24, ["2 x 2 x 2", "surface"]),
     "no number": ("1\n2 2 1\n0 0 0 zero" + " 0" * 8, [":3:", "`zero`"]),
     "small": ("1\n3 3 1\n" + "0 1 2 3 4 5 6 7 8 " * 3, ["at least 5 points along u"]),
-    "garbage": (b"\x00\x01\x02\x03" * 30, ["no Plot3D grid"]),
+    "garbage": (b"\x00\x01\x02\x03" * 30, ["not a valid Plot3D grid"]),
 }
 
 

@@ -240,7 +240,9 @@ def test_curves_of_every_form(cli, model_file):
 
 
 def test_networks_refuse_what_is_for_curves(cli):
-    for option in (["--keep", "area"], ["--closed"], ["--through", "0.5=1,1"], ["--as", "fit"]):
+    done = cli("fair", DATA / "lines.csv", "--tol", "0.01", "--keep", "area", status=1)
+    assert "`area` of a network cannot be kept" in done.stderr
+    for option in (["--closed"], ["--through", "0.5=1,1"], ["--as", "fit"]):
         done = cli("fair", DATA / "lines.csv", "--tol", "0.01", *option, status=1)
         assert option[0] in done.stderr and "networks" in done.stderr
 
@@ -346,7 +348,11 @@ def test_the_command_has_parameters_tolerances_and_stops_of_the_users(cli, tmp_p
         status = 2 if "soup" in arguments else 1
         assert words in cli("fair", *arguments, status=status).stderr, arguments
     lines = DATA / "lines.csv"
-    for words in (["--shape", "convex"], ["--release", "3"], ["--bends"], ["--at", "at.txt"]):
+    assert (
+        "expected a line"
+        in cli("fair", lines, "--tol", "0.006", "--shape", "convex", status=1).stderr
+    )
+    for words in (["--bends"], ["--at", "at.txt"]):
         done = cli("fair", lines, "--tol", "0.006", *words, status=1)
         assert f"{words[0]} is for single curves" in done.stderr
 

@@ -113,7 +113,7 @@ def test_entities_have_the_options_of_python(kind):
     # What is said to be absent is, so that the list does not grow old.
     assert absent <= python and not {a for a in absent if a in have}, kind
     # The reference says why.
-    words = {"log": "the log of single"}
+    words = {"log": "the log of single", "names": "Options refer to curves by number"}
     said = " ".join(
         (ast.get_docstring(declared(kind)) + ast.get_docstring(declared("FairCurve"))).split()
     )

@@ -88,7 +88,7 @@ def test_aqwa_by_its_columns(hull, tmp_path):
     half = capytaine.Mesh(nodes, np.array(faces))
     volume = hull.hydrostatics(sides="one").volume
     assert 0.98 < half.volumes[2] / volume < 1, "panels lie inside the shape"
-    with pytest.raises(moldloft.Error, match="say which format"):
+    with pytest.raises(moldloft.Error, match="belongs to several formats"):
         hull.write(tmp_path / "hull.dat")
 
 

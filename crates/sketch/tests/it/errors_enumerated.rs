@@ -230,6 +230,10 @@ const HOLED: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 100 0; POINT 3 100 80;
 /// Preparation (a name in capitals is one of the texts above) and command: with [`TABLE`], one for
 /// each error.
 const CASES: &[(&str, &str)] = &[
+    (
+        "SKETCH A 2D XY; RECTANGLE 4 4; EXTRUDE A 2; SKETCH D 2D XY",
+        "CIRCLE DIAMETER 2 AT \"A.WIDTH1/2\" 0",
+    ),
     (DRILLED, "COPY D E; MOVE E 20 0 0; CUT P E INTO A"),
     (DRILLED, "COPY D F; MOVE F 20 0 0; CUT P F; RENAME P Q; RENAME F P"),
     (
