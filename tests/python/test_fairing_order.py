@@ -122,8 +122,8 @@ def test_coordinates_of_openfast(tmp_path):
         ("t.xlsx", lambda p: zipfile.ZipFile(p, "w").writestr("a", "b"), "save its sheet as CSV"),
         ("t.xls", lambda p: p.write_bytes(b"\xd0\xcf\x11\xe0\xa1\xb1"), "save its sheet as CSV"),
         ("t.xlsx", lambda p: p.write_text("0,1\n" * 9), "is text and no workbook"),
-        ("t.csv", lambda p: zipfile.ZipFile(p, "w").writestr("a", "b"), "is no text"),
-        ("t.csv", lambda p: p.write_bytes(b"0,1\n\0\0\n"), "is no text"),
+        ("t.csv", lambda p: zipfile.ZipFile(p, "w").writestr("a", "b"), "is not text"),
+        ("t.csv", lambda p: p.write_bytes(b"0,1\n\0\0\n"), "is not text"),
     ],
 )
 def test_what_is_no_text_is_refused_by_name(tmp_path, name, make, words):

@@ -431,7 +431,7 @@ def test_a_sheer_beside_waterlines_is_a_line_of_its_own(tmp_path):
     [
         (as_matrix("", NUMBERS), "line 1: a matrix of offsets?"),
         (as_matrix("station", [*NUMBERS, "about"]), "line 1: .* found `about`"),
-        (as_matrix("station", ["0.5 m", "1 ft", *NUMBERS[2:]]), "line 1: places in ft and m"),
+        (as_matrix("station", ["0.5 m", "1 ft", *NUMBERS[2:]]), "line 1: positions in ft and m"),
         (as_list("station (m),waterline (m),half-breadth (mm)", PLAIN), "columns in m and mm"),
     ],
 )

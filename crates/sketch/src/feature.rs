@@ -1,7 +1,7 @@
 //! Definition of a feature: operands and operation. Its body is computed by [`crate::body`].
 
+use crate::identifier::identifier;
 use crate::object::SketchObject;
-use crate::solid::merge::identifier;
 use crate::solid::operation::Operation;
 use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 use std::sync::Arc;

@@ -67,6 +67,7 @@ mod drawing;
 pub mod entity;
 mod feature;
 mod format;
+mod identifier;
 mod object;
 pub mod solid;
 
@@ -96,6 +97,7 @@ pub use feature::{
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::{script, scripts};
 pub use format::{dxf, export, json, json_format, page_shapes};
+pub use identifier::identifier;
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject, results};
 pub use solid::body_tree::{BodyTree, body_tree};
@@ -103,7 +105,6 @@ pub use solid::coincidence::Kink;
 pub use solid::feature::{NoBody, TreatmentFault, body};
 pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
-pub use solid::merge::identifier;
 pub use solid::operation::Operation;
 pub use solid::ruled_faces::RoundFace;
 pub use solid::{SketchSolid, curve, faces, merge, solid};

@@ -1,8 +1,8 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
 use crate::feature::{Feature, FeatureOperand};
+use crate::identifier::identifier;
 use crate::solid::curve::SketchCurve;
-use crate::solid::merge::identifier;
 use crate::{
     CoordinateAxis, Dimension, DimensionExpr, DimensionRole, Drawing, FaceId, LineId,
     MeasuredQuantity, PointId, Variable,

@@ -63,8 +63,8 @@ class FileLines:
                 keys[key] = len(lines.rows)
                 lines.rows.append(k)
             lines.of_row.append(keys[key])
-        lines.tolerances = lines._tolerances(options)
-        lines.motion = lines._axes(options, said)
+        lines.tolerances = lines.tolerances_of(options)
+        lines.motion = lines.axes_of(options, said)
         return lines
 
     @property
@@ -132,7 +132,7 @@ class FileLines:
                 out += self._points(word, "--breaks")
         return out
 
-    def _axes(self, options: argparse.Namespace, said: list[str]) -> Any:
+    def axes_of(self, options: argparse.Namespace, said: list[str]) -> Any:
         """The motion of the network, or the axes of each point of a table that has several."""
         file, motion = self.file, words.motion(options)
         if motion != "ball" or not file.offsets:
@@ -150,7 +150,7 @@ class FileLines:
         )
         return [file.motions[file.places[k]] for k in self.rows]
 
-    def _tolerances(self, options: argparse.Namespace) -> Any:
+    def tolerances_of(self, options: argparse.Namespace) -> Any:
         """One tolerance, or that of each different point."""
         if not isinstance(options.tol, list):
             return options.tol

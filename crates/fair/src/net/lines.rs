@@ -121,6 +121,13 @@ struct LineFairing<'a> {
     begin: Vec<Vec3<f64>>,
 }
 
+/// A net within a network, with the places of its points there.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlacedNet {
+    pub net: Network,
+    pub places: Vec<usize>,
+}
+
 impl Network {
     /// True for curves through points, which have measures of their own.
     pub(super) fn has_lines(&self, norm: RowNorm) -> bool {

@@ -9,6 +9,7 @@ mod lines;
 pub mod network;
 pub(crate) mod patches;
 pub mod report;
+mod seam;
 pub mod shapes;
 mod sign_room;
 pub mod strand;

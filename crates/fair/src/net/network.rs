@@ -4,8 +4,8 @@
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
-use crate::net::lines::{LineNumbers, LineRound};
-use crate::net::patches::{PlacedNet, SeamCondition};
+use crate::net::lines::{LineNumbers, LineRound, PlacedNet};
+use crate::net::seam::SeamCondition;
 use crate::net::shapes::{EquationSpan, KEPT, MET, NetworkCondition, ROUNDS, SETTLED, one_way};
 use crate::net::strand::NetworkCurve;
 use crate::optimum::certificate::gap;

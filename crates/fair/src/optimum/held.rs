@@ -2,7 +2,8 @@
 //! forces are projected on the directions that are left, so that a held direction costs no
 //! multiplier.
 
-use crate::optimum::problem::V;
+/// A direction.
+type V = [f64; 3];
 
 /// Component of a held direction across the others below which it depends on them, relative to its
 /// length.

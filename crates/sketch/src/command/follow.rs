@@ -4,7 +4,7 @@ use super::CommandError;
 use super::session::{CommandReply, SessionState, SketchSession};
 use super::subject::ReplySubject;
 use crate::feature::{EdgeChoice, FaceChoice, Feature, FeatureKind};
-use crate::solid::merge::identifier;
+use crate::identifier::identifier;
 use crate::{DimensionExpr, SketchObject};
 use std::collections::BTreeSet;
 use std::sync::Arc;

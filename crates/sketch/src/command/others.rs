@@ -1,8 +1,8 @@
 //! Numbers of other objects in expressions: in an object that has no such name, `A.W` is the number W of the object A.
 
 use super::session::{SessionState, SketchSession};
+use crate::identifier::identifier;
 use crate::solid::feature::foreign;
-use crate::solid::merge::identifier;
 use crate::{DimensionExpr, SketchObject, numbers};
 use moldloft_num::Real;
 use std::collections::BTreeMap;

@@ -283,7 +283,7 @@ impl Feature {
                 let (value, range) = match operand.follows {
                     true if !operand.prefix.is_empty() => continue,
                     true => {
-                        let of = crate::solid::merge::identifier(&inner.name);
+                        let of = crate::identifier::identifier(&inner.name);
                         (DimensionExpr::name(&format!("{of}.{name}")), None)
                     }
                     false => (value.renamed(&named), range),
@@ -306,7 +306,7 @@ impl Feature {
             object.followed_numbers().iter().map(|n| n.0.to_ascii_lowercase()).collect()
         };
         let path = |object: &SketchObject| {
-            format!("{}.", crate::solid::merge::identifier(&object.name).to_ascii_lowercase())
+            format!("{}.", crate::identifier::identifier(&object.name).to_ascii_lowercase())
         };
         // The names of numbers that are followed, wherever they are read.
         let mut taken: Vec<String> = Vec::new();
@@ -326,7 +326,7 @@ impl Feature {
                 && !others.iter().any(|n| shared.contains(n));
             let prefix = match plain {
                 true => String::new(),
-                false => format!("{}.", crate::solid::merge::identifier(&object.name)),
+                false => format!("{}.", crate::identifier::identifier(&object.name)),
             };
             shared.extend(names.iter().map(|n| format!("{}{n}", prefix.to_ascii_lowercase())));
             shared.extend(others);

@@ -1,6 +1,7 @@
 //! Uniting objects, and changes of whole objects that keep them parametric.
 
 use crate::dimension::layout::chain_expression;
+use crate::identifier::identifier;
 use crate::{
     Align, CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionLayout,
     DimensionRole, Drawing, DrawnLine, DrawnPoint, MeasuredQuantity, Planes, PointId, Projection,
@@ -168,13 +169,6 @@ pub(crate) fn settle(
             report.contradictory.push(name);
         }
     }
-}
-
-/// A name in the form of an identifier.
-pub fn identifier(name: &str) -> String {
-    let fine = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
-    let text: String = name.chars().map(fine).collect();
-    if text.starts_with(|c: char| c.is_ascii_alphabetic()) { text } else { format!("o{text}") }
 }
 
 /// Removes lines (scribed ones) and then points inside straight lines. Dimensions that end at such
