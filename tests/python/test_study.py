@@ -458,11 +458,11 @@ def test_the_command(tmp_path):
         ('area = "P.z"', 'a = "P.z"', "named twice"),
         ("[outputs]", "[plan]\nmethod = 'sobl'\n[outputs]", "did you mean `sobol`"),
         ("[outputs]", "[plan]\nmethod = 'table'\n[outputs]", "`plan.file` is missing"),
-        ("[outputs]", "[optimize]\nminimize = 'x'\n[outputs]", "is no output"),
+        ("[outputs]", "[optimize]\nminimize = 'x'\n[outputs]", "unknown output `x`"),
         ("[outputs]", "[optimize]\nmethod = 'slsqp'\n[outputs]", "needs `minimize` or `maximize`"),
         ("[outputs]", "[analysis.x]\n[outputs]", "either `python` or `command`"),
         ("[outputs]", "[constraints]\nx = {value = 'a'}\n[outputs]", "needs `low`"),
-        ("[inputs]", "[inputs", "not TOML"),
+        ("[inputs]", "[inputs", "not valid TOML"),
     ],
 )
 def test_what_is_wrong_with_a_definition_is_said(tmp_path, old, new, said):

@@ -22,7 +22,6 @@ pub mod feature;
 mod finer_mesh;
 pub(crate) mod gradient;
 mod hole;
-pub(crate) mod kept;
 pub(crate) mod mass;
 mod meeting;
 pub mod merge;
