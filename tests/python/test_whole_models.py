@@ -53,7 +53,7 @@ def test_a_model_of_which_an_object_failed_has_no_figures(tmp_path: Path) -> Non
     m.partial = True
     found = m.hydrostatics()
     assert found.partial and found.volume < 0.7 * whole
-    assert "not whole" in found.remarks[0]
+    assert "incomplete" in found.remarks[0]
     assert m.copy().partial
     m["h"] = 3
     assert not m.hydrostatics().partial and m.hydrostatics().volume == pytest.approx(whole)
