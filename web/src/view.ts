@@ -182,7 +182,7 @@ export class View {
   clip: { axis: number; value: number; flip: boolean } | null = null
   readonly silent = new URLSearchParams(location.search).has('norender')
 
-  constructor(host: HTMLElement) {
+  constructor(private readonly host: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true, preserveDrawingBuffer: true })
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
@@ -199,14 +199,14 @@ export class View {
     this.cloud = new Points(new BufferGeometry(), material)
     this.cloud.frustumCulled = false
     this.scene.add(this.cloud)
-    new ResizeObserver(() => this.resize(host)).observe(host)
-    this.resize(host)
+    new ResizeObserver(() => this.resize()).observe(host)
+    this.resize()
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault())
     this.canvas.addEventListener('webglcontextrestored', () => this.draw())
   }
 
-  private resize(host: HTMLElement): void {
-    const [w, h] = [Math.max(1, host.clientWidth), Math.max(1, host.clientHeight)]
+  private resize(): void {
+    const [w, h] = [Math.max(1, this.host.clientWidth), Math.max(1, this.host.clientHeight)]
     this.renderer.setSize(w, h, false)
     this.resolution.set(w, h)
     for (const m of this.lineMaterials.values()) if (m instanceof LineMaterial) m.resolution.copy(this.resolution)
@@ -820,6 +820,8 @@ export class View {
 
   /** Shows all in what the bars over the picture leave free. */
   fit(): void {
+    // The observer hears of a new size with the next frame only.
+    this.resize()
     this.camera.inset = this.covered() / this.resolution.y
     this.camera.fit(this.bounds, this.resolution.x / this.resolution.y)
     this.draw()
