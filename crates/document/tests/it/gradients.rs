@@ -308,7 +308,7 @@ fn faults_are_those_of_forward_mode() {
     let root = [WeightedOutput { name: "sqrt(P.x)".into(), weights: vec![vec![1.0]] }];
     let ids = [GradientMode::Forward, GradientMode::Reverse].map(|mode| {
         assert_eq!(document.vjp(&root, &["Q.x".into()], mode).unwrap().rows, [[0.0]]);
-        document.vjp(&root, &["a".into()], mode).unwrap_err()[0].id
+        document.vjp(&root, &["a".into()], mode).unwrap_err()[0].id.clone()
     });
     assert_eq!(ids[0], ids[1]);
     assert!(ids[0] == "no-derivative" || ids[0] == "not-finite", "{ids:?}");
