@@ -56,8 +56,9 @@ fn the_hull_becomes_panels() {
     let text = String::from_utf8(hull_to_gdf::panels(None).unwrap()).unwrap();
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("hull"));
-    assert_eq!(lines.nth(2), Some("160"));
-    assert_eq!(lines.count(), 4 * 160);
+    // 160 panels of the hull, 32 of the transom.
+    assert_eq!(lines.nth(2), Some("192"));
+    assert_eq!(lines.count(), 4 * 192);
     let fault = hull_to_gdf::panels(Some("no-such.sdl")).unwrap_err();
     assert!(fault.contains("no-such.sdl"), "{fault}");
 }
