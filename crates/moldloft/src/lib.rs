@@ -14,8 +14,8 @@
 //! let slope = model.derivatives(&["side(0.5, 0.5).y".into()], &["beam".into()]).unwrap();
 //! assert!(matches!(slope[0][0], Value::Number(s) if s == 0.5));
 //! assert_eq!(model.panelled().unwrap().mesh.faces().len(), 8);
-//! let gdf = format_named("gdf").unwrap();
-//! assert_eq!(write(&mut model, gdf, "box.gdf", &WriteOptions::default()).unwrap()[0].name, "box.gdf");
+//! let obj = format_named("obj").unwrap();
+//! assert_eq!(write(&mut model, obj, "box.obj", &WriteOptions::default()).unwrap()[0].name, "box.obj");
 //! ```
 //!
 //! Two programs to start from: `cargo run -p moldloft --example hull_to_gdf` and
