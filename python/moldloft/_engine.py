@@ -32,7 +32,7 @@ def main() -> None:
     """Answers the parent until the connection closes.
 
     The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``, or the same for
-    ``board``, which draws, and ``desk``, which fairs.
+    ``board``, which draws, ``desk``, which fairs, and ``files``, which exports.
     """
     work, *arguments = sys.argv[1:]
     if work == "language":
@@ -48,4 +48,9 @@ def main() -> None:
         serve_desk(int(arguments[0]), arguments[1], arguments[2] or None)
         return
     memory, name, folder, *library = arguments
+    if work == "files":
+        from moldloft.workbench.conversion import serve as serve_files
+
+        serve_files(int(memory), name, [*([folder] if folder else []), *library])
+        return
     _core.engine(int(memory), name, folder or None, library)

@@ -20,7 +20,8 @@ from typing import Any
 import pytest
 
 from moldloft.workbench import hub as hub_module
-from moldloft.workbench.hub import Hub, head_of
+from moldloft.workbench.frames import head_of
+from moldloft.workbench.hub import Hub
 from moldloft.workbench.outbox import BEHIND, MOST_BYTES, Outbox
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"

@@ -23,7 +23,8 @@ from moldloft.errors import Error
 from moldloft.storage import put
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine
-from moldloft.workbench.hub import Hub, Tab, head_of
+from moldloft.workbench.frames import head_of
+from moldloft.workbench.hub import Hub, Tab
 from moldloft.workbench.text import applied, change_set, encoded, read
 
 LINE = "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0);\nAbsPoint B(w, 0, 0);\nLine l(A, B);\n"

@@ -101,7 +101,12 @@ export class Changes {
 
   /** The values that hold without being in the text are given to an engine that has forgotten them. */
   async holdAgain(): Promise<void> {
-    if (this.held.size) await this.link.ask('write', { values: Object.fromEntries(this.held) })
+    if (this.held.size) await this.link.ask('write', { values: this.values })
+  }
+
+  /** The values that hold without being in the text. */
+  get values(): Record<string, number> {
+    return Object.fromEntries(this.held)
   }
 
   /** Takes back what was set and not written. */

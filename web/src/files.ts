@@ -3,7 +3,7 @@
 import type { App } from './app'
 import { h } from './dom'
 import { LONGEST_LINK, packed, unpacked } from './share'
-import { model } from './state'
+import { changed, model, type Remark } from './state'
 
 /** Endings of programs and model files, whose text takes the place of the program. */
 const PROGRAM = /\.(sdl|skt|ms2)$/i
@@ -31,7 +31,7 @@ export async function download(app: App, kind: string): Promise<void> {
     }
     app.shell.say(`Making ${kind}…`)
     await app.changes.settled()
-    const frame = await app.link.ask('export', { format: kind, stem })
+    const frame = await app.link.ask('export', { format: kind, stem, values: app.changes.values })
     const names = frame.head.files.map((part: any) => {
       const name = String(part.name).split(/[/\\]/).pop() ?? stem
       give(app, new Blob([frame.bytes(part).slice()]), name)
@@ -39,7 +39,12 @@ export async function download(app: App, kind: string): Promise<void> {
     })
     const { mirrored } = app.view
     const half = mirrored && !FLAT.has(kind) ? `: the model's own side, which is mirrored in ${mirrored}` : ''
-    app.shell.say(names.length ? `${names.join(', ')} made${half}` : `${kind}: the model has nothing to write`)
+    const remarks: Remark[] = frame.head.remarks ?? []
+    model.made = { file: names[0] ?? kind, remarks }
+    changed('made')
+    const count = remarks.length === 1 ? 'a remark is' : `${remarks.length} remarks are`
+    const more = remarks.length ? `; ${count} among the messages` : ''
+    app.shell.say(names.length ? `${names.join(', ')} made${half}${more}` : `${kind}: the model has nothing to write`)
   } catch (error) {
     app.shell.say((error as Error).message)
   }

@@ -3,7 +3,7 @@
 import { h, shown, store, stored } from './dom'
 import { FIGURES, unitOf } from './figures'
 import type { GivenNumbers } from './numbers'
-import { changed, type Fault, model, on, type Param } from './state'
+import { changed, type Fault, model, on, type Param, type Remark } from './state'
 
 export interface Actions {
   set(name: string, value: number): void
@@ -460,8 +460,8 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   const log = h('div', { role: 'log', 'aria-live': 'polite', 'aria-label': 'diagnostics', class: 'log' })
   host.append(log)
   let timer = 0
-  function one(f: Fault): HTMLElement {
-    const where = f.file ? `${f.file}:${f.line}` : f.line ? `line ${f.line}` : ''
+  /** A message with its sign, and more words below it. */
+  function message(f: Remark, where: string, more: string[]): HTMLElement {
     const item = h(
       'div',
       { class: `message ${f.severity}` },
@@ -479,16 +479,16 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
       ),
     )
     item.querySelector('button')!.addEventListener('click', () => {
-      if (f.place) act.show(f.place)
       if (f.object) act.select(f.object, 'message')
     })
-    const more = [
-      f.expected ? `expected ${f.expected}` : '',
-      f.found ? `found ${f.found}` : '',
-      ...f.notes,
-      ...f.help,
-    ].filter(Boolean)
-    for (const words of more) item.append(h('div', { class: 'more' }, words))
+    for (const words of more.filter(Boolean)) item.append(h('div', { class: 'more' }, words))
+    return item
+  }
+  function one(f: Fault): HTMLElement {
+    const where = f.file ? `${f.file}:${f.line}` : f.line ? `line ${f.line}` : ''
+    const found = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '']
+    const item = message(f, where, [...found, ...f.notes, ...f.help])
+    item.querySelector('button')!.addEventListener('click', () => f.place && act.show(f.place))
     if (f.edit)
       item.append(
         h(
@@ -511,11 +511,12 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
     const all = model.faults.slice(0, 200)
     log.replaceChildren(
       ...all.map(one),
+      ...model.made.remarks.slice(0, 200).map((r) => message(r, model.made.file, r.help)),
       ...model.printed.slice(0, 200).map((line) => h('div', { class: 'message printed' }, line)),
     )
     if (!log.childElementCount) log.append(h('div', { class: 'message quiet' }, 'No problems'))
   }
-  on(['faults', 'printed'], () => {
+  on(['faults', 'printed', 'made'], () => {
     // Half-typed texts are red in the editor at once, and here after a rest.
     clearTimeout(timer)
     const worse = model.faults.some((f) => f.severity === 'error')

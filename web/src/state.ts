@@ -34,6 +34,14 @@ export interface Fault {
   edit: { place: [number, number]; insert: string; title: string } | null
 }
 
+/** What the writer of a file has to say about it. */
+export interface Remark {
+  severity: Fault['severity']
+  message: string
+  help: string[]
+  object: string | null
+}
+
 export interface Watched {
   expression: string
   value?: unknown
@@ -46,13 +54,15 @@ export const model = {
   objects: [] as Obj[],
   faults: [] as Fault[],
   printed: [] as string[],
+  /** The last file that was made, and remarks about it. */
+  made: { file: '', remarks: [] as Remark[] },
   watched: [] as Watched[],
   unit: '',
   program: true,
   rev: 0,
 }
 
-type Topic = 'params' | 'objects' | 'faults' | 'watched' | 'scene' | 'selection' | 'printed' | 'rev'
+type Topic = 'params' | 'objects' | 'faults' | 'watched' | 'scene' | 'selection' | 'printed' | 'rev' | 'made'
 const listeners = new Map<Topic, Set<() => void>>()
 
 export function on(topics: Topic | Topic[], run: () => void): void {

@@ -1,4 +1,4 @@
-"""The processes of the drawing board and the fairing desk, and their queues of requests.
+"""The processes of the drawing board, the fairing desk and of files, and their queues of requests.
 
 Each is started by the first request, so that models without a sketch or a desk have none. It is
 asked one thing at a time, the newest of its kind: a pointer that has moved on is not answered.
@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from moldloft.workbench.engine import Engine, EngineLostError
+from moldloft.workbench.frames import MAGIC
 
-__all__ = ["BOARD", "DESK", "Drawing", "Room"]
+__all__ = ["BOARD", "DESK", "FILES", "Drawing", "Room"]
 
 _MOST_WAITING = 64
 
@@ -57,8 +58,15 @@ DESK = Room(
     frozenset(),
     "desk_stop",
 )
+FILES = Room(
+    "files",
+    "the writing of files",
+    frozenset(),
+    frozenset({"export", "import"}),
+    frozenset(),
+)
 
-Say = Callable[[str], None]
+Say = Callable[["str | bytes"], None]
 
 
 class Drawing:
@@ -70,7 +78,7 @@ class Drawing:
         Which one.
     text
         Gives the version of the text and the text.
-    name, folder, memory, budget
+    name, folder, library, memory, budget
         As for :class:`~moldloft.workbench.engine.Engine`.
     """
 
@@ -80,12 +88,15 @@ class Drawing:
         text: Callable[[], tuple[int, str]],
         name: str,
         folder: str,
+        library: Sequence[str],
         memory: int,
         budget: float,
     ) -> None:
         self.room = room
         self._text = text
-        self._engine = Engine(name, folder, memory=memory, budget=budget, work=room.work)
+        self._engine = Engine(
+            name, folder, library, memory=memory, budget=budget, work=room.work
+        )
         self._stopped = False
         self._known = -1
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []
@@ -132,7 +143,8 @@ class Drawing:
             )
             _, request, say = self._waiting.pop(first)
             try:
-                say((await self._answer(request)).decode())
+                reply = await self._answer(request)
+                say(reply if reply.startswith(MAGIC) else reply.decode())
             except EngineLostError as lost:
                 say(json.dumps(_refused(request, f"{self.room.title} was stopped: {lost}")))
             except ValueError as error:

@@ -53,8 +53,8 @@ class Engine:
     budget
         Seconds for one request; then the work is stopped, and a little later the process ended.
     work
-        Task of the process: ``"model"``, ``"board"`` for the drawing board of a sketch, or
-        ``"desk"`` for the fairing desk.
+        Task of the process: ``"model"``, ``"board"`` for the drawing board of a sketch,
+        ``"desk"`` for the fairing desk, or ``"files"`` for exports.
     """
 
     def __init__(

@@ -13,7 +13,7 @@ from typing import Any
 
 from moldloft import _core
 from moldloft.errors import Error
-from moldloft.workbench.hub import head_of
+from moldloft.workbench.frames import head_of
 from moldloft.workbench.page import engine_packed, page_parts, worker_script
 from moldloft.workbench.text import applied, read
 

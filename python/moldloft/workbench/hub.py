@@ -11,7 +11,6 @@ import asyncio
 import contextlib
 import json
 import secrets
-import struct
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -19,11 +18,13 @@ from pathlib import Path
 from typing import Any
 
 from moldloft.errors import Error, FileError
+from moldloft.formats import formats
 from moldloft.language import check_language
 from moldloft.storage import ChangedError, digest, put, utf8_path
 from moldloft.workbench.draft import Draft
-from moldloft.workbench.drawing import BOARD, DESK, Drawing
+from moldloft.workbench.drawing import BOARD, DESK, FILES, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
+from moldloft.workbench.frames import frame_of, head_of
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
 
@@ -38,8 +39,8 @@ NEWEST = {
 #: What a page may ask of the engine.
 ASKED = NEWEST | {
     "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
-    "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay", "export",
-    "formats", "definition", "locate", "rename", "format", "words", "ping",
+    "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay",
+    "definition", "locate", "rename", "format", "words", "ping",
     "kinds", "add", "delete", "duplicate", "rename_object",
 }  # fmt: skip
 
@@ -118,10 +119,10 @@ class Hub:
         )
         self.rooms = [
             Drawing(
-                room, lambda: (self.version, self.text), self.path.name, folder, self.memory,
-                self.budget,
+                room, lambda: (self.version, self.text), self.path.name, folder, self.library,
+                self.memory, self.budget,
             )
-            for room in (BOARD, DESK)
+            for room in (BOARD, DESK, FILES)
         ]  # fmt: skip
         self._jobs: list[_Job] = []
         self._wake = asyncio.Event()
@@ -260,6 +261,9 @@ class Hub:
             await self._save(tab, message)
         elif kind == "revert":
             await self._revert(tab, number)
+        elif kind == "formats":
+            rows = [[row.name, row.about] for row in formats().values()]
+            self._to(tab, frame_of({"id": number, "formats": rows}, {}))
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
@@ -548,10 +552,3 @@ def _unread(frame: bytes) -> str:
         return ""
     head = head_of(frame)
     return str(head.get("error", "")) if head.get("id") is None else ""
-
-
-def head_of(frame: bytes) -> dict[str, Any]:
-    """The facts of a frame, for tests and pages that are made once."""
-    (length,) = struct.unpack_from("<I", frame, 8)
-    head: dict[str, Any] = json.loads(frame[16 : 16 + length])
-    return head

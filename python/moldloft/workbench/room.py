@@ -15,23 +15,30 @@ _SILENT = "cancel"
 
 
 def answer_frames(
-    memory: int, begin: Callable[[str], None], answer: Callable[[dict[str, Any]], dict[str, Any]]
+    memory: int,
+    begin: Callable[[str], None],
+    answer: Callable[[dict[str, Any]], dict[str, Any] | bytes],
+    *,
+    files: bool = False,
 ) -> None:
     """Answer the parent until it goes.
 
     Parameters
     ----------
     memory
-        The most bytes of the process, which cannot write files.
+        The most bytes of the process.
     begin
         Is given the model's text, the first frame.
     answer
-        The answer to a request.
+        The answer to a request: facts, or a frame.
+    files
+        True if the process may write files.
     """
     if sys.platform != "win32":
         import resource
 
-        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        if not files:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
         if sys.platform == "linux":
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     given, taken = sys.stdin.buffer, sys.stdout.buffer
@@ -45,6 +52,7 @@ def answer_frames(
         request = json.loads(message)
         if request.get("kind") == _SILENT:
             continue
-        reply = json.dumps(answer(request)).encode()
+        made = answer(request)
+        reply = made if isinstance(made, bytes) else json.dumps(made).encode()
         taken.write(struct.pack("<I", len(reply)) + reply)
         taken.flush()
