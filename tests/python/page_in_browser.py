@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,14 @@ needs_page = [
     pytest.mark.skipif(not PAGE.exists(), reason="the page is not built: `make web` needs Node.js"),
 ]
 
+
+def in_browser(test: Callable[..., None]) -> Callable[..., None]:
+    """Marks one test of a file whose others need no page."""
+    for mark in needs_page:
+        test = mark(test)
+    return test
+
+
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 HULL = (SAILBOAT / "hull.sdl").read_text(encoding="utf-8")
@@ -40,6 +49,11 @@ PLATE = (
 )
 
 
+def own_state(path: Path) -> dict[str, str]:
+    """The environment of a server that keeps what it keeps beside the model."""
+    return {**os.environ, "XDG_STATE_HOME": str(path.parent / "state")}
+
+
 class Bench:
     """A server and its page."""
 
@@ -47,7 +61,7 @@ class Bench:
         command = [sys.executable, "-m", "moldloft", "view", str(path), "--no-browser"]
         self.path = path
         self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=own_state(path)
         )
         assert self.process.stdout is not None
         self.url = self.process.stdout.readline().strip()

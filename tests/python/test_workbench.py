@@ -25,6 +25,7 @@ from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine
 from moldloft.workbench.frames import head_of
 from moldloft.workbench.hub import Hub, Tab
+from moldloft.workbench.recent import note_opened
 from moldloft.workbench.text import applied, change_set, encoded, read
 
 LINE = "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0);\nAbsPoint B(w, 0, 0);\nLine l(A, B);\n"
@@ -460,6 +461,29 @@ def server_app(hub: Hub, port: int = 4321) -> Any:
     # Nothing listens: applications are called without a socket.
     server._socket.close()
     return server
+
+
+def test_a_page_opens_only_what_was_opened_before(
+    model_file: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    path, other, gone = (model_file(LINE, f"{name}.sdl") for name in ("a", "b", "c"))
+    for each in (gone, other, path):
+        note_opened(each)
+    gone.unlink()
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        listed = await page.ask("recent")
+        assert [each["path"] for each in listed["files"]] == [str(other)]
+        hub.beside = lambda path: f"http://{path.name}"
+        opened = await page.ask("open_recent", path=str(other))
+        assert opened["url"] == "http://b.sdl"
+        for wrong in ("/etc/passwd", str(gone), str(path), None, 3):
+            refused = await page.ask("open_recent", path=wrong)
+            assert refused["kind"] == "refused" and "no longer" in refused["error"]
+
+    workbench(path, play)
 
 
 def test_answers_do_not_wait_for_acknowledgements(model_file: Callable[..., Path]) -> None:

@@ -220,3 +220,23 @@ def test_a_file_is_opened_from_the_start_page(bench: Callable[..., Bench], tmp_p
     b.until(lambda: b.text() == POINTS)
     b.until(lambda: b.hand("items()"))
     assert b.hand("steps().done") == ["Open other.sdl"] and not b.faults
+
+
+def test_models_that_were_opened_before_are_opened_again(
+    bench: Callable[..., Bench], tmp_path: Path
+) -> None:
+    first = bench(POINTS, "first.sdl")
+    b = bench("", "empty.sdl")
+    entry = b.page.get_by_role("listitem", name=re.compile("first.sdl"))
+    entry.click()
+    b.page.locator(".status").get_by_text("is open in another workbench").wait_for()
+    first.process.terminate()
+    first.process.wait(60)
+    entry.click()
+    b.until(lambda: "first.sdl" in b.page.title())
+    b.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
+    b.until(lambda: b.text() == POINTS)
+    b.page.get_by_role("button", name=re.compile("Commands")).click()
+    b.page.get_by_role("combobox", name="command").fill("Open again: empty.sdl")
+    b.page.get_by_text(f"Open again: {tmp_path / 'empty.sdl'}").wait_for()
+    assert not [fault for fault in b.faults if "WebSocket" not in fault]

@@ -16,6 +16,7 @@ import type { Saving } from './saving'
 import type { SectionPlane } from './section'
 import type { SheetName } from './sheets'
 import type { Shell } from './shell'
+import type { OpenedBefore } from './start'
 import type { View } from './view'
 
 /** A tab over the picture. */
@@ -39,6 +40,9 @@ export interface App {
   saving: Saving
   /** The formats of the engine: names, and what they hold. */
   formats: [string, string][]
+  /** The models that were opened before. */
+  recent: OpenedBefore[]
+  reopen(path: string): void
   look(name: Standard): void
   sheet(name: TabName): Promise<void>
   /** Opens the palette with some words typed in it. */

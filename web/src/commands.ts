@@ -2,6 +2,7 @@
 
 import type { App } from './app'
 import type { Standard } from './camera'
+import { chooseLaid } from './files'
 import { type Command, help } from './palette'
 import type { SheetName } from './sheets'
 import { model } from './state'
@@ -181,7 +182,7 @@ function analysisCommands(app: App): Command[] {
   }
   return [
     { name: 'Measure between places', keys: 'D', run: () => toggleMeasure(app) },
-    { name: 'Lay a mesh or offsets over the model (STL, OBJ, PLY, OFF, GDF, table)', run: () => foreign.choose() },
+    { name: 'Lay a file over the model (STEP, IGES, STL, OBJ, PLY, OFF, GDF, table)', run: () => chooseLaid(app) },
     {
       name: 'Remove what lies over the model',
       run: () => void foreign.remove().catch((e: Error) => shell.say(e.message)),
@@ -234,6 +235,7 @@ export function commands(app: App): Command[] {
     { name: 'Export: picture as it is seen (PNG)', run: () => void app.download('picture') },
     ...app.formats.map(([f, about]) => ({ name: `Export: ${f}, ${about}`, run: () => void app.download(f) })),
     { name: 'Export: print what is shown, or save it as PDF', run: () => print() },
+    ...app.recent.map(({ path }) => ({ name: `Open again: ${path}`, run: () => app.reopen(path) })),
     { name: 'Light or dark', run: () => app.shell.themeButton.click() },
     { name: 'Help', keys: 'F1', run: () => help(commands(app)) },
   ]

@@ -2,11 +2,21 @@
 
 import type { App } from './app'
 import { h } from './dom'
+import { inBase64 } from './foreign'
 import { LONGEST_LINK, packed, unpacked } from './share'
 import { changed, model, type Remark } from './state'
 
 /** Endings of programs and model files, whose text takes the place of the program. */
 const PROGRAM = /\.(sdl|skt|ms2)$/i
+
+/** Endings of CAD files, which are read by the server. */
+const CAD = /\.(step|stp|stpz|iges|igs)$/i
+
+/** Endings of files that are opened from an empty program. */
+export const OPENED = '.sdl,.ms2,.step,.stp,.stpz,.iges,.igs'
+
+/** Endings of files that are laid over a model. */
+const LAID = '.stl,.obj,.ply,.off,.gdf,.csv,.txt,.dat,.xyz,.step,.stp,.stpz,.iges,.igs'
 
 /** Formats that hold no surfaces. */
 const FLAT = new Set(['svg', 'png', 'sdl', 'ms2'])
@@ -96,9 +106,51 @@ export async function openLink(app: App): Promise<void> {
   }
 }
 
+/** A CAD file becomes the program where there is none yet; else its panels are laid over the model. */
+async function openCad(app: App, name: string, bytes: Uint8Array): Promise<void> {
+  if (app.link.local)
+    return app.shell.say(`${name}: STEP and IGES files are read by moldloft view, not by a page in a file`)
+  app.shell.say(`Reading ${name}…`)
+  const request = { name, data: inBase64(name, bytes), units: model.unit || 'mm' }
+  const frame = await app.link.ask('import', request)
+  const remark = (message: string): Remark => ({ severity: 'warning', message, help: [], object: null })
+  model.made = { file: name, remarks: frame.head.remarks.map(remark) }
+  changed('made')
+  const take = () => {
+    app.editor.replace(frame.head.text, false, false, `Open ${name}`)
+    app.shell.warn('')
+    app.shell.say(`${name} has taken the place of the program; Ctrl+Z brings it back`)
+  }
+  if (app.editor.text.trim() === '' && /\.sdl$/i.test(model.name)) return take()
+  for (const part of frame.head.files) await app.foreign.lay(part.name, frame.bytes(part))
+  if (!/\.sdl$/i.test(model.name)) return
+  app.shell.warn(
+    `${name} is laid over the model. `,
+    h('button', { onclick: take }, 'Open it instead'),
+    h('button', { onclick: () => app.shell.warn('') }, 'Close'),
+  )
+}
+
+/** Lets a person choose files to lay over the model. */
+export function chooseLaid(app: App): void {
+  const input = h('input', { type: 'file', accept: LAID, multiple: true })
+  input.addEventListener('change', () => openFiles(app, input.files))
+  input.click()
+}
+
+/** Opens files one after the other. */
+export function openFiles(app: App, files: Iterable<File> | null): void {
+  let opening = Promise.resolve()
+  for (const file of files ?? [])
+    opening = opening.then(() => openFile(app, file)).catch((error) => app.shell.say((error as Error).message))
+}
+
 /** A file that was chosen or dropped: a program is opened, another one is laid over the model. */
-export async function openFile(app: App, file: File): Promise<void> {
-  if (!PROGRAM.test(file.name)) return app.foreign.lay(file)
+async function openFile(app: App, file: File): Promise<void> {
+  if (!PROGRAM.test(file.name)) {
+    const bytes = new Uint8Array(await file.arrayBuffer())
+    return CAD.test(file.name) ? openCad(app, file.name, bytes) : app.foreign.lay(file.name, bytes)
+  }
   const ending = (name: string) => name.split('.').pop()!.toLowerCase()
   if (ending(file.name) !== ending(model.name))
     return app.shell.say(`${file.name} is another kind of model than ${model.name}: moldloft view ${file.name}`)
@@ -115,8 +167,6 @@ export function installDrop(app: App, host: HTMLElement): void {
   for (const end of ['dragleave', 'drop']) host.addEventListener(end, () => host.classList.remove('dropping'))
   host.addEventListener('drop', (e) => {
     e.preventDefault()
-    if (app.link.still) return
-    for (const file of e.dataTransfer?.files ?? [])
-      void openFile(app, file).catch((error) => app.shell.say(error.message))
+    if (!app.link.still) openFiles(app, e.dataTransfer?.files ?? null)
   })
 }

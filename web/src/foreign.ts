@@ -1,7 +1,7 @@
 // Meshes and offsets of other programs over the model, coloured by their deviation.
 
 import type { Scale } from './colour'
-import { h, shown } from './dom'
+import { shown } from './dom'
 import type { Frame } from './frame'
 import { type Link, Newest } from './link'
 import { model } from './state'
@@ -17,6 +17,14 @@ interface ForeignMesh {
 
 /** The largest file: in base64 it is one message. */
 const LARGEST = 11 << 20
+
+/** Bytes as a text; an error when they are more than a message holds. */
+export function inBase64(name: string, bytes: Uint8Array): string {
+  if (bytes.length > LARGEST) throw new Error(`${name} is larger than ${LARGEST >> 20} MiB`)
+  let raw = ''
+  for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
+  return btoa(raw)
+}
 
 export class Foreign {
   /** The colours of the deviation, when something is shown. */
@@ -64,17 +72,11 @@ export class Foreign {
     if (words.length) this.act.say(words.join(' · '))
   }
 
-  async lay(file: File): Promise<void> {
-    if (file.size > LARGEST) return this.act.say(`${file.name} is larger than ${LARGEST >> 20} MiB`)
-    const bytes = new Uint8Array(await file.arrayBuffer())
-    let raw = ''
-    for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
-    try {
-      this.laid(await this.link.ask('overlay', { name: file.name, data: btoa(raw) }))
-      this.files.set(file.name, btoa(raw))
-    } catch (error) {
-      this.act.say((error as Error).message)
-    }
+  /** Lays a file over the model. */
+  async lay(name: string, bytes: Uint8Array): Promise<void> {
+    const data = inBase64(name, bytes)
+    this.laid(await this.link.ask('overlay', { name, data }))
+    this.files.set(name, data)
   }
 
   async remove(): Promise<void> {
@@ -89,12 +91,5 @@ export class Foreign {
         (f) => this.laid(f),
         (error) => this.act.say(error.message),
       )
-  }
-
-  /** Lets a person choose files. */
-  choose(): void {
-    const input = h('input', { type: 'file', accept: '.stl,.obj,.ply,.off,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
-    input.addEventListener('change', () => [...(input.files ?? [])].forEach((f) => void this.lay(f)))
-    input.click()
   }
 }

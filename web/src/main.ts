@@ -9,7 +9,7 @@ import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
 import { Editor } from './editor'
-import { copyLink, download, give, installDrop, openFile, openLink } from './files'
+import { copyLink, download, give, installDrop, openFiles, openLink } from './files'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
@@ -28,11 +28,12 @@ import { SectionPlane } from './section'
 import { Sheets } from './sheets'
 import { makeShell, themes } from './shell'
 import { startPage } from './start'
-import { changed, model, on } from './state'
+import { changed, model, on, type Watched } from './state'
 import { tablesOf, tablesSheet } from './tables'
 import { buildToolbar } from './toolbar'
 import { treePanel } from './tree'
 import { typed } from './typed'
+import { floats, IMMERSED, usualNumbers, usualOf } from './usual'
 import { View } from './view'
 
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
@@ -235,10 +236,16 @@ const start = startPage({
     editor.replace(text, false, false, name)
   },
   add: (kind) => void editor.synced().then(() => making.open(kind)),
-  open: (file) => void openFile(app, file).catch((error) => say((error as Error).message)),
+  open: (file) => openFiles(app, [file]),
+  recent: async () => (await askRecent(), app.recent),
+  reopen: (path) => app.reopen(path),
 })
-shell.stage.append(start)
-editor.steps.onText = () => (start.hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name))
+shell.stage.append(start.element)
+editor.steps.onText = () => {
+  const hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name)
+  if (start.element.hidden && !hidden) void start.refresh()
+  start.element.hidden = hidden
+}
 const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name))
 const sheets = new Sheets(shell.sheet, link, actions, () => tablesSheet(editor, actions))
 const section = new SectionPlane(view, shell.section, {
@@ -292,6 +299,12 @@ const app: App = {
     saving,
   },
   formats: [],
+  recent: [],
+  reopen: (path) =>
+    void link
+      .tell({ kind: 'open_recent', path })
+      .then(({ url }) => location.assign(url))
+      .catch((error) => say((error as Error).message)),
   look(name) {
     view.camera.look(name)
     view.fit()
@@ -306,6 +319,10 @@ const app: App = {
   download: (kind) => download(app, kind),
   copyLink: () => copyLink(app),
   buildToolbar: () => buildToolbar(app),
+}
+
+async function askRecent(): Promise<void> {
+  if (!link.local) app.recent = (await link.tell({ kind: 'recent' })).files
 }
 
 // Tabs over the picture.
@@ -348,15 +365,12 @@ shell.tabs.addEventListener('keydown', (e) => {
   next.click()
 })
 
-/** A model that is mirrored in its middle plane and crosses z = 0 floats; of others the hydrostatics mean nothing. */
-const floats = () => view.mirrored.includes('y') && view.box.min.z < 0 && view.box.max.z > 0
-
 /** Sheets that say nothing of this model have no tab; the palette still has them. */
 function fitTabs(): void {
   const means: Record<string, boolean> = {
     lines: view.mirrored.includes('y'),
-    hydrostatics: floats(),
-    areas: floats(),
+    hydrostatics: model.floats,
+    areas: model.floats,
     tables: tablesOf(editor).length > 0,
   }
   for (const [name, on] of Object.entries(means)) {
@@ -400,9 +414,23 @@ function take(frame: Frame): void {
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
+    askFloating()
     void watchUsual()
   }
   document.body.dataset.state = 'alive'
+}
+
+/** Asks whether the model floats. */
+const floating = new Newest<void>(async () => {
+  const ask = async () => (await link.ask('evaluate', { expressions: [IMMERSED] })).head.values[0].value
+  const immersed = view.mirrored.includes('y') ? await ask().catch(() => null) : null
+  model.floats = floats(view.mirrored, immersed)
+  fitTabs()
+})
+let floated = 0
+function askFloating(): void {
+  clearTimeout(floated)
+  if (!link.still) floated = window.setTimeout(() => floating.push(undefined), 150)
 }
 
 // Watched numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
@@ -475,10 +503,10 @@ async function watchUsual(): Promise<void> {
   const shown = [...view.items.values()].some((i) => i.kind === 'patch')
   if (link.still || watching || (!kept && !shown)) return
   watching = true
-  const usual = floats()
-    ? ['mesh.area', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.kmt']
-    : ['mesh.area', 'mesh.volume']
-  await link.ask('watch', { expressions: kept ?? usual }).catch(() => (watching = false))
+  floating.push(undefined)
+  await floating.settled()
+  const expressions = kept ?? usualNumbers(model.floats)
+  await link.ask('watch', { expressions }).catch(() => (watching = false))
 }
 
 async function begin(hello: any): Promise<void> {
@@ -495,10 +523,6 @@ async function begin(hello: any): Promise<void> {
   editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
-  if (hello.watched) {
-    model.watched = hello.watched
-    changed('watched')
-  }
   const has = (name: string) => shell.tabs.querySelector(`[data-sheet=${name}]`) !== null
   if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'))
   if (!link.local && /\.skt$/i.test(hello.name) && !has('board')) {
@@ -514,12 +538,20 @@ async function begin(hello: any): Promise<void> {
   try {
     // A file's own scene is there at once; a server's is asked for with all that is to be drawn.
     if (link.local) await link.ask('open')
+    if (hello.watched) {
+      const immersed = hello.watched.find((w: Watched) => w.expression === IMMERSED)?.value
+      model.floats = floats(view.mirrored, immersed)
+      model.watched = usualOf(hello.watched, model.floats)
+      changed('watched')
+      fitTabs()
+    }
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
     watching = false
     await watchUsual()
     if (!again && !link.still) app.formats = (await link.ask('formats')).head.formats
     if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
+    if (!again) await askRecent()
     if (!again) await openLink(app)
   } catch (error) {
     if (error instanceof Refused) say(error.message)

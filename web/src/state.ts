@@ -59,6 +59,8 @@ export const model = {
   watched: [] as Watched[],
   unit: '',
   program: true,
+  /** Whether its hydrostatics mean something. */
+  floats: false,
   rev: 0,
 }
 

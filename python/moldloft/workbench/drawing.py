@@ -94,9 +94,7 @@ class Drawing:
     ) -> None:
         self.room = room
         self._text = text
-        self._engine = Engine(
-            name, folder, library, memory=memory, budget=budget, work=room.work
-        )
+        self._engine = Engine(name, folder, library, memory=memory, budget=budget, work=room.work)
         self._stopped = False
         self._known = -1
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []

@@ -6,8 +6,9 @@ import base64
 import html
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
+from importlib import resources
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -24,11 +25,6 @@ _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'{engine}; style-src 'unsafe-inline'; "
     "img-src data: blob:; base-uri 'none'; form-action 'none'"
 )
-#: What a page watches at first of a model that has panels.
-_WATCHED = ["mesh.area", "mesh.volume"]
-#: The same of one that is mirrored in its middle plane.
-_WATCHED_AFLOAT = ["mesh.area", "hydrostatics.volume", "hydrostatics.lcb", "hydrostatics.kmt"]
-
 _ENGINE_POLICY = " 'wasm-unsafe-eval' blob:; worker-src blob:"
 
 
@@ -106,7 +102,6 @@ def page_of(
     frames = {"open": asked(kind="sync", tab=1)}
     first = head_of(frames["open"])
     shown = any(o["class"] in ("surface", "mesh") for o in first.get("objects", []))
-    afloat = "y" in first.get("mirror", "")
     hello = {
         "kind": "hello",
         "name": name,
@@ -114,7 +109,7 @@ def page_of(
         "version": 0,
         "dirty": False,
         "words": head_of(asked(kind="words"))["words"],
-        "watched": _usual(asked, afloat) if shown else [],
+        "watched": head_of(asked(kind="watch", expressions=_usual()))["watched"] if shown else [],
     }
     data = {
         "hello": hello,
@@ -125,14 +120,10 @@ def page_of(
     return _assembled(name, json.dumps(data), engine).encode()
 
 
-def _usual(asked: Callable[..., bytes], afloat: bool) -> list[dict[str, Any]]:
-    """The numbers that a page watches at first: of what floats, if it does."""
-    found: list[dict[str, Any]] = []
-    for expressions in ([_WATCHED_AFLOAT] if afloat else []) + [_WATCHED]:
-        found = head_of(asked(kind="watch", expressions=expressions))["watched"]
-        if all("error" not in each for each in found):
-            break
-    return found
+def _usual() -> list[str]:
+    """All that pages watch at first; each shows those for its model."""
+    text = (resources.files("moldloft.workbench") / "usual.json").read_text(encoding="utf-8")
+    return list(dict.fromkeys(word for words in json.loads(text).values() for word in words))
 
 
 def _asked(session: _core.Session, **request: object) -> bytes:

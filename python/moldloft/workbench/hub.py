@@ -26,6 +26,7 @@ from moldloft.workbench.drawing import BOARD, DESK, FILES, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.frames import frame_of, head_of
 from moldloft.workbench.outbox import Outbox, Send
+from moldloft.workbench.recent import recent_models
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
 
 __all__ = ["Hub", "Tab"]
@@ -98,6 +99,8 @@ class Hub:
     budget: float = 20.0
     memory: int = 8 << 30
     tabs: dict[int, Tab] = field(default_factory=dict)
+    beside: Callable[[Path], str] | None = None
+    """Opens another model and returns the address of its page."""
 
     def __post_init__(self) -> None:
         utf8_path(self.path)
@@ -261,6 +264,11 @@ class Hub:
             await self._save(tab, message)
         elif kind == "revert":
             await self._revert(tab, number)
+        elif kind == "recent":
+            files = [{"name": p.name, "path": str(p)} for p in self._others()]
+            self._to(tab, {"kind": "recent", "id": number, "files": files})
+        elif kind == "open_recent":
+            self._open_recent(tab, message)
         elif kind == "formats":
             rows = [[row.name, row.about] for row in formats().values()]
             self._to(tab, frame_of({"id": number, "formats": rows}, {}))
@@ -270,6 +278,24 @@ class Hub:
             room.ask(tab.number, message, tab.outbox.put)
         else:
             self.refuse(tab, number, "no such request")
+
+    def _others(self) -> list[Path]:
+        """Models that were opened before, but for this one."""
+        return [path for path in recent_models() if path != self.path.resolve()]
+
+    def _open_recent(self, tab: Tab, message: dict[str, Any]) -> None:
+        """The address of a page of a model that was opened before; a page can open no other."""
+        number = message.get("id", 0)
+        path = next((p for p in self._others() if str(p) == message.get("path")), None)
+        if path is None or self.beside is None:
+            self.refuse(tab, number, f"`{message.get('path')}` is no longer there")
+            return
+        try:
+            url = self.beside(path)
+        except (Error, OSError) as error:
+            self.refuse(tab, number, str(error))
+            return
+        self._to(tab, {"kind": "opened", "id": number, "url": url})
 
     def refuse(self, tab: Tab | None, number: Any, error: str) -> None:
         """Tell a page that a request is not carried out, by the id that it gave."""

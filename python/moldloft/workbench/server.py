@@ -12,6 +12,7 @@ import json
 import secrets
 import socket
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
@@ -23,6 +24,7 @@ from starlette.websockets import WebSocket
 from moldloft.errors import Error
 from moldloft.workbench.hub import Hub, Tab
 from moldloft.workbench.page import page_files
+from moldloft.workbench.recent import note_opened
 
 __all__ = ["Server"]
 
@@ -128,12 +130,22 @@ class Server:
         self._token = secrets.token_urlsafe(32)
         self._cookie = f"moldloft-{self.port}"
         self._session = secrets.token_urlsafe(32)
-        self._assets_etag = secrets.token_hex(8)
+        self._others: dict[Path, tuple[Server, asyncio.Task[None]]] = {}
+        hub.beside = self._beside
 
     @property
     def url(self) -> str:
         """Address of the page; the token follows the #, which no log records."""
         return f"http://127.0.0.1:{self.port}/#t={self._token}"
+
+    def _beside(self, path: Path) -> str:
+        """The address of the page of another model, which is served as long as this one."""
+        server, task = self._others.get(path, (None, None))
+        if server is None or task is None or task.done():
+            hub = Hub(path, self.hub.library, budget=self.hub.budget, memory=self.hub.memory)
+            server = Server(hub, announce=self._announce)
+            self._others[path] = server, asyncio.ensure_future(server.run())
+        return server.url
 
     def app(self) -> Any:
         """The ASGI application."""
@@ -167,6 +179,7 @@ class Server:
         )
         server = uvicorn.Server(config)
         self.hub.start()
+        note_opened(self.hub.path)
         serving = asyncio.ensure_future(server.serve(sockets=[self._socket]))
         try:
             while not server.started and not serving.done():
@@ -175,6 +188,9 @@ class Server:
             await serving
         finally:
             server.should_exit = True
+            for _, task in self._others.values():
+                task.cancel()
+            await asyncio.gather(*(t for _, t in self._others.values()), return_exceptions=True)
             await self.hub.stop()
 
     def _headers(self, **more: str) -> dict[str, str]:
