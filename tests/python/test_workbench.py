@@ -583,6 +583,12 @@ def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
             assert request(app, origin=origin)[0] == 403, origin
             assert request(app, kind="websocket", path="/ws", origin=origin)[0] == 4403, origin
         assert request(app, sec_fetch_site="cross-site")[0] == 403
+        # From another page of this machine one comes to the frame alone.
+        near = {"sec_fetch_site": "same-site", "sec_fetch_mode": "navigate"}
+        assert request(app, **near)[0] == 200
+        assert request(app, sec_fetch_site="same-site")[0] == 403
+        assert request(app, path="/assets/x.js", **near)[0] == 403
+        assert request(app, "POST", "/token", b"wrong", origin=HOME, **near)[0] == 403
         # An upgrade and a post must say where they come from.
         assert request(app, kind="websocket", path="/ws")[0] == 4403
         assert request(app, "POST", "/token", server._token.encode())[0] == 403

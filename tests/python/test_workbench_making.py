@@ -240,3 +240,43 @@ def test_models_that_were_opened_before_are_opened_again(
     b.page.get_by_role("combobox", name="command").fill("Open again: empty.sdl")
     b.page.get_by_text(f"Open again: {tmp_path / 'empty.sdl'}").wait_for()
     assert not [fault for fault in b.faults if "WebSocket" not in fault]
+
+
+SETS = (
+    "AbsPoint O(0, 0, 0);\nAbsPoint P(2, 2, 2);\nSet A(cuboid(O, P));\nSet B(set(sphere(P, 1)));\n"
+)
+
+
+def test_sets_are_combined_by_the_pointer(bench: Callable[..., Bench]) -> None:
+    b = opened(bench, SETS)
+
+    def combined(operator: str, *names: str) -> None:
+        panel = form(b, operator)
+        for name in names:
+            b.page.get_by_role("treeitem", name=re.compile(f"^{name} ")).click()
+        panel.get_by_role("button", name="Add", exact=True).click()
+
+    combined("difference", "A", "B")
+    b.until(lambda: "Set part1(A - B);" in b.text())
+    b.page.keyboard.press("Escape")
+    combined("union", "A")
+    b.page.get_by_role("alert").get_by_text("at least 2").wait_for()
+    b.page.keyboard.press("Escape")
+    # A function: its points are picked, its value has a name.
+    combined("cuboid", "O", "P")
+    b.until(lambda: "Set part2(cuboid(O, P));" in b.text())
+    b.page.keyboard.press("Escape")
+    panel = form(b, "sphere")
+    b.page.get_by_role("treeitem", name=re.compile("^P ")).click()
+    panel.get_by_role("textbox", name="radius").fill("1.5")
+    panel.get_by_role("button", name="Add", exact=True).click()
+    b.until(lambda: "Field f1(sphere(P, 1.5));" in b.text())
+    b.page.keyboard.press("Escape")
+    combined("intersection", "part1", "part2", "f1")
+    b.until(lambda: "Set part3(part1 & part2 & f1);" in b.text())
+    assert not [f for f in b.hand("model.faults") if f["severity"] == "error"]
+    assert b.hand("steps().done") == ["Add part1", "Add part2", "Add f1", "Add part3"]
+    for _ in range(4):
+        b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == SETS)
+    assert not b.faults

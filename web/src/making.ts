@@ -22,6 +22,10 @@ interface Field {
 interface Kind {
   name: string
   class: string
+  /** For a function or an operator: the kind that names its value. */
+  made?: 'Set' | 'Field'
+  /** What is written between the arguments of an operator. */
+  operator?: string
   about: string
   also: string
   fields: Field[]
@@ -50,6 +54,7 @@ const STEMS: Record<string, string> = {
   plane: 'plane',
   frame: 'frame',
   set: 'part',
+  field: 'f',
   mesh: 'mesh',
 }
 const GROUPS = [
@@ -65,6 +70,7 @@ const GROUPS = [
   'solid',
   'mesh',
   'set',
+  'field',
   'block',
 ]
 const PARAMETER: Kind = {
@@ -83,6 +89,52 @@ const PARAMETER: Kind = {
     default: null,
     words: [],
   })),
+}
+
+/** The operators of sets: name, what is written between the sets, what it is. */
+const OPERATORS: [string, string, string][] = [
+  ['union', ' | ', 'What is in any of the sets.'],
+  ['intersection', ' & ', 'What is in all of the sets.'],
+  ['difference', ' - ', 'What is in the first set and in none of the others.'],
+]
+
+/** The operands that are written in a field. */
+const sets = (text: string) =>
+  text
+    .split(',')
+    .map((t) => t.trim())
+    .filter(Boolean)
+
+const operators = (accepts: string[]): Kind[] =>
+  OPERATORS.map(([name, operator, about]) => ({
+    name,
+    class: 'set',
+    made: 'Set',
+    operator,
+    about,
+    also: 'boolean set combine solid',
+    fields: [
+      {
+        ...PARAMETER.fields[0],
+        name: 'sets',
+        help: `${about} In this order.`,
+        class: 'set',
+        accepts,
+        many: true,
+        least: 2,
+      },
+    ],
+  }))
+
+/** The kinds of the engine, and beside them the operators and functions whose values have a name of their own. */
+export function rowsOf(kinds: Kind[], functions: Kind[]): Kind[] {
+  // What a class of arguments accepts is stated by the kinds.
+  const accepts = new Map(kinds.flatMap((k) => k.fields).map((f) => [f.class, f.accepts]))
+  const complete = (k: Kind): Kind => ({
+    ...k,
+    fields: k.fields.map((f) => ({ ...f, accepts: accepts.get(f.class) ?? [] })),
+  })
+  return [PARAMETER, ...kinds, ...operators(accepts.get('set') ?? ['set']), ...functions.map(complete)]
 }
 
 export class Making {
@@ -116,7 +168,12 @@ export class Making {
   }
 
   async rows(): Promise<Kind[]> {
-    if (!this.kinds.length) this.kinds = [PARAMETER, ...(await this.link.ask('kinds')).head.kinds]
+    if (!this.kinds.length) {
+      const { kinds } = (await this.link.ask('kinds')).head
+      // A page in a file has no list of functions.
+      const functions = this.link.local ? [] : (await this.link.ask('functions')).head.functions
+      this.kinds = rowsOf(kinds, functions)
+    }
     return this.kinds
   }
 
@@ -169,7 +226,7 @@ export class Making {
           h(
             'button',
             { role: 'listitem', title: k.about, onclick: () => this.form(k) },
-            h('span', {}, k.name),
+            h('span', {}, k.made ? `${k.name} (${k.made.toLowerCase()})` : k.name),
             h('span', { class: 'quiet' }, k.about),
           ),
         ),
@@ -324,8 +381,10 @@ export class Making {
       const [value, least, largest] = kind.fields.map((f) => this.spelled(f))
       return `param float ${name} = ${value || 0}${least && largest ? ` in [${least}, ${largest}]` : ''};`
     }
-    const missing = kind.fields.find((f) => f.required && !this.spelled(f))
-    if (missing) throw new Error(`${missing.name} is missing: ${missing.help}`)
+    const few = (f: Field) => f.least > 1 && sets(this.inputs.get(f.name)!.value).length < f.least && kind.operator
+    const missing = kind.fields.find((f) => (f.required && !this.spelled(f)) || few(f))
+    if (missing)
+      throw new Error(`${missing.name} is missing: ${few(missing) ? `at least ${missing.least}. ` : ''}${missing.help}`)
     let positional = true
     const given = kind.fields.flatMap((f) => {
       const text = this.spelled(f)
@@ -335,7 +394,9 @@ export class Making {
       }
       return positional && f.required ? text : `${f.name} = ${text}`
     })
-    return `${kind.name} ${name}(${given.join(', ')});`
+    if (kind.operator) return `${kind.made} ${name}(${sets(this.inputs.get('sets')!.value).join(kind.operator)});`
+    const call = `(${given.join(', ')})`
+    return kind.made ? `${kind.made} ${name}(${kind.name}${call});` : `${kind.name} ${name}${call};`
   }
 
   /** One after the other: a click comes before the form is ready for the next object. */

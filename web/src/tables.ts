@@ -2,7 +2,7 @@
 
 import { ensureSyntaxTree } from '@codemirror/language'
 import type { Text } from '@codemirror/state'
-import { arraysOf, grouped, rowEdits, type WrittenArray } from './arrays'
+import { arraysOf, type Column, grouped, rowEdits, type WrittenArray } from './arrays'
 import { h, s, shown } from './dom'
 import type { Editor } from './editor'
 
@@ -58,8 +58,8 @@ function change(editor: Editor, act: TableActions, run: () => Promise<void>): vo
     .catch((error) => act.say((error as Error).message))
 }
 
-function cell(editor: Editor, act: TableActions, array: WrittenArray, row: number): HTMLElement {
-  const { name, numbers } = array
+function cell(editor: Editor, act: TableActions, column: Column, row: number): HTMLElement {
+  const { name, numbers } = column
   const words = editor.text.slice(numbers[row].from, numbers[row].to)
   const label = `${name}, row ${row + 1}`
   const field = h('input', { type: 'text', class: 'number', 'aria-label': label, 'data-cell': label })
@@ -72,7 +72,8 @@ function cell(editor: Editor, act: TableActions, array: WrittenArray, row: numbe
       const value = String(await act.typed(text))
       const now = tablesOf(editor)
         .flat()
-        .find((a) => a.name === name)
+        .flatMap((a) => a.columns)
+        .find((c) => c.name === name)
       if (now?.numbers[row]) editor.apply([{ ...now.numbers[row], insert: value }], undefined, `${label}: ${value}`)
     })
   }
@@ -92,8 +93,9 @@ function cell(editor: Editor, act: TableActions, array: WrittenArray, row: numbe
 
 function table(editor: Editor, act: TableActions, group: WrittenArray[]): HTMLElement {
   const text = editor.text
-  const values = group.map((a) => a.numbers.map((n) => Number(text.slice(n.from, n.to))))
-  const count = group[0].numbers.length
+  const columns = group.flatMap((a) => a.columns)
+  const values = columns.map((c) => c.numbers.map((n) => Number(text.slice(n.from, n.to))))
+  const count = group[0].rows.length
   const rows = (more: boolean) => () =>
     change(editor, act, async () => {
       const now = tablesOf(editor).find((g) => g[0].name === group[0].name)
@@ -102,7 +104,7 @@ function table(editor: Editor, act: TableActions, group: WrittenArray[]): HTMLEl
     })
   const increasing = values[0].every((v, k, all) => !k || v > all[k - 1])
   const x = increasing ? values[0] : values[0].map((_, k) => k)
-  const plots = group.map((a, k) => h('td', {}, plot(a.name, k && increasing ? x : x.map((_, j) => j), values[k])))
+  const plots = columns.map((c, k) => h('td', {}, plot(c.name, k && increasing ? x : x.map((_, j) => j), values[k])))
   return h(
     'div',
     { class: 'table-box' },
@@ -112,14 +114,14 @@ function table(editor: Editor, act: TableActions, group: WrittenArray[]): HTMLEl
       h(
         'thead',
         {},
-        h('tr', {}, h('th', {}, ''), ...group.map((a) => h('th', {}, a.name))),
+        h('tr', {}, h('th', {}, ''), ...columns.map((c) => h('th', {}, c.name))),
         h('tr', {}, h('th', {}, ''), ...plots),
       ),
       h(
         'tbody',
         {},
         ...Array.from({ length: count }, (_, k) =>
-          h('tr', {}, h('th', { scope: 'row' }, k + 1), ...group.map((a) => h('td', {}, cell(editor, act, a, k)))),
+          h('tr', {}, h('th', { scope: 'row' }, k + 1), ...columns.map((c) => h('td', {}, cell(editor, act, c, k)))),
         ),
       ),
     ),
@@ -136,8 +138,15 @@ function table(editor: Editor, act: TableActions, group: WrittenArray[]): HTMLEl
 export function tablesSheet(editor: Editor, act: TableActions): HTMLElement[] {
   const groups = tablesOf(editor)
   if (!groups.length)
-    return [h('p', { class: 'quiet pad' }, 'The program has no arrays of numbers, such as farray x = {0, 0.5, 1};')]
-  const about = 'Arrays of equal length that follow each other are one table; each is plotted over the first.'
+    return [
+      h(
+        'p',
+        { class: 'quiet pad' },
+        'The program has no arrays of numbers or points, such as farray x = {0, 0.5, 1}; or curve c = {{0, 0, 0}, {1, 0, 0}};',
+      ),
+    ]
+  const about =
+    'Arrays of equal length that follow each other are one table; each is plotted over the first. A row of points has x, y and z.'
   return [
     h(
       'div',

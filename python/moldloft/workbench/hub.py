@@ -25,6 +25,7 @@ from moldloft.workbench.draft import Draft
 from moldloft.workbench.drawing import BOARD, DESK, FILES, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.frames import frame_of, head_of
+from moldloft.workbench.making import shape_functions
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.recent import recent_models
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
@@ -269,6 +270,8 @@ class Hub:
             self._to(tab, {"kind": "recent", "id": number, "files": files})
         elif kind == "open_recent":
             self._open_recent(tab, message)
+        elif kind == "functions":
+            self._to(tab, frame_of({"id": number, "functions": shape_functions()}, {}))
         elif kind == "formats":
             rows = [[row.name, row.about] for row in formats().values()]
             self._to(tab, frame_of({"id": number, "formats": rows}, {}))
