@@ -110,7 +110,7 @@ def test_a_cad_file_is_a_program_with_panels(tmp_path: Path) -> None:
 def exported(b: Any, format: str) -> tuple[str, bytes]:
     """What the page gives for a format that is chosen in the list of commands."""
     b.page.get_by_role("button", name="Export").click()
-    with b.page.expect_download(timeout=60_000) as found:
+    with b.page.expect_download(timeout=240_000) as found:
         b.page.get_by_role("combobox", name="command").fill(f"Export: {format},")
         b.page.keyboard.press("Enter")
     return found.value.suggested_filename, Path(found.value.path()).read_bytes()
@@ -157,7 +157,7 @@ def test_cad_files_are_dropped_and_opened(bench: Any, tmp_path: Path) -> None:
     for name in ("part.step", "part.igs"):
         data = base64.b64encode((tmp_path / name).read_bytes()).decode()
         b.page.evaluate(DROP, [name, data])
-        b.page.locator(".status").get_by_text(f"{name}.ply: rms").wait_for(timeout=60_000)
+        b.page.locator(".status").get_by_text(f"{name}.ply: rms").wait_for(timeout=240_000)
         assert b.text() == before
     b.page.get_by_role("button", name="Open it instead").click()
     b.until(lambda: "NURBSurf" in b.text())
@@ -168,6 +168,6 @@ def test_cad_files_are_dropped_and_opened(bench: Any, tmp_path: Path) -> None:
     # On an empty program it is opened at once.
     empty = bench("", "empty.sdl")
     empty.page.get_by_label("open a program").set_input_files(tmp_path / "part.step")
-    empty.until(lambda: "NURBSurf" in empty.text(), 60)
+    empty.until(lambda: "NURBSurf" in empty.text(), 240)
     empty.until(lambda: any(i["kind"] == "patch" for i in empty.hand("items()")))
     assert not b.faults and not empty.faults

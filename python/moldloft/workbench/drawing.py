@@ -36,6 +36,8 @@ class Room:
     """Requests of low priority."""
     stop: str = ""
     """The request that cancels the current one."""
+    patience: float = 1.0
+    """Its limit of time, in those of a change of the model."""
 
     def takes(self, kind: Any) -> bool:
         """True if a request is for this room."""
@@ -64,6 +66,8 @@ FILES = Room(
     frozenset(),
     frozenset({"export", "import"}),
     frozenset(),
+    # Nobody drags while a file is made, and libraries of other projects start slowly.
+    patience=10.0,
 )
 
 Say = Callable[["str | bytes"], None]
@@ -94,7 +98,9 @@ class Drawing:
     ) -> None:
         self.room = room
         self._text = text
-        self._engine = Engine(name, folder, library, memory=memory, budget=budget, work=room.work)
+        self._engine = Engine(
+            name, folder, library, memory=memory, budget=room.patience * budget, work=room.work
+        )
         self._stopped = False
         self._known = -1
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []
