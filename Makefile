@@ -22,7 +22,7 @@ optimised: PROFILE = release
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
 PAGE := python/moldloft/workbench/page/index.html
-PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildcard web/src/*)
+PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildcard web/src/*) python/moldloft/colours.json python/moldloft/workbench/usual.json
 # Without Node.js everything but the workbench is there.
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from moldloft.colours import COLOURS
+
 __all__ = ["Node", "digraph_svg", "layers"]
 
 _CHARACTER = 7.2
@@ -15,15 +17,7 @@ _GAP_Y = 46
 _MARGIN = 16
 _SWEEPS = 8
 
-_FILLS = {
-    "point": "#f4e7c3",
-    "bead": "#f7d9b8",
-    "magnet": "#f7d9b8",
-    "ring": "#f7d9b8",
-    "curve": "#cfe3f3",
-    "snake": "#cde9e4",
-    "surface": "#d3e8c8",
-}
+_FILLED = ("point", "bead", "magnet", "ring", "curve", "snake", "surface")
 
 
 @dataclass(frozen=True)
@@ -130,7 +124,7 @@ def _line(parent: tuple[float, float], child: tuple[float, float]) -> str:
 
 
 def _box(node: Node, x: float, y: float, width: float) -> str:
-    fill = _FILLS.get(node.class_, "#e6e6e6")
+    fill = COLOURS[node.class_] if node.class_ in _FILLED else "#e6e6e6"
     frame = "#777" if node.ok else "#c00"
     return (
         f'<g text-anchor="middle"><rect x="{x - width / 2:.1f}" y="{y:.1f}" width="{width:.1f}" '

@@ -356,3 +356,52 @@ def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHan
     exact = 2.5 * (1 - ((x - 10) / 11) ** 2) * (1 - (1 - z / 2.2) ** 2)
     assert len(panels) > 50 and np.abs(y - exact).max() < 0.01
     assert not d.faults
+
+
+def test_a_weight_is_dragged(desk: Callable[..., DeskHand]) -> None:
+    d = desk()
+    before = d.table("rail.csv", csv(rail()))["facts"]["detail"]
+    point = max(range(3, 38), key=lambda k: before["moved"][k] if k != 30 else 0)
+    d.page.get_by_role("button", name="Weight").click()
+    x, y = d.look()["places"][str(point)]
+    d.page.mouse.move(x, y)
+    d.page.mouse.down()
+    for k in range(1, 7):
+        d.page.mouse.move(x, y - 20 * k)
+    d.page.mouse.up()
+    d.settle()
+    kept = d.look()
+    # Twice the height in which a weight grows e times.
+    assert kept["log"] == [f"weight 7.39 point {point + 1}"]
+    after = kept["facts"]["detail"]
+    assert after["moved"][point] < before["moved"][point] / 4
+    agrees(d)
+    # Dragged again it goes on from there; down it is lighter.
+    x, y = kept["places"][str(point)]
+    d.page.mouse.move(x, y)
+    d.page.mouse.down()
+    d.page.mouse.move(x, y + 120, steps=4)
+    d.page.mouse.up()
+    d.settle()
+    assert d.look()["log"][-1] == f"weight 1 point {point + 1}"
+    for _ in range(2):
+        d.page.keyboard.press("Control+z")
+    d.settle()
+    assert d.look()["log"] == [] and d.look()["facts"]["detail"]["moved"] == before["moved"]
+
+
+def test_a_curve_is_picked_in_the_picture(desk: Callable[..., DeskHand]) -> None:
+    points = "".join(f"AbsPoint P{k}({k}, {(k % 3) * 0.2}, 0);\n" for k in range(8))
+    d = desk(points + "CCurve rail({" + ", ".join(f"P{k}" for k in range(8)) + "});\n")
+    d.page.get_by_role("tab", name="Model").click()
+    d.until(lambda: d.hand("items()"))
+    d.page.evaluate("() => window.moldloft.camera_set(-90, 90)")
+    d.page.wait_for_timeout(300)
+    (x3, y3), (x4, y4) = (d.hand(f"project('P{k}')") for k in (3, 4))
+    # A place of the curve between two points, seen from above.
+    places = np.reshape(d.hand("positions('rail')"), (-1, 3))
+    x, y, _ = places[np.argmin(abs(places[:, 0] - 3.5))]
+    d.page.mouse.click(x3 + (x - 3) * (x4 - x3), y3 + y / 0.2 * (y4 - y3))
+    d.page.get_by_role("button", name="Fair on the desk").click()
+    d.page.wait_for_function("() => window.moldloft.desk && window.moldloft.desk.look().session")
+    assert d.look()["facts"]["title"] == "rail"

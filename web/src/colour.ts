@@ -1,7 +1,12 @@
 // Colours that everyone can tell apart, and scales for numbers.
 
-/** Patches: muted tones of Tol's bright scheme; neighbours never have the same. */
-export const HUES = [0x8fb3d9, 0xe7b877, 0x8cc5a2, 0xd998a6, 0xb7a5d6, 0x9fd0dc, 0xd8cf8a, 0xb9b9b9]
+import colours from '../../python/moldloft/colours.json'
+
+/** Patches have them in turn; neighbours never have the same. */
+export const HUES = colours.turn.map((k) => Number.parseInt(colours.model[k].slice(1), 16))
+
+/** The axes x, y and z. */
+export const AXIS_INKS = [colours.x, colours.y, colours.z]
 
 export const hex = (n: number): [number, number, number] => [
   ((n >> 16) & 255) / 255,

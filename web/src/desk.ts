@@ -24,7 +24,9 @@ const SPANS: [string, string, string][] = [
   ['one-way', 'i', 'No inflection'],
   ['range', 'r', 'Range'],
 ]
-const TOOLS = [...POINTS, ...SPANS, ['side', 'o', 'One-sided'] as [string, string, string]]
+const TOOLS: [string, string, string][] = [...POINTS, ...SPANS, ['side', 'o', 'One-sided'], ['weight', 'w', 'Weight']]
+/** Picture points up by which a dragged weight grows e times, and the least and the largest. */
+const [GROWTH, LIGHTEST, HEAVIEST] = [60, 0.01, 1000]
 /** Pixels: what a pointer reaches, and what is a click. */
 const [REACH, CLICK] = [12, 4]
 /** How long a hand rests on a slider before the curve is finished, ms. */
@@ -86,7 +88,7 @@ export class Desk {
   private shownLine = 0
   private tool = 'select'
   private chosen: Chosen = { point: 0, anchor: -1 }
-  private pressed: { at: Place; kind: 'point' | 'pan'; point: number; moved: boolean; to?: number[] } | null = null
+  private pressed: { at: Place; kind: 'point' | 'pan'; point: number; moved: boolean; command?: string } | null = null
   private queue: Promise<unknown> = Promise.resolve()
   private timer = 0
   private stopping = false
@@ -724,15 +726,28 @@ export class Desk {
     if (!p || !this.facts) return
     const at = this.at(e)
     if (!p.moved && Math.hypot(at[0] - p.at[0], at[1] - p.at[1]) < CLICK) return
-    if (!p.moved && p.kind === 'point' && this.tool !== 'select') return
+    if (!p.moved && p.kind === 'point' && this.tool !== 'select' && this.tool !== 'weight') return
     p.moved = true
     if (p.kind === 'pan') {
       this.sheet.pan(at[0] - p.at[0], at[1] - p.at[1])
       p.at = at
       return this.paint()
     }
-    p.to = this.placed(p.point, this.sheet.from(at))
-    this.sliding.push({ command: `move ${p.point + 1} ${p.to.join(' ')}`, final: false, decided: this.decided })
+    p.command =
+      this.tool === 'weight'
+        ? this.weighed(p.point, p.at[1] - at[1])
+        : `move ${p.point + 1} ${this.placed(p.point, this.sheet.from(at)).join(' ')}`
+    this.sliding.push({ command: p.command, final: false, decided: this.decided })
+  }
+
+  /** The command for the weight of a point after a drag so far up. */
+  private weighed(point: number, up: number): string {
+    const given = (command: string) => /^weight (\S+) point (\d+)$/.exec(command)
+    const last = this.log.map(given).findLast((m) => m && Number(m[2]) === point + 1)
+    const heavy = Number(last?.[1] ?? 1) * Math.exp(up / GROWTH)
+    const weight = Number(Math.max(LIGHTEST, Math.min(HEAVIEST, heavy)).toPrecision(3))
+    this.say(`weight ${weight}: the tolerance of point ${point + 1} is divided by it`)
+    return `weight ${weight} point ${point + 1}`
   }
 
   /** The place in space of a point that is seen there, rounded to what a pixel is worth. */
@@ -757,9 +772,9 @@ export class Desk {
     this.pressed = null
     if (!p || !this.facts) return
     if (p.moved) {
-      if (p.kind === 'point' && p.to) {
+      if (p.command) {
         void this.later(() => this.sliding.settled())
-        void this.run(`move ${p.point + 1} ${p.to.join(' ')}`)
+        void this.run(p.command)
       }
       return
     }
@@ -852,6 +867,7 @@ export class Desk {
     } else if (span)
       this.say(`${span[2]}: choose a stretch with Shift and the arrow keys, or click its ends`), this.use(span[0])
     else if (key === 'o') this.use('side')
+    else if (key === 'w') this.use('weight')
     else if (key === '[' || key === ']')
       void this.run(this.command(Number((this.facts.limit * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))))
     else if (key === 'g') this.switchGoal()

@@ -1,10 +1,10 @@
 // Handles at the selected point: arrows along the axes, and squares in the planes between them.
 
 import type { Vector3 } from 'three'
+import { AXIS_INKS } from './colour'
 import { h, s } from './dom'
 import type { View } from './view'
 
-const INKS = ['#c0443c', '#35905a', '#4478c8']
 /** Picture points from the point to the tip of an arrow. */
 const REACH = 62
 /** An arrow or square that is seen shorter than this share of its length is left out. */
@@ -67,8 +67,8 @@ export class Gumball {
           'g',
           { class: 'axis' },
           line(12, 'transparent'),
-          line(2.4, INKS[k]),
-          s('polygon', { points: head, fill: INKS[k] }),
+          line(2.4, AXIS_INKS[k]),
+          s('polygon', { points: head, fill: AXIS_INKS[k] }),
         ),
         `along ${'xyz'[k]}`,
         k,
@@ -86,7 +86,7 @@ export class Gumball {
         [0.3, 0.52],
       ].map(([m, n]) => `${x + m * a[0] + n * b[0]},${y + m * a[1] + n * b[1]}`)
       handle(
-        s('polygon', { points: corners.join(' '), fill: INKS[k], class: 'plane' }),
+        s('polygon', { points: corners.join(' '), fill: AXIS_INKS[k], class: 'plane' }),
         `in the plane ${'xyz'.replace('xyz'[k], '')}`,
         null,
         k,

@@ -1,10 +1,10 @@
 // Orientation and size in a corner of the picture: a cube whose faces are views, and a bar of a round length.
 
 import type { Camera, Standard } from './camera'
+import { AXIS_INKS } from './colour'
 import { h, shown } from './dom'
 import { model } from './state'
 
-const INKS = ['#c0443c', '#35905a', '#4478c8']
 /** The view that looks at each face: those at +x, -x, +y, -y, +z, -z. */
 const VIEWS: Standard[] = ['stern', 'body', 'starboard', 'profile', 'plan', 'bottom']
 const SIZE = 88
@@ -92,7 +92,7 @@ export class Orientation {
       c.stroke()
       if (this.facing(face) < 0.25) continue
       const [x, y] = [0, 1].map((k) => corners.reduce((sum, p) => sum + p[k] / 4, 0))
-      c.fillStyle = INKS[face >> 1]
+      c.fillStyle = AXIS_INKS[face >> 1]
       c.fillText(`${face % 2 ? '−' : ''}${'xyz'[face >> 1]}`, x, y)
     }
   }

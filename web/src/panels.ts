@@ -431,6 +431,9 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
         { class: 'buttons' },
         h('button', { onclick: () => act.toggle(o.name) }, 'Hide or show'),
         h('button', { onclick: () => act.isolate(o.name) }, 'Isolate'),
+        act.fair && ['curve', 'snake', 'surface'].includes(o.class)
+          ? h('button', { onclick: () => act.fair?.(o.name) }, 'Fair on the desk')
+          : '',
         ...(act.still || !model.program
           ? []
           : [

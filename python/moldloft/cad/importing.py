@@ -15,6 +15,7 @@ from moldloft.cad.apart import read
 from moldloft.cad.divisions import divisions
 from moldloft.cad.joining import joins
 from moldloft.cad.occt import Imported, ImportedFace
+from moldloft.colours import MODEL
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
 
@@ -161,26 +162,7 @@ def _attributes(face: ImportedFace) -> str:
     return text + ");"
 
 
-_PALETTE = np.array(
-    [
-        (70, 77, 87),
-        (58, 102, 173),
-        (63, 143, 92),
-        (47, 151, 163),
-        (184, 74, 64),
-        (148, 85, 156),
-        (166, 119, 61),
-        (182, 188, 196),
-        (114, 125, 137),
-        (120, 165, 224),
-        (128, 196, 142),
-        (120, 200, 206),
-        (227, 130, 116),
-        (202, 143, 208),
-        (230, 195, 98),
-        (222, 226, 231),
-    ]
-)
+_PALETTE = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in MODEL])
 """The sixteen colours of model files, sRGB."""
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.colours import COLOURS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -26,9 +28,8 @@ __all__ = [
     "teeth",
 ]
 
-BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
-MOVE = "#7a3fa0"
-"""Colours that stay apart for colour-blind eyes and in grey."""
+BEFORE, AFTER, MOVE = COLOURS["before"], COLOURS["after"], COLOURS["moved"]
+QUIET, WRONG = COLOURS["quiet"], COLOURS["wrong"]
 
 
 def round_below(x: float) -> float:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
-from moldloft.fairing.drawing import AFTER, BEFORE, MOVE, QUIET, even_turns, exaggeration
+from moldloft.fairing.drawing import AFTER, BEFORE, MOVE, QUIET, WRONG, even_turns, exaggeration
 from moldloft.fairing.spline import Samples, Spline, grid_metric
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _shape(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
         ax.plot(marked[:, i], marked[:, j], "s", ms=5, mfc="none", color=ACCENT, label="breaks")
     wrong = [f.index for f in (*fairing.findings, *fairing.corrected) if f.kind == "outlier"]
     if wrong:
-        ax.plot(*fairing.data[wrong][:, [i, j]].T, "x", ms=6, color="#b00020", label="wrong?")
+        ax.plot(*fairing.data[wrong][:, [i, j]].T, "x", ms=6, color=WRONG, label="wrong?")
     ax.set_xlabel("xyz"[i])
     ax.set_ylabel("xyz"[j])
     _near_equal(ax, before.points[:, i], before.points[:, j])
