@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -75,7 +76,7 @@ def snapped(
     found = session.snap(name, [at[0], at[1]], reach)
     if found is not None and found[1] is not None and found[3] is None:
         return {"at": list(found[0]), "why": "point", "point": found[1]}
-    places = _drawn(session, name)
+    places, lines = _drawn(session, name)
     directions = {letter: _unit(d) for letter, d in axes.units.items()}
     rays = [
         ray
@@ -83,13 +84,15 @@ def snapped(
         for ray in _rays(point, through, directions, at)
         if ray.off <= reach
     ]
-    ways = _lines_at(session, name, places, directions, woken)
+    ways = _lines_at(places, lines, directions, woken)
     strong = [r for r in _rays(0, start, directions, at) if r.off <= reach] if start else []
     lively = [r for r in rays if r.point in woken]
-    for point, lines in ways.items():
-        lively += [r for r in _rays(point, places[point], lines, at, "extension") if r.off <= reach]
+    for point, directed in ways.items():
+        lively += [
+            r for r in _rays(point, places[point], directed, at, "extension") if r.off <= reach
+        ]
         if start:
-            strong += [r for r in _rays(0, start, lines, at, "parallel") if r.off <= reach]
+            strong += [r for r in _rays(0, start, directed, at, "parallel") if r.off <= reach]
     crossings = []
     for one in [*strong, *lively]:
         for two in rays if one in strong else lively:
@@ -105,7 +108,7 @@ def snapped(
     if found is not None and found[2] is not None:
         line, part = found[2]
         if abs(part - 0.5) <= _MIDDLE:
-            p, q = _ends(session, name, line)
+            p, q = lines[line]
             middle = [(a + b) / 2 for a, b in zip(places[p], places[q], strict=True)]
             return {"at": middle, "why": "mid", "line": line, "part": 0.5}
         if 0.0 < part < 1.0:
@@ -131,45 +134,33 @@ class _Ray(NamedTuple):
     why: str
 
 
-def _drawn(session: _core.SketchSession, name: str) -> dict[int, Place]:
-    places: dict[int, Place] = {}
-    for line in session.text(name).splitlines():
-        words = line.split()
-        if words[:1] == ["POINT"] and words[2:3] == ["AT"]:
-            places[int(words[1])] = (float(words[3]), float(words[4]))
-    return places
-
-
-def _ends(session: _core.SketchSession, name: str, line: int) -> tuple[int, int]:
-    head = f"LINE {line} FROM "
-    for text in session.text(name).splitlines():
-        if text.startswith(head):
-            words = text.split()
-            return int(words[3]), int(words[5])
-    raise ValueError(f"there is no line {line}")
+def _drawn(
+    session: _core.SketchSession, name: str
+) -> tuple[dict[int, Place], dict[int, tuple[int, int]]]:
+    """The points of an object on the page, and the ends of its lines."""
+    found = json.loads(session.objects_json())["objects"]
+    data = next(o for o in found if o["name"] == name)
+    places = {p["id"]: (p["page"][0], p["page"][1]) for p in data["points"] if p["page"]}
+    ends = {ln["id"]: (ln["points"][0], ln["points"][1]) for ln in data["lines"]}
+    return places, {k: e for k, e in ends.items() if set(e) <= set(places)}
 
 
 def _lines_at(
-    session: _core.SketchSession,
-    name: str,
     places: dict[int, Place],
+    lines: dict[int, tuple[int, int]],
     axes: dict[str, Place],
     woken: Sequence[int],
 ) -> dict[int, dict[str, Place]]:
     """For each woken point the directions of the lines that end there, but for those along axes."""
     found: dict[int, dict[str, Place]] = {p: {} for p in woken if p in places}
-    for text in session.text(name).splitlines():
-        words = text.split()
-        if words[:1] != ["LINE"] or words[2:3] != ["FROM"]:
-            continue
-        ends = int(words[3]), int(words[5])
+    for line, ends in lines.items():
         (a, b), (c, d) = places[ends[0]], places[ends[1]]
         way = _unit((c - a, d - b))
         if any(abs(way[0] * e[1] - way[1] * e[0]) < _ALONG for e in axes.values()):
             continue
         for end in ends:
             if end in found:
-                found[end][f"line {words[1]}"] = way
+                found[end][f"line {line}"] = way
     return found
 
 
