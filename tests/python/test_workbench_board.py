@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -224,3 +225,50 @@ def test_lines_are_duplicated_over_a_picture(board: Callable[..., BoardHand]) ->
     b.page.get_by_label("picture underneath").set_input_files([words])
     b.page.locator(".status").get_by_text("is no picture").wait_for()
     assert not b.faults
+
+
+def nested() -> str:
+    """A cube in a cube with lines between their corners: three solids fit."""
+    ways = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in (345, 40, 90)]
+    lines = ["SKETCH C", "AXES 345 40 90"]
+    cubes = [
+        (x, y, z)
+        for low, high in ((0, 60), (20, 40))
+        for z in (low, high)
+        for x, y in ((low, low), (high, low), (high, high), (low, high))
+    ]
+    for k, place in enumerate(cubes, 1):
+        u, v = (sum(x * w[i] for x, w in zip(place, ways, strict=True)) for i in (0, 1))
+        lines.append(f"POINT {k} AT {u:.6f} {v:.6f}")
+    edges = {
+        "X": [(1, 2), (3, 4), (5, 6), (7, 8)],
+        "Y": [(2, 3), (4, 1), (6, 7), (8, 5)],
+        "Z": [(1, 5), (2, 6), (3, 7), (4, 8)],
+    }
+    for axis, ends in edges.items():
+        for first in (0, 8):
+            lines += [f"LINE FROM {first + a} TO {first + b} TYPE {axis}" for a, b in ends]
+    lines += [f"LINE FROM {k} TO {k + 8} TYPE O" for k in range(1, 9)]
+    for axis, (a, b, c, d) in {"X": (1, 2, 9, 10), "Y": (2, 3, 10, 11), "Z": (1, 5, 9, 13)}.items():
+        lines += [f"DIMENSION {axis} {p} {q} {x}" for p, q, x in ((a, b, 6), (a, c, 2), (c, d, 2))]
+    return "\n".join(lines) + "\n"
+
+
+def test_one_of_several_solids_is_chosen_by_its_picture(board: Callable[..., BoardHand]) -> None:
+    text = nested()
+    b = board(text, "nested.skt")
+    b.settle()
+    fits = b.page.get_by_role("group", name="solids that fit").get_by_role("button")
+    b.until(lambda: fits.count() == 3)
+    fits.nth(1).click()
+    b.settle()
+    assert b.text() == text + "GENERATE FACES\nCHOOSE 2\n"
+    b.until(lambda: fits.nth(1).get_attribute("aria-pressed") == "true")
+    # The drawing stays, though the question is still open; another choice is one command more.
+    assert len(b.look()["drawn"]["lines"]) == 32
+    fits.nth(2).click()
+    b.settle()
+    assert b.text().endswith("CHOOSE 2\nCHOOSE 3\n")
+    b.until(lambda: fits.nth(2).get_attribute("aria-pressed") == "true")
+    volume = float(b.page.locator(".board-solid").get_attribute("data-volume") or "nan")
+    assert volume == pytest.approx(416 / 3, rel=1e-9)

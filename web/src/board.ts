@@ -67,7 +67,7 @@ export class Board {
   private readonly page = new Page()
   private readonly painter = new Painter(this.svg, this.page)
   private readonly underlay = new Underlay(this.page, () => (this.buttons(), this.paint()))
-  private readonly solid = new BoardSolid()
+  private readonly solid = new BoardSolid((n) => void this.make(n))
   private readonly bar = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
   private readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
   private readonly line = h('input', {
@@ -836,8 +836,10 @@ export class Board {
     await this.act(found)
   }
 
-  private async make(): Promise<void> {
-    if (await this.act([{ do: 'run', command: 'GENERATE FACES', last: true }]))
+  /** Makes the body; of several that fit, the one with a number. */
+  private async make(chosen = 0): Promise<void> {
+    const commands = [...(chosen && this.last?.made ? [] : ['GENERATE FACES']), ...(chosen ? [`CHOOSE ${chosen}`] : [])]
+    if (await this.act(commands.map((command) => ({ do: 'run', command, last: true }))))
       this.say('The body is in the model, exact.')
   }
 

@@ -20,6 +20,7 @@ import {
   Vector3,
   WebGLRenderer,
 } from 'three'
+import { candidates, type Shape } from './board_candidates'
 import type { Drawn } from './board_paint'
 import { h, shown } from './dom'
 
@@ -33,6 +34,8 @@ export interface SolidFacts {
   why?: { text: string } | null
   /** Closed plane outlines, by their points, while there is no body. */
   outlines?: number[][]
+  /** The solids that fit the wireframe, if several do. */
+  candidates?: Shape[]
 }
 
 /** A plane outline as triangles. */
@@ -59,6 +62,7 @@ function flat(corners: (number[] | null | undefined)[]): BufferGeometry | null {
 export class BoardSolid {
   readonly element = h('div', { class: 'board-solid', role: 'img', 'aria-label': 'no solid yet' })
   private readonly caption = h('div', { class: 'caption' })
+  private readonly fits = h('div', { class: 'fits', role: 'group', 'aria-label': 'solids that fit' })
   private readonly renderer: WebGLRenderer
   private readonly scene = new Scene()
   private readonly camera = new OrthographicCamera(-1, 1, 1, -1, -100, 100)
@@ -69,10 +73,10 @@ export class BoardSolid {
   private reach = 1
   private readonly centre = new Vector3()
 
-  constructor() {
+  constructor(private readonly choose: (n: number) => void) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true })
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
-    this.element.append(this.renderer.domElement, this.caption)
+    this.element.append(this.renderer.domElement, this.fits, this.caption)
     this.scene.add(new AmbientLight(0xffffff, 1.3), this.light, this.parts)
     const canvas = this.renderer.domElement
     canvas.addEventListener('pointerdown', (e) => canvas.setPointerCapture(e.pointerId))
@@ -108,6 +112,7 @@ export class BoardSolid {
     for (const part of this.parts.children) (part as Mesh).geometry.dispose()
     this.parts.clear()
     this.sight(d)
+    this.fits.replaceChildren(...(solid ? candidates(solid, this.direction, this.choose) : []))
     const dark = document.documentElement.dataset.theme === 'dark'
     const ink = new LineBasicMaterial({ color: dark ? 0xc9d4df : 0x26323d })
     if (solid?.vertices?.length && solid.quads?.length) {

@@ -51,6 +51,8 @@ interface Drag {
   begun: Promise<boolean>
   /** True when the pointer has been followed since the drag was ready. */
   aimed: boolean
+  /** True when it was over before the drag was ready. */
+  flick: boolean
   /** True for a drag by the keys of the keyboard. */
   keys: boolean
   last: [number, number]
@@ -191,6 +193,7 @@ export class Hands {
       ready: false,
       begun: Promise.resolve(false),
       aimed: false,
+      flick: false,
       keys,
       last: [x, y],
       offset: [0, 0],
@@ -387,11 +390,14 @@ export class Hands {
           names: drag.chosen,
           grain,
         })
-        if (this.drag !== drag) return
+        // A flick is over already; where it came to is stated all the same.
+        if (this.drag !== drag && !drag.flick) return
         const values = head.values as Record<string, number>
         drag.names = Object.keys(values)
-        this.offer(drag)
-        this.label(drag, head.reached)
+        if (this.drag === drag) {
+          this.offer(drag)
+          this.label(drag, head.reached)
+        }
         const words = Object.entries(values).map(([n, v]) => `${n} = ${shown(v)}`)
         const lock =
           drag.axis !== null
@@ -466,7 +472,8 @@ export class Hands {
   private async end(drag: Drag, commit: boolean): Promise<void> {
     if (!(await drag.begun)) return
     // A flick that was over before the engine was ready counts as well.
-    if (commit && drag.moved && !drag.aimed) this.aim(drag, false)
+    drag.flick = commit && drag.moved && !drag.aimed
+    if (drag.flick) this.aim(drag, false)
     await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })

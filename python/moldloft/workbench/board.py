@@ -7,6 +7,7 @@ of it, and the edit counts when the whole text runs without a new fault.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import re
@@ -59,6 +60,7 @@ class Board:
         self._folder = folder
         self._text = ""
         self._faults: list[dict[str, Any]] = []
+        self._left = False
         self._session = self._new()
         self._guesses = self._new()
         self._guessed: list[str] = []
@@ -78,13 +80,18 @@ class Board:
         old, new = self._text.split("\n"), text.split("\n")
         while old and not old[-1].strip():
             old.pop()
-        if new[: len(old)] != old:
+        if new[: len(old)] != old or self._left:
             self._session, self._faults, old = self._new(), [], []
         for k, line in enumerate(new[len(old) :], len(old) + 1):
             for reply in map(Reply.from_row, self._session.run_line(line)):
                 if reply.is_error:
                     fault = {"line": k, "text": reply.text, "next": reply.next}
                     self._faults.append({**fault, "code": reply.code})
+        # A question at the end of a text, such as which of several solids is meant, is left open:
+        # the drawing is shown, and lines that answer it are run with the whole text.
+        self._left = self._session.asks()
+        if self._left:
+            self._session.run_line(f'USING "{self._session.active()}"')
         self._text = text
 
     def _changed(self, edits: Places) -> list[dict[str, Any]]:
@@ -286,7 +293,7 @@ class Board:
         """
         session, name = self._session, self._object
         out: dict[str, Any] = {"object": name, "objects": session.names(), "faults": self._faults}
-        if name is None or session.asks():
+        if name is None:
             return out
 
         def look() -> None:
@@ -344,7 +351,7 @@ class Board:
     def check(self) -> list[dict[str, Any]]:
         """Doubtful and contradictory parts, with remedies."""
         found: list[dict[str, Any]] = []
-        if self._object is None or self._session.asks():
+        if self._object is None:
             return found
 
         def look() -> None:
@@ -369,7 +376,7 @@ class Board:
                 if ln["type"] and ln["type"] != before.get(ln["id"]):
                     found.append({"line": ln["id"], "type": ln["type"], "share": ln["certainty"]})
 
-        if self._object is not None and not self._session.asks():
+        if self._object is not None:
             self._aside(look)
         return found
 
@@ -377,7 +384,7 @@ class Board:
         """The body from drawing and dimensions; exact if no dimension is missing."""
         out: dict[str, Any] = {"exact": False, "made": False, "why": None}
         name = self._object
-        if name is None or self._session.asks():
+        if name is None:
             return out
 
         def look() -> None:
@@ -401,7 +408,11 @@ class Board:
                 vertices, faces = session.mesh(name, None)
             except Error:
                 return
-            out.update({"vertices": vertices.ravel().tolist(), "quads": faces.ravel().tolist()})
+            out.update(_shape(vertices, faces))
+            # Of a wireframe that several solids fit, all are shown.
+            with contextlib.suppress(Error):
+                fits = [_shape(*fit) for fit in session.candidates(name, False)]
+                out["candidates"] = fits if len(fits) > 1 else []
 
         self._aside(look)
         return out
@@ -498,6 +509,10 @@ def axes_of(text: str) -> tuple[str | None, Axes]:
             break
     letters = section or "XYZ"
     return section, Axes(letters, angles, scale)
+
+
+def _shape(vertices: Any, faces: Any) -> dict[str, list[float]]:
+    return {"vertices": vertices.ravel().tolist(), "quads": faces.ravel().tolist()}
 
 
 def _mark(row: Any) -> dict[str, Any]:
