@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import math
 import os
+import re
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -272,3 +273,43 @@ def test_one_of_several_solids_is_chosen_by_its_picture(board: Callable[..., Boa
     b.until(lambda: fits.nth(2).get_attribute("aria-pressed") == "true")
     volume = float(b.page.locator(".board-solid").get_attribute("data-volume") or "nan")
     assert volume == pytest.approx(416 / 3, rel=1e-9)
+
+
+def test_a_depth_that_nothing_determines_is_slid(board: Callable[..., BoardHand]) -> None:
+    # The outer cube alone, without dimensions.
+    kept = [row for row in nested().splitlines() if not row.startswith("DIMENSION")]
+    last = [row for row in kept if " TYPE O" in row]
+    text = "\n".join(row for row in kept if row not in last and not inner(row)) + "\n"
+    b = board(text, "cube.skt")
+    b.settle()
+    solid = b.page.locator(".board-solid")
+    b.until(lambda: float(solid.get_attribute("data-volume") or 0) > 0)
+    before = float(solid.get_attribute("data-volume") or 0)
+    b.key("Tab")
+    slider = b.page.locator(".board-box input[type=range]")
+    box = slider.bounding_box()
+    assert box
+    y, x = box["y"] + box["height"] / 2, box["x"] + box["width"] / 2
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    b.page.mouse.move(x + box["width"] / 4, y, steps=5)
+    b.until(lambda: float(solid.get_attribute("data-volume") or 0) > 1.5 * before)
+    assert b.text() == text
+    b.page.mouse.up()
+    b.settle()
+    added = b.text().replace(text, "")
+    assert re.fullmatch(r"DIMENSION D1 [XYZ] \d TO \d = [\d.]+\n", added), b.text()
+    # The estimate is now of that dimension, and what was tried without it is gone.
+    b.until(lambda: float(solid.get_attribute("data-volume") or 0) > 1.5 * before)
+    b.page.keyboard.press("Escape")
+    b.page.keyboard.press("Control+z")
+    b.settle()
+    assert b.text() == text
+    b.until(lambda: abs(float(solid.get_attribute("data-volume") or 0) / before - 1) < 1e-9)
+
+
+def inner(row: str) -> bool:
+    """True for a command with a point of the cube inside."""
+    words = row.split()
+    points = words[1:2] if words[0] == "POINT" else words[2:5:2] if words[0] == "LINE" else []
+    return any(int(p) > 8 for p in points)

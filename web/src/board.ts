@@ -3,7 +3,7 @@
 import { redo, undo } from '@codemirror/commands'
 import './board.css'
 import { BoardBox } from './board_box'
-import { duplicated, labels } from './board_edit'
+import { dimensioned, duplicated, labels } from './board_edit'
 import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter } from './board_paint'
 import { BoardSolid, type SolidFacts } from './board_solid'
 import { Underlay } from './board_underlay'
@@ -37,8 +37,6 @@ const [REACH, CLICK, PALM] = [11, 5, 500]
 const DUPLICATED = 24
 /** How long a hand rests before bodies and doubts are looked for, ms. */
 const REST = 60
-/** A number, with or without a unit; the rest is an expression, in quotes. */
-const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
 const NOTHING = {
   points: [],
   lines: [],
@@ -117,6 +115,10 @@ export class Board {
     const found = await this.ask('board_drag', { move })
     if (this.pressed?.kind === 'move') this.take(found as Drawn)
   })
+  private readonly trying = new Newest<string>(async (trial) => {
+    const { solid } = await this.ask('board_solid', { trial })
+    if (this.box.mark) this.solid.show(this.drawn, solid)
+  })
   private readonly resting = new Newest<void>(async () => {
     const { solid } = await this.ask('board_solid')
     this.last = solid
@@ -143,7 +145,8 @@ export class Board {
       commit: (mark, value) => this.dimension(mark, value),
       leave: () => this.svg.focus(),
       next: (step) => this.openNext(step),
-      closed: () => this.paint(),
+      closed: (tried) => (tried && this.resting.push(undefined), this.paint()),
+      tried: (mark, value) => this.trying.push(dimensioned(this.drawn, mark, value)),
     })
     const help = h(
       'p',
@@ -742,10 +745,7 @@ export class Board {
   private dimension(mark: Mark, value: string): void {
     const missing = mark.p !== undefined
     const change = missing
-      ? {
-          do: 'run',
-          command: `DIMENSION ${this.freeName()} ${mark.axis} ${mark.p} TO ${mark.q} = ${PLAIN.test(value) ? value : `"${value}"`}`,
-        }
+      ? { do: 'run', command: dimensioned(this.drawn, mark, value) }
       : { do: 'value', name: mark.name, value }
     void this.act([change]).then((fine) => {
       if (!fine) return this.box.refuse()
@@ -757,13 +757,6 @@ export class Board {
         this.svg.focus()
       }
     })
-  }
-
-  private freeName(): string {
-    let k = 1
-    const used = new Set(Object.keys(this.drawn.numbers).map((n) => n.toUpperCase()))
-    while (used.has(`D${k}`)) k++
-    return `D${k}`
   }
 
   /** A dimension between two chosen points, along the axis on which they differ most. */

@@ -3,11 +3,17 @@
 import type { Mark, Page } from './board_paint'
 import { h, shown } from './dom'
 
+/** The slider goes so many decades each way. */
+const SPAN = 0.6
+
 export interface BoxActions {
   commit(mark: Mark, value: string): void
   leave(): void
   next(step: number): boolean
-  closed(): void
+  /** The box is closed; true when values were tried. */
+  closed(tried: boolean): void
+  /** A value that is tried: the solid has it while the slider moves. */
+  tried(mark: Mark, value: string): void
 }
 
 export class BoardBox {
@@ -15,16 +21,27 @@ export class BoardBox {
   mark: Mark | null = null
   private readonly input = h('input', { type: 'text', spellcheck: 'false', autocomplete: 'off', inputmode: 'decimal' })
   private readonly label = h('span', { class: 'what' })
+  /** A depth that nothing determines, in decades from what the picture suggests. */
+  private readonly slider = h('input', { type: 'range', min: -SPAN, max: SPAN, step: 0.005 })
   private readonly axis = h('select', { 'aria-label': 'axis' })
+  private tried = false
   private own: ((value: string) => void) | null = null
 
   constructor(
     private readonly page: Page,
     private readonly act: BoxActions,
   ) {
-    this.element.append(this.label, this.axis, this.input)
+    this.element.append(this.label, this.axis, this.input, this.slider)
     this.input.addEventListener('keydown', (e) => this.key(e))
     this.input.addEventListener('input', () => this.element.classList.remove('refused'))
+    this.slider.addEventListener('input', () => {
+      this.input.value = this.slid()
+      if (!this.mark) return
+      this.tried = true
+      this.act.tried(this.mark, this.input.value)
+    })
+    this.slider.addEventListener('change', () => this.mark && this.act.commit(this.mark, this.slid()))
+    this.slider.addEventListener('keydown', (e) => e.stopPropagation())
     this.axis.addEventListener('change', () => {
       if (this.mark) this.mark.axis = this.axis.value
       this.input.focus()
@@ -54,12 +71,21 @@ export class BoardBox {
     )
     this.input.placeholder = missing && mark.value !== null ? `≈ ${shown(mark.value, 3)}` : ''
     this.input.value = begun || (missing || mark.value === null ? '' : String(mark.value))
+    const open = missing && !own && mark.p !== undefined && !!mark.value
+    this.slider.hidden = !open
+    this.slider.value = '0'
+    if (open) this.slider.setAttribute('aria-label', `depth along ${mark.axis} from point ${mark.p} to ${mark.q}`)
     this.element.hidden = false
     this.element.classList.remove('refused')
     this.place()
     this.input.focus({ preventScroll: true })
     if (begun) this.input.setSelectionRange(begun.length, begun.length)
     else this.input.select()
+  }
+
+  /** The value of the slider, to three digits. */
+  private slid(): string {
+    return String(Number(((this.mark?.value ?? 1) * 10 ** Number(this.slider.value)).toPrecision(3)))
   }
 
   place(): void {
@@ -81,7 +107,8 @@ export class BoardBox {
     this.mark = null
     this.own = null
     this.element.hidden = true
-    this.act.closed()
+    this.act.closed(this.tried)
+    this.tried = false
   }
 
   private key(e: KeyboardEvent): void {

@@ -1,12 +1,24 @@
 // Commands for what is chosen on the drawing board.
 
-import { type Drawn, letter } from './board_paint'
+import { type Drawn, letter, type Mark } from './board_paint'
+
+/** A number, with or without a unit; the rest is an expression, in quotes. */
+const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
 
 /** Marks of what is chosen: `p3` is point 3, `l7` line 7. */
 export const labels = (chosen: Iterable<string>, kind: 'p' | 'l'): number[] =>
   [...chosen].filter((c) => c[0] === kind).map((c) => Number(c.slice(1)))
 
 const written = (x: number) => Number(x.toPrecision(12))
+
+/** The command for a missing dimension, under a name that is free. */
+export function dimensioned(drawn: Drawn, mark: Mark, value: string): string {
+  let k = 1
+  const used = new Set(Object.keys(drawn.numbers).map((n) => n.toUpperCase()))
+  while (used.has(`D${k}`)) k++
+  const given = PLAIN.test(value) ? value : `"${value}"`
+  return `DIMENSION D${k} ${mark.axis} ${mark.p} TO ${mark.q} = ${given}`
+}
 
 /**
  * Commands that draw the chosen lines and points again, moved on the page, and the marks of the copies.

@@ -380,8 +380,14 @@ class Board:
             self._aside(look)
         return found
 
-    def solid(self) -> dict[str, Any]:
-        """The body from drawing and dimensions; exact if no dimension is missing."""
+    def solid(self, trial: str | None = None) -> dict[str, Any]:
+        """The body from drawing and dimensions; exact if no dimension is missing.
+
+        Parameters
+        ----------
+        trial
+            A command that is carried out for it alone.
+        """
         out: dict[str, Any] = {"exact": False, "made": False, "why": None}
         name = self._object
         if name is None:
@@ -389,6 +395,8 @@ class Board:
 
         def look() -> None:
             session = self._session
+            if trial is not None:
+                session.run_line(trial)
             data = self._data()
             out["exact"] = not any(data["missing"].values())
             out["made"] = bool(data["faces"])
@@ -484,7 +492,7 @@ class Board:
         if kind in ("board_pointer", "board_place"):
             return self.pointer(request)
         if kind == "board_solid":
-            return {"solid": self.solid()}
+            return {"solid": self.solid(request.get("trial"))}
         if kind == "board_check":
             return {"checks": self.check(), "proposals": self.proposals()}
         return self.facts()
