@@ -402,6 +402,7 @@ def test_everything_is_in_reach_on_a_small_screen(bench: Callable[..., Bench]) -
 def test_columns_of_a_program_are_a_table(bench: Callable[..., Bench]) -> None:
     text = (
         "farray x = {0, 1, 2};  # stations\nfarray h = {0.5, .75, 1e0};\n"
+        "curve p = {{0, 0, 0}, {1, 0, 0}, {2, 0.5, 0}};\n"
         "AbsPoint A(x[1], 0, h[1]); AbsPoint B(x[2], 1, h[2]); AbsPoint C(x[3], 0, h[3]);\n"
         "BCurve c({A, B, C});\n"
     )
@@ -411,8 +412,7 @@ def test_columns_of_a_program_are_a_table(bench: Callable[..., Bench]) -> None:
     assert cell.input_value() == ".75"
     cell.fill("1/4 + 0.5")
     cell.press("Enter")
-    b.hand("settled()")
-    assert b.text() == text.replace(".75", "0.75")
+    b.until(lambda: b.text() == text.replace(".75", "0.75"))
     # The next cell has the focus; what is no number is refused, and the cell is as it was.
     last = b.page.get_by_label("h, row 3", exact=True)
     b.until(lambda: last.evaluate("e => e === document.activeElement"))
@@ -422,13 +422,19 @@ def test_columns_of_a_program_are_a_table(bench: Callable[..., Bench]) -> None:
     assert last.input_value() == "1e0"
     b.page.get_by_role("button", name="Add a row").click()
     b.until(lambda: "x = {0, 1, 2, 2}" in b.text() and "1e0, 1e0}" in b.text())
+    assert "{2, 0.5, 0}, {2, 0.5, 0}};" in b.text()
+    point = b.page.get_by_label("p.z, row 4", exact=True)
+    point.fill("-0.25")
+    point.press("Enter")
+    b.until(lambda: "{2, 0.5, 0}, {2, 0.5, -0.25}};" in b.text())
     b.page.get_by_label("x, row 4", exact=True).fill("3")
     b.page.keyboard.press("Enter")
     b.until(lambda: "x = {0, 1, 2, 3}" in b.text())
     b.page.get_by_role("img", name="h from 0.5 to 1").wait_for()
     names = [
         "h, row 2: 0.75",
-        "Add row 4 of x, h",
+        "Add row 4 of x, h, p",
+        "p.z, row 4: -0.25",
         "x, row 4: 3",
     ]
     assert b.hand("steps().done") == names
