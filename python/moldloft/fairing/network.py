@@ -111,7 +111,7 @@ class NetworkFairing:
         tuple of Suspect
             With the readings that were probably meant.
         """
-        hull = np.isfinite(self.data).all(axis=1)
+        hull = np.asarray(np.isfinite(self.data).all(axis=1))
         return suspects(
             np.where(hull[:, None], self.data, 0.0),
             self.tol or 0.0,
