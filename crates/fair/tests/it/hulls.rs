@@ -212,8 +212,8 @@ fn flats_and_runs_of_hulls_are_exact() {
     }
     println!("runs {worst_run:.1e}, flats {worst_flat:.1e}, {more} bends more; rms {rms:.3?}");
     assert!(worst_run <= 1e-9 && worst_flat <= 1e-9);
-    // One more in two hulls in the mean; without signs it is about ten in each.
-    assert!(more as u64 <= draws, "{more} more bends in {draws} hulls");
+    // Fewer than one more in three hulls; without signs it is about ten in each.
+    assert!(3 * more as u64 <= draws, "{more} more bends in {draws} hulls");
     assert!(rms[1] < 0.8 * rms[0]);
 }
 
