@@ -141,6 +141,36 @@ def test_suspects_are_accepted_one_by_one() -> None:
     assert desk.result.curves[0].inflections[1] == bends
 
 
+def test_wrong_readings_of_a_network_are_suspects(tmp_path: Path) -> None:
+    # Every inner cell but those beside the rim, one at a time.
+    clean = [row.split(",") for row in hull().splitlines()]
+    (tmp_path / "clean.csv").write_text(hull())
+    desk = Desk.open(tmp_path / "clean.csv", 0.006)
+    assert not [s for s in desk.result.suspects if s.kind == "outlier"]
+    cells = [(i, j) for i in range(3, 6) for j in range(3, 10)]
+    found = 0
+    for number, (i, j) in enumerate(cells if SOAK else cells[::3]):
+        rows = [list(row) for row in clean]
+        off = (0.05, -0.1, 0.3)[number % 3]
+        rows[i][j] = f"{float(rows[i][j]) + off:.3f}"
+        (tmp_path / "hull.csv").write_text("\n".join(map(",".join, rows)) + "\n")
+        desk = Desk.open(tmp_path / "hull.csv", 0.006)
+        listed = [s for s in desk.result.suspects if s.kind == "outlier"]
+        x, z = float(rows[0][j]), float(rows[i][0])
+        place = np.array(desk.state.points)[:, [0, 2]]
+        point = int(np.flatnonzero((np.abs(place - (x, z)) < 1e-9).all(axis=1))[0])
+        if listed and listed[0].point == point:
+            found += 1
+            reading = listed[0].reading
+            assert reading is not None and abs(reading[1] - float(clean[i][j])) < abs(off) / 2
+            desk.run(f"accept {point + 1}")
+            assert desk.state.points[point] == reading
+            assert not [s for s in desk.result.suspects if s.point == point]
+            desk.run(f"accept {point + 1}")
+            assert desk.state.points[point][1] == float(rows[i][j])
+    assert found >= 0.9 * len(cells if SOAK else cells[::3]), found
+
+
 def test_swapped_neighbours_are_swapped_and_freed() -> None:
     points = sine(31, 0.002)
     points[[12, 13]] = points[[13, 12]]

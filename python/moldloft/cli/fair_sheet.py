@@ -37,25 +37,17 @@ def suspects_of(
     """
     from moldloft.fairing import NetworkFairing, suspects
 
+    cells = readings(file, rows)
+    if isinstance(result, NetworkFairing):
+        return result.suspects(most, readings=cells)
     axes: Any = motion if isinstance(motion, list) else None
     if isinstance(motion, tuple) and not isinstance(motion[0], str):
         axes = "".join(a for a, c in zip("xyz", motion, strict=False) if c)
     elif isinstance(motion, tuple):
         axes = "".join(a for a, c in zip("xyz", motion[1], strict=False) if not c)
     tol = 0.0 if result.tol is None else result.tol
-    cells = readings(file, rows)
-    if not isinstance(result, NetworkFairing):
-        return suspects(result.data, tol, motion=axes, most=most, readings=cells)
-    return suspects(
-        result.data,
-        tol,
-        result.lists,
-        motion=axes,
-        most=most,
-        names=[result.name(k) for k in range(len(result.lists))],
-        point_names=[result.point_name(k) for k in range(len(result.data))],
-        readings=cells,
-    )
+    return suspects(result.data, tol, motion=axes, most=most, readings=cells)
+    return suspects(result.data, tol, motion=axes, most=most, readings=cells)
 
 
 def readings(file: PointFile, rows: list[int]) -> dict[tuple[int, int], str]:

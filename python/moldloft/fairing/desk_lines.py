@@ -29,6 +29,10 @@ __all__ = ["DeskCurve", "DeskResult", "DeskSuspect", "Task", "cut", "draft_task"
 KEPT = 256
 """Fairings that are remembered: undo and the line before last cost nothing."""
 
+_STANDS_OUT = 3.0
+"""Errors of its prediction from which a reading of a network is listed: of 144 clean tables none
+has more than 2.7, and of as many planted errors of ten tolerances and more 93 % have."""
+
 ON_PLANE = 1e-9
 """Maximum distance of a point on a plane, relative to the extent."""
 
@@ -148,7 +152,7 @@ class DeskSuspect:
     text: str
     """A sentence about it."""
     reading: Place | None
-    """Position predicted by its neighbours, for a wrong reading."""
+    """Position that was meant, or else predicted by its neighbours, for a wrong reading."""
     accepted: bool
     """True if the suspicion was accepted."""
 
@@ -436,10 +440,27 @@ def _of_network(source: DeskSource, state: DeskState) -> DeskResult:
                 k in state.locked, False, made.notes,
             )
         )  # fmt: skip
-    suspects = tuple(
-        _suspect(source.motion, state, f.index, k, f, made.text(f)) for k, f in made.findings
-    )
-    return DeskResult(state, tuple(curves), tuple(place(p) for p in made.points), suspects, (made,))
+    others = [
+        _suspect(source.motion, state, f.index, k, f, made.text(f))
+        for k, f in made.findings
+        if f.kind != "outlier"
+    ]
+    points = tuple(place(p) for p in made.points)
+    return DeskResult(state, tuple(curves), points, (*_readings(state, made), *others), (made,))
+
+
+def _readings(state: DeskState, made: NetworkFairing) -> tuple[DeskSuspect, ...]:
+    """The wrong readings of a network, the clearest first: of all lines of a point together."""
+    out = []
+    for found in made.suspects():
+        if found.score < _STANDS_OUT:
+            continue
+        reading = list(state.points[found.index])
+        reading[found.axis] = found.expected if found.meant is None else found.meant
+        line = next(k for k, own in enumerate(made.lists) if found.index in own)
+        accepted = found.index in state.released
+        out.append(DeskSuspect(found.index, line, "outlier", str(found), place(reading), accepted))
+    return tuple(out)
 
 
 @lru_cache(maxsize=KEPT // 8)

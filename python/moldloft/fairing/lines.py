@@ -211,6 +211,29 @@ class NetworkLines:
             return "ball", (0.0, 0.0, 0.0), held, steady
         return "across", _triple(common), held, steady
 
+    def axes(self, motion: Any, count: int) -> tuple[str, ...]:
+        """The axes along which each point may move."""
+        word, way, held, steady = self.motions(motion, count)
+        size = float(np.linalg.norm(way))
+        unit = np.asarray(way) / size if size else np.asarray(way)
+        along = np.outer(unit, unit)
+        whole = {"along": along, "across": np.eye(3) - along}.get(word, np.eye(3))
+        blocked: list[list[Vector]] = [[] for _ in range(count)]
+        for i, d in held:
+            blocked[i].append(d)
+
+        def of(i: int) -> str:
+            if steady[i]:
+                return ""
+            free = whole
+            if blocked[i]:
+                rows = np.linalg.svd(np.asarray(blocked[i]))[2][: len(blocked[i])]
+                rest = np.eye(3) - rows.T @ rows
+                free = rest @ whole @ rest
+            return "".join(a for a, x in zip("xyz", np.diag(free), strict=True) if x > _ACROSS)
+
+        return tuple(of(i) for i in range(count))
+
 
 def _directions(kind: tuple[str, tuple[float, float, float]]) -> Floats:
     """Orthogonal unit vectors that span the directions of a motion."""

@@ -18,6 +18,7 @@ from moldloft.fairing.findings import along_lines
 from moldloft.fairing.lines import NetworkLines
 from moldloft.fairing.report import Finding, certificate_of, claims_optimum, lines_of
 from moldloft.fairing.spline import Spline
+from moldloft.fairing.suspects import Suspect, suspects
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -87,6 +88,40 @@ class NetworkFairing:
     """Names of the points; by default their numbers."""
     released: tuple[int, ...] = ()
     """Released points, which count in no distance."""
+    axes: tuple[str, ...] = ()
+    """The axes along which each point may move, such as ``"y"``; of a slanted direction all in
+    which it has a component."""
+
+    def suspects(
+        self, most: int = 10, *, readings: dict[tuple[int, int], str] | None = None
+    ) -> tuple[Suspect, ...]:
+        """The points that their neighbours contradict on all their curves, the clearest first.
+
+        Points that do not move are no suspects. See :func:`~moldloft.fairing.suspects`.
+
+        Parameters
+        ----------
+        most
+            The length of the list at most.
+        readings
+            The text of the cell of a point and an axis.
+
+        Returns
+        -------
+        tuple of Suspect
+            With the readings that were probably meant.
+        """
+        hull = np.asarray(np.isfinite(self.data).all(axis=1))
+        return suspects(
+            np.where(hull[:, None], self.data, 0.0),
+            self.tol or 0.0,
+            self.lists,
+            motion=self.axes,
+            most=most,
+            names=[self.name(k) for k in range(len(self.lists))],
+            point_names=[self.point_name(k) for k in range(len(self.data))],
+            readings=readings,
+        )
 
     def name(self, curve: int) -> str:
         """Name of a curve in messages and pages.
@@ -460,6 +495,7 @@ def network(
         notes=(*too_large(most, data[hull]), *cut, *said, *((EXACT,) if stay else ())),
         names=tuple(lines.names),
         released=tuple(released),
+        axes=lines.axes(motion, count),
         value=reported["certificate"]["value"],
         gap=reported["certificate"]["gap"],
         seconds=seconds,

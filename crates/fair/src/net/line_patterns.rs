@@ -4,6 +4,10 @@
 /// bends of their size would go.
 const FITS: f64 = 0.8;
 
+/// The share of the tolerances within which a list without a change is looked for: conditions may leave
+/// one that its own tolerances would not.
+const WIDEST: f64 = 2.0;
+
 /// Halvings of the search for the least share of the tolerances at which a number of changes fits.
 const HALVINGS: usize = 30;
 
@@ -59,49 +63,72 @@ impl ValueTube<'_> {
     /// The signs of the second differences at the inner points of a list with so many changes that
     /// fits within a share of the rooms: 0 where the sign changes. None where there is none.
     fn pattern(&self, changes: usize, share: f64) -> Option<Vec<f64>> {
+        [1.0, -1.0].into_iter().find_map(|first| self.pattern_from(first, changes, share))
+    }
+
+    /// The same beginning with a sign.
+    fn pattern_from(&self, first: f64, changes: usize, share: f64) -> Option<Vec<f64>> {
         let last = self.at.len() - 1;
-        for first in [1.0, -1.0] {
-            // Of each end of a part the most room that is left to the next, and where that part
-            // begins.
-            let mut ends: Vec<Vec<Option<(f64, usize)>>> = Vec::new();
-            let start = if first > 0.0 { self.high(0, share) } else { -self.low(0, share) };
-            let mut before: Vec<Option<(f64, usize)>> = vec![None; last + 1];
-            before[0] = Some((start, 0));
-            let mut sign = first;
-            for part in 0..=changes {
-                let mut next: Vec<Option<(f64, usize)>> = vec![None; last + 1];
-                for b in part + 1..=last {
-                    if (part == changes) != (b == last) {
+        // Of each end of a part the most room that is left to the next, and where that part
+        // begins.
+        let mut ends: Vec<Vec<Option<(f64, usize)>>> = Vec::new();
+        let start = if first > 0.0 { self.high(0, share) } else { -self.low(0, share) };
+        let mut before: Vec<Option<(f64, usize)>> = vec![None; last + 1];
+        before[0] = Some((start, 0));
+        let mut sign = first;
+        for part in 0..=changes {
+            let mut next: Vec<Option<(f64, usize)>> = vec![None; last + 1];
+            for b in part + 1..=last {
+                if (part == changes) != (b == last) {
+                    continue;
+                }
+                for a in part..b {
+                    let Some((begin, _)) = before[a] else { continue };
+                    let Some(end) = self.least_end([a, b], begin, sign, share) else {
                         continue;
-                    }
-                    for a in part..b {
-                        let Some((begin, _)) = before[a] else { continue };
-                        let Some(end) = self.least_end([a, b], begin, sign, share) else {
-                            continue;
-                        };
-                        if next[b].is_none_or(|n| end < n.0) {
-                            next[b] = Some((end, a));
-                        }
+                    };
+                    if next[b].is_none_or(|n| end < n.0) {
+                        next[b] = Some((end, a));
                     }
                 }
-                // The next part is upside down: the least end is its highest begin.
-                before = next.iter().map(|n| n.map(|(end, a)| (-end, a))).collect();
-                ends.push(next);
-                sign = -sign;
             }
-            if ends[changes][last].is_none() {
-                continue;
-            }
-            let mut signs = vec![0.0; last + 1];
-            let (mut b, mut sign) = (last, if changes.is_multiple_of(2) { first } else { -first });
-            for part in (0..=changes).rev() {
-                let a = ends[part][b]?.1;
-                signs[a + 1..b].fill(sign);
-                (b, sign) = (a, -sign);
-            }
-            return Some(signs[1..last].to_vec());
+            // The next part is upside down: the least end is its highest begin.
+            before = next.iter().map(|n| n.map(|(end, a)| (-end, a))).collect();
+            ends.push(next);
+            sign = -sign;
         }
-        None
+        ends[changes][last]?;
+        let mut signs = vec![0.0; last + 1];
+        let (mut b, mut sign) = (last, if changes.is_multiple_of(2) { first } else { -first });
+        for part in (0..=changes).rev() {
+            let a = ends[part][b]?.1;
+            signs[a + 1..b].fill(sign);
+            (b, sign) = (a, -sign);
+        }
+        Some(signs[1..last].to_vec())
+    }
+
+    /// The sign of the second differences of a list without a change that fits within the smaller share
+    /// of the rooms; none where neither does within twice of them.
+    pub fn bulge(&self) -> Option<f64> {
+        let share = |sign: f64| {
+            self.pattern_from(sign, 0, WIDEST)?;
+            let (mut low, mut high) = (0.0, WIDEST);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                match self.pattern_from(sign, 0, middle) {
+                    Some(_) => high = middle,
+                    None => low = middle,
+                }
+            }
+            Some(high)
+        };
+        match (share(1.0), share(-1.0)) {
+            (Some(up), Some(down)) => Some(if up <= down { 1.0 } else { -1.0 }),
+            (Some(_), None) => Some(1.0),
+            (None, Some(_)) => Some(-1.0),
+            (None, None) => None,
+        }
     }
 
     /// The signs of the fewest changes that fit, and of these the ones that fit nearest.

@@ -33,8 +33,15 @@ const WIDER: [f64; 3] = [1.0, 1.5, f64::INFINITY];
 /// By how much a sign may be left, as a share of what the tolerances let it vary.
 const LEFT: f64 = 1e-9;
 
+/// The same share by which a second difference of a held sign stays from zero: at zero rounding would
+/// decide its sign.
+const SIGN_MARGIN: f64 = 1e-6;
+
 /// The same share below which a second difference has no sign.
-const STRAIGHT: f64 = 1e-6;
+const STRAIGHT: f64 = 1e-8;
+
+/// Rounding of second differences, relative to the size of the points.
+const SIGN_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Difference of the factors of two signs, of size 1, that are the same.
 const SAME: f64 = 1e-9;
@@ -48,7 +55,11 @@ struct HeldSign {
     line: usize,
     /// The place of the first of the three on the line.
     first: usize,
+    /// The place at which its part of the line begins, between breaks and runs.
+    part: usize,
     sign: f64,
+    /// True if it stays from zero; false where the others leave it no room for that.
+    strict: bool,
 }
 
 /// The signs of a line with the fewest changes.
@@ -69,7 +80,7 @@ const COSTS: [f64; 3] = [0.25, 0.6, 1.0];
 fn costs(signs: &[HeldSign]) -> Vec<f64> {
     let cost = |k: usize| {
         let beside = |other: Option<&HeldSign>| match other {
-            Some(other) if other.first.abs_diff(signs[k].first) > 2 => 1,
+            Some(other) if other.part != signs[k].part => 1,
             Some(other) if other.sign == signs[k].sign => 2,
             Some(_) => 0,
             None => 1,
@@ -258,7 +269,7 @@ impl Network {
             }
             let tube = ValueTube { at: &at[from..=to], values: &values, rooms: &rooms };
             for (j, sign) in tube.fewest().into_iter().flatten().enumerate() {
-                let held = HeldSign { line: k, first: from + j, sign };
+                let held = HeldSign { line: k, first: from + j, part: pair[0], sign, strict: true };
                 let moves = own[j..j + 3].iter().any(|&i| !frozen[i]);
                 if sign != 0.0 && moves {
                     out.push(held);
@@ -266,6 +277,20 @@ impl Network {
             }
         }
         out
+    }
+
+    /// The direction to which a part of line `k` bends that turns one way: that of the two which is nearer to
+    /// its points. None where these move in more directions than one.
+    pub(super) fn bulge(&self, k: usize, between: [usize; 2]) -> Option<Vec3<f64>> {
+        let (strand, way) = (&self.strands[k], self.way(k)?);
+        let at = strand.at.as_ref().filter(|_| !strand.space.is_closed())?;
+        let (own, extent) = (&strand.points[between[0]..=between[1]], self.extent());
+        let values: Vec<f64> = own.iter().map(|&i| way.dot(self.points[i])).collect();
+        let frozen = self.frozen();
+        let room = |&i: &usize| if frozen[i] { 0.0 } else { self.limit.radii[i].min(extent) };
+        let rooms: Vec<f64> = own.iter().map(room).collect();
+        let tube = ValueTube { at: &at[between[0]..=between[1]], values: &values, rooms: &rooms };
+        tube.bulge().map(|sign| way * sign)
     }
 
     /// The entries of a sign over the network's points, at parameters that may carry derivatives.
@@ -286,34 +311,55 @@ impl Network {
         std::array::from_fn(|k| (parts.ties.leader(strand.points[held.first + k]), factors[k]))
     }
 
+    /// What the tolerances let a second difference vary.
+    fn sign_range<T: Real>(&self, held: &HeldSign, at: &[T], tolerances: &[T]) -> T {
+        let extent = self.extent();
+        let places = held.first..held.first + 3;
+        let ids = &self.strands[held.line].points[places.clone()];
+        let factors = sign_factors(held.sign, &at[places]);
+        let room =
+            |i: usize| if tolerances[i].re() < extent { tolerances[i] } else { extent.into() };
+        let size = |f: T| if f.re() < 0.0 { -f } else { f };
+        ids.iter().zip(factors).fold(T::zero(), |sum, (&i, f)| sum + size(f) * room(i))
+    }
+
+    /// The limit of a sign's half-space.
+    fn sign_limit<T: Real>(&self, held: &HeldSign, at: &[T], tolerances: &[T]) -> T {
+        let strand = &self.strands[held.line];
+        let size = strand.points.iter().map(|&i| self.points[i].norm()).fold(0.0, f64::max);
+        let rounding = SIGN_ROUNDING * size;
+        if !held.strict {
+            return T::from(rounding);
+        }
+        let margin = self.sign_range(held, at, tolerances) * SIGN_MARGIN;
+        if margin.re() < 2.0 * rounding { T::from(-2.0 * rounding) } else { -margin }
+    }
+
     /// A sign as a half-space.
     fn sign_half(&self, held: &HeldSign) -> ControlInequality {
-        let strand = &self.strands[held.line];
-        let at = strand.at.as_deref().unwrap_or_default();
-        // Against rounding of exact runs.
-        let size = strand.points.iter().map(|&i| self.points[i].norm()).fold(0.0, f64::max);
-        let most = 16.0 * f64::EPSILON * size;
+        let at = self.strands[held.line].at.as_deref().unwrap_or_default();
+        let most = self.sign_limit(held, at, &self.limit.radii);
         ControlInequality { entries: self.sign_entries(held, at), most, owner: held.line }
     }
 
-    /// By how much points leave a sign, as a share of what the tolerances let it vary.
-    fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> f64 {
+    /// How far points are beyond zero curvature and beyond a sign's half-space, as shares of what the
+    /// tolerances let the second difference vary.
+    fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> [f64; 2] {
         let half = self.sign_half(held);
         let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
-        let extent = self.extent();
-        let room = |i: usize| self.limit.radii[i].min(extent);
-        let varies: f64 = half.entries.iter().map(|(i, f)| f.norm() * room(*i)).sum();
-        (sum - half.most) / varies.max(f64::MIN_POSITIVE)
+        let at = self.strands[held.line].at.as_deref().unwrap_or_default();
+        let varies = self.sign_range(held, at, &self.limit.radii).max(f64::MIN_POSITIVE);
+        [sum / varies, (sum - half.most) / varies]
     }
 
     /// True if a line of these signs has more changes at these points than the signs have.
     fn bends_more(&self, signs: &[HeldSign], points: &[Vec3<f64>]) -> bool {
-        let parts = signs.chunk_by(|a, b| b.first <= a.first + 2);
+        let parts = signs.chunk_by(|a, b| a.part == b.part);
         let changes = |signs: Vec<f64>| signs.windows(2).filter(|w| w[0] != w[1]).count();
         let mut more = false;
         for part in parts {
             let own = changes(part.iter().map(|s| s.sign).collect());
-            let off = part.iter().map(|s| (s.sign, self.off(s, points)));
+            let off = part.iter().map(|s| (s.sign, self.off(s, points)[0]));
             let bent = off.filter(|(_, off)| off.abs() > STRAIGHT);
             more |= changes(bent.map(|(sign, off)| -sign * off.signum()).collect()) > own;
         }
@@ -383,6 +429,29 @@ impl Network {
         Ok(rounds)
     }
 
+    /// The values of conditions, the last of them those of signs, whose margins follow the tolerances.
+    fn sign_values<T: Real>(
+        &self,
+        others: &[Condition],
+        reached: &[HeldSign],
+        numbers: &LineNumbers<'_, T>,
+    ) -> Vec<T> {
+        let limit = |held: &HeldSign| {
+            let plain: Vec<T>;
+            let at = match numbers.ats.get(held.line).and_then(Option::as_ref) {
+                Some(at) => at,
+                None => {
+                    let own = self.strands[held.line].at.iter().flatten();
+                    plain = own.map(|&t| T::from(t)).collect();
+                    &plain
+                }
+            };
+            self.sign_limit(held, at, numbers.tolerances)
+        };
+        let values = others.iter().map(|condition| T::from(condition.value));
+        values.chain(reached.iter().map(limit)).collect()
+    }
+
     /// The result of the rounds with derivatives; `allowed` is the budget in what noise has of the
     /// squares, as it changes.
     pub(super) fn lines_moved<T: Real>(
@@ -437,11 +506,12 @@ impl Network {
                 (first + j, self.sign_entries(held, at).into_iter().map(change).collect())
             };
             let bends: Vec<Bend<T>> = round.reached.iter().enumerate().map(bend).collect();
+            let targets = self.sign_values(&parts.conditions[..first], &round.reached, numbers);
             let moving = GoalVariation {
                 originals: points.to_vec(),
                 tolerances,
                 pulled: owners.iter().map(|&i| tolerances[i]).collect(),
-                targets: &[],
+                targets: &targets,
                 forces,
                 rows: &weighed,
                 bends: &bends,
@@ -517,7 +587,8 @@ impl LineFairing<'_> {
             let costs: Vec<f64> = self.held().flat_map(|line| costs(&line.left)).collect();
             let room = SignRoom::of(&parts, self.asked.len(), &costs)?;
             let any = |all: &[bool]| all.iter().any(|&x| x);
-            let given_up = if any(&room.missed) {
+            let hopeless = any(&room.missed);
+            let given_up = if hopeless {
                 room.missed
             } else if self.begin.is_empty() && !room.moves.is_empty() {
                 // There is a network with these signs: the search begins there.
@@ -530,7 +601,13 @@ impl LineFairing<'_> {
             self.begin = room.moves;
             let mut given_up = given_up.into_iter();
             for line in self.signs.iter_mut().filter(|line| line.held) {
-                line.left.retain(|_| given_up.next() == Some(false));
+                line.left.retain_mut(|sign| {
+                    let up = given_up.next() != Some(false);
+                    // Without room beyond zero the second difference may be zero.
+                    let relaxed = up && sign.strict && !hopeless;
+                    sign.strict &= !up;
+                    !up || relaxed
+                });
             }
         }
     }
@@ -605,7 +682,7 @@ impl LineFairing<'_> {
         if let Ok(mut round) = found {
             let optimum = &mut round.found.optimum;
             let more = optimum.certificate.value - value;
-            let kept = held.iter().all(|s| self.network.off(s, &optimum.points) <= LEFT);
+            let kept = held.iter().all(|s| self.network.off(s, &optimum.points)[1] <= LEFT);
             if kept && more <= gap {
                 // Conditions are stricter than half-spaces, so that the gap is that of these.
                 optimum.certificate.gap = (gap + more).max(0.0);

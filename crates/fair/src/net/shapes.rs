@@ -282,7 +282,9 @@ impl Network {
         let control = layout.through(&layout.data(&own))?;
         let at = &layout.at;
         let runs: Vec<[f64; 2]> = strand.runs.iter().map(|run| run.map(|c| at[c])).collect();
-        let shape = ShapeConstraints::of_spline(&layout.space, &control, at, &runs, wanted)?;
+        let bulge = |between: [usize; 2]| self.bulge(k, between);
+        let shape =
+            ShapeConstraints::of_spline(&layout.space, &control, at, &runs, wanted, &bulge)?;
         let pulled = |(half, now): (ControlInequality, f64)| {
             let mut sums = vec![Vec3::zero(); own.len()];
             for (c, f) in &half.entries {

@@ -97,6 +97,7 @@ impl Band {
         factor: f64,
         block: &[[f64; D]; D],
     ) {
+        debug_assert!(high >= low, "the blocks above the diagonal are not kept");
         for r in 0..D {
             let i = high * D + r;
             let start = i * (self.width + 1) + self.width + low * D - i;

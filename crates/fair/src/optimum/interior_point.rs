@@ -104,6 +104,21 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     refined: Option<f64>,
 }
 
+/// Factors over unknowns in rising order, one for each.
+fn ordered<const D: usize>(entries: &[(usize, V<3>)], place: &[u32]) -> Vec<(usize, V<D>)> {
+    let moving = entries.iter().filter(|(i, _)| place[*i] != NONE);
+    let mut out: Vec<(usize, V<D>)> = moving.map(|(i, f)| (place[*i] as usize, cut(f))).collect();
+    out.sort_by_key(|entry| entry.0);
+    out.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            axpy(&mut kept.1, 1.0, next.1);
+        }
+        same
+    });
+    out
+}
+
 /// A Newton step.
 struct NewtonDirection<const D: usize> {
     x: Vec<V<D>>,
@@ -214,12 +229,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             value: c.value,
         };
         let half = |h: &crate::optimum::problem::InequalityConstraint| Half {
-            entries: h
-                .entries
-                .iter()
-                .filter(|(i, _)| place[*i] != NONE)
-                .map(|(i, f)| (place[*i] as usize, cut(f)))
-                .collect(),
+            entries: ordered(&h.entries, place),
             room: h.room - INSIDE * h.scale,
             scale: h.scale,
             slack: 0.0,

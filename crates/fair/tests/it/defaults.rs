@@ -229,9 +229,10 @@ fn waves(points: &[Vec3<f64>]) -> usize {
         let second: Vec<f64> = line
             .windows(3)
             .map(|w| (w[2].y - w[1].y) / (w[2].x - w[1].x) - (w[1].y - w[0].y) / (w[1].x - w[0].x))
-            .filter(|s| s.abs() > 1e-9)
             .collect();
-        count += second.windows(2).filter(|s| s[0] * s[1] < 0.0).count();
+        // Every one, however small: a second difference of zero is a change, too.
+        count +=
+            second.windows(2).filter(|s| s[0].signum() != s[1].signum() || s[1] == 0.0).count();
     }
     count
 }

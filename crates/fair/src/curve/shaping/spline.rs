@@ -14,7 +14,8 @@ impl ShapeConstraints {
     }
 
     /// The signs and limits of a spline with its data at these parameters, whose control points hang on
-    /// other unknowns; spans of straight runs are left out. What is held otherwise is not taken.
+    /// other unknowns; spans of straight runs are left out. What is held otherwise is not taken. `bulge` is the
+    /// direction to which a part that turns one way bends, where that is known.
     ///
     /// # Errors
     /// [`FairError::Shapeless`].
@@ -24,6 +25,7 @@ impl ShapeConstraints {
         at: &[f64],
         runs: &[[f64; 2]],
         wanted: &[(usize, &ShapeCondition)],
+        bulge: &dyn Fn([usize; 2]) -> Option<Vec3<f64>>,
     ) -> Result<Self, FairError> {
         let mut out = Self { plane: CurvePlane::of(space, control), ..Self::default() };
         for run in runs {
@@ -41,6 +43,14 @@ impl ShapeConstraints {
                         owner,
                         "a curve in space has no sign of curvature: shape its projections",
                     ));
+                }
+                ShapeCondition::OneWay { between } => {
+                    let left = bulge(*between).zip(out.plane).map(|(bulge, plane)| {
+                        let along = control[control.len() - 1] - control[0];
+                        along.cross(bulge).dot(plane.normal()) > 0.0
+                    });
+                    let turn = left.map(|left| ShapeCondition::Turn { between: *between, left });
+                    out.turned(space, at, owner, turn.as_ref().unwrap_or(condition));
                 }
                 _ => out.turned(space, at, owner, condition),
             }
