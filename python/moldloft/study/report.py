@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from moldloft.study.robustness import by_value, sobol_indices, spreads, validity, worst_cases
+from moldloft.study.robustness import sobol_indices, spreads, validity, worst_cases
 from moldloft.study.store import Results
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def sensitivities(results: Results) -> dict[str, dict[str, float]]:
         return {}
     columns = np.stack([_standard(results.inputs[n][done]) for n in names], axis=1)
     found = {}
-    for output, values in by_value(results).items():
+    for output, values in results.outputs.items():
         if np.ptp(values[done]) > 0:
             slopes, *_ = np.linalg.lstsq(columns, _standard(values[done]), rcond=None)
             found[output] = dict(zip(names, slopes.tolist(), strict=True))
@@ -140,7 +140,7 @@ def html(
         if results.objectives:
             parts += ["<h2>Objectives by evaluation</h2>", _plots(_histories(results))]
         parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
-        if len(by_value(results)) > 1:
+        if len(results.outputs) > 1:
             parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
             if results.front is not None:
                 parts.append(f"<p>Marked: the {results.front.sum()} points of the front.</p>")
@@ -175,7 +175,7 @@ def _statistics(results: Results) -> list[list[str]]:
     done = results.done
     return [
         [name, *(_text(float(v)) for v in (c[done].min(), c[done].mean(), c[done].max()))]
-        for name, c in {**results.inputs, **by_value(results)}.items()
+        for name, c in {**results.inputs, **results.outputs}.items()
     ]
 
 
@@ -269,14 +269,14 @@ def _scatters(results: Results) -> list[str]:
     rows = _drawn(results, results.done)
     return [
         _scatter(x[rows], y[rows], (by, name))
-        for name, y in by_value(results).items()
+        for name, y in results.outputs.items()
         for by, x in results.inputs.items()
     ][:60]
 
 
 def _output_plots(results: Results) -> list[str]:
     rows = _drawn(results, results.done)
-    columns = [(n, c[rows]) for n, c in by_value(results).items()]
+    columns = [(n, c[rows]) for n, c in results.outputs.items()]
     marked = None if results.front is None else np.flatnonzero(results.front[rows])
     return [
         _scatter(x, y, (a, b), marked)
@@ -318,7 +318,7 @@ def _failure_plots(results: Results) -> list[str]:
 
 def _parallel(results: Results) -> str:
     rows = _drawn(results, results.done)
-    columns = {**results.inputs, **by_value(results)}
+    columns = {**results.inputs, **results.outputs}
     step = 110.0
     width, height = step * (len(columns) - 1) + 120, 260.0
     units = []
@@ -352,8 +352,8 @@ def _parallel(results: Results) -> str:
 
 
 def _listed(results: Results) -> str:
-    columns = results.columns()
-    plain = {n: c for n, c in columns.items() if not n.startswith("d ")}
+    derived = {f"d {name} / d {by}" for name, row in results.derivatives.items() for by in row}
+    plain = {n: c for n, c in results.columns().items() if n not in derived}
     rows = [
         [
             str(k),
