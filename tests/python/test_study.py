@@ -542,6 +542,36 @@ def test_the_command(tmp_path):
     assert "no results" in command("show", path, "--store", tmp_path / "none.sqlite").stderr
 
 
+def test_a_page_of_many_cases_counts_them_by_cells():
+    """No case is left out of a plot, and the page does not grow with them."""
+    from moldloft.study.report import html, sensitivities
+
+    rng = np.random.default_rng(2)
+    sizes = []
+    for count in (5_000, 50_000):
+        corner = rng.integers(0, 2, (2, count)).astype(float)
+        corner[:, -1] = 0.5
+        words = np.full(count, "", dtype=object)
+        results = study.Results(
+            {"a": corner[0]},
+            {"f": corner[1], "g": corner[0] - 2 * corner[1]},
+            np.full(count, "done", dtype=object),
+            words,
+            words,
+            np.zeros(count),
+        )
+        page = html(results, "many", {"plan": "sobol"}).decode()
+        sizes.append(len(page))
+        # Four corners, and the one case between them.
+        plot = page.partition('aria-label="f by a, ')[2].partition("</svg>")[0]
+        assert plot.count("M") - 1 == 5 and "<circle" not in plot
+        assert f"f by a, {count} cases in 60 x 40 cells" in page
+        assert f"2000 cases, {count - 2000} more not drawn" in page
+        slope = sensitivities(results)["g"]["a"]
+        assert math.isclose(slope, np.corrcoef(corner[0], results.outputs["g"])[0, 1], rel_tol=1e-9)
+    assert sizes[1] < 1.1 * sizes[0] < 1e6
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
