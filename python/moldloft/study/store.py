@@ -16,6 +16,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, compress
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -36,8 +37,8 @@ __all__ = ["Outcome", "Results", "Store"]
 #: The layout of the file; others are refused.
 SCHEMA_VERSION = 2
 
-#: Rows that are tuples of Python at a time while a table is read.
-ROWS_AT_ONCE = 65_536
+#: Rows that are tuples of Python at a time while a table is read: more of them leave the cache.
+ROWS_AT_ONCE = 1_024
 
 DONE = "done"
 """The state of a case whose numbers are there."""
@@ -360,11 +361,12 @@ class Store:
 
     def results(self) -> Results:
         """The table of the plan, in its order."""
-        with self._named():
-            keys = _keys(self._db.execute("SELECT key FROM cases ORDER BY position"))
+        # One state of the file, although a run may be adding to it.
+        with self._at_once():
+            rows = self._db.execute("SELECT key FROM cases ORDER BY position")
+            keys = _texts(list(chain.from_iterable(rows)))
             # The rows of results are in the order of their keys: no join of a million texts.
-            known = _keys(self._db.execute("SELECT key FROM results ORDER BY key"))
-            seconds, numbers = self._numbers(len(known))
+            known, seconds, numbers = self._numbers()
             texts = self._db.execute(
                 f"SELECT key, state, id, message FROM results WHERE state <> '{DONE}'"
                 " OR id <> '' OR message <> ''"
@@ -416,27 +418,33 @@ class Store:
             slopes,
         )
 
-    def _numbers(self, count: int) -> tuple[Floats, dict[tuple[str, str, str], Floats]]:
-        """Seconds and columns of all results by key, and behind them a row without numbers."""
+    def _numbers(self) -> tuple[NDArray[np.bytes_], Floats, dict[tuple[str, str, str], Floats]]:
+        """Keys, seconds and columns of all results by key, and a row without numbers at the end."""
         layouts = self._read_layouts()
         names = dict.fromkeys(name for layout in layouts.values() for name in layout.columns())
-        seconds = np.full(count + 1, np.nan)
-        found = {name: np.full(count + 1, np.nan) for name in names}
-        rows = self._db.execute("SELECT seconds, layout, numbers FROM results ORDER BY key")
-        first = 0
+        keys, seconds = [_texts([])], []
+        parts: dict[int, list[bytes]] = {number: [] for number in layouts}
+        places: dict[int, list[NDArray[np.int64]]] = {number: [] for number in layouts}
+        rows = self._db.execute("SELECT key, seconds, layout, numbers FROM results ORDER BY key")
+        count = 0
         while part := rows.fetchmany(ROWS_AT_ONCE):
-            times, which, data = zip(*part, strict=True)
-            last = first + len(part)
-            seconds[first:last] = times
+            texts, times, which, data = zip(*part, strict=True)
+            keys.append(_texts(texts))
+            seconds.append(np.array(times))
             kinds = np.array(which)
-            for number in np.unique(kinds).tolist():
-                at = np.flatnonzero(kinds == number)
-                joined = b"".join(data[k] for k in at.tolist())
-                table = np.frombuffer(joined, "<f8").reshape(len(at), -1)
+            for number in set(which):
+                own = kinds == number
+                parts[number].append(b"".join(compress(data, own.tolist())))
+                places[number].append(count + np.flatnonzero(own))
+            count += len(part)
+        found = {name: np.full(count + 1, np.nan) for name in names}
+        for number, blobs in parts.items():
+            if blobs:
+                at = np.concatenate(places[number])
+                table = np.frombuffer(b"".join(blobs), "<f8").reshape(len(at), -1)
                 for name, column in zip(layouts[number].columns(), table.T, strict=True):
-                    found[name][first + at] = column
-            first = last
-        return seconds, found
+                    found[name][at] = column
+        return np.concatenate(keys), np.concatenate([*seconds, [np.nan]]), found
 
     def close(self) -> None:
         """Releases the file."""
@@ -461,9 +469,8 @@ class Store:
         self.close()
 
 
-def _keys(rows: sqlite3.Cursor) -> NDArray[np.bytes_]:
-    found = np.array([key for (key,) in rows], dtype=np.bytes_)
-    return found if found.size else np.empty(0, dtype="S1")
+def _texts(keys: Sequence[str]) -> NDArray[np.bytes_]:
+    return np.array(keys, dtype=np.bytes_) if keys else np.empty(0, dtype="S1")
 
 
 class _Named:
