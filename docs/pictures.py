@@ -50,7 +50,7 @@ STUDIES = {
     ),
     "study-platform": (
         "platform/platform.sdl",
-        {"leg_radius": 7, "pontoon_radius": 4.5, "spacing": 90, "draft": 32.5},
+        {"leg_radius": 7, "pontoon_radius": 4.5, "spacing": 90, "draft": 26.3},
     ),
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import math
 import os
@@ -91,10 +92,111 @@ def test_derivatives_are_columns(tmp_path):
     text = DEFINITION.replace("seconds = 20", "derivatives = true")
     definition = study.read(write(tmp_path, "[plan]\ncount = 8\n", text))
     results = study.sweep(definition, tmp_path / "box.sqlite")
-    assert (results.outputs["d area / d a"] == results.inputs["b"]).all()
+    assert (results.derivatives["area"]["a"] == results.inputs["b"]).all()
+    table = results.to_pandas() if importlib.util.find_spec("pandas") else results.columns()
+    assert (np.asarray(table["d area / d b"]) == results.inputs["a"]).all()
+    assert b"d area / d a" in results.csv().splitlines()[0]
     spread = study.spreads(results, {"a": 0.1, "b": 0.2})["area"]
     exact = np.hypot(0.1 * results.inputs["b"], 0.2 * results.inputs["a"])
     assert np.allclose(spread, exact, rtol=1e-14)
+
+
+def test_more_derivatives_than_a_table_has_columns(tmp_path):
+    inputs = [f"P{k}.y" for k in range(2100)]
+    rng = np.random.default_rng(5)
+    made = []
+    for k in range(3):
+        values = dict(zip(inputs, rng.random(len(inputs)).tolist(), strict=True))
+        slopes = {n: dict(zip(inputs, rng.random(len(inputs)).tolist(), strict=True)) for n in "xy"}
+        made.append(study.Outcome(f"k{k}", "done", "", "", 1.0, values, {"x": k, "y": 2.0}, slopes))
+    # The same names in another order, and a case of another plan.
+    last = made[-1]
+    back = {n: dict(reversed(row.items())) for n, row in last.derivatives.items()}
+    made[-1] = replace(last, inputs=dict(reversed(last.inputs.items())), derivatives=back)
+    other = study.Outcome("other", "refused", "id", "said", 1.0, {"a": 1.0}, {})
+    with study.Store(tmp_path / "s.sqlite", writing=True) as store:
+        store.begin({}, ["k0", "k2", "none", "k1"])
+        for each in (*made, other):
+            store.add(each)
+        results = store.results()
+        assert {each.key: each for each in store.outcomes()} == {e.key: e for e in (*made, other)}
+    assert results.state.tolist() == ["done", "done", "pending", "done"]
+    for row, each in ((0, made[0]), (1, made[2]), (3, made[1])):
+        assert {n: c[row] for n, c in results.inputs.items()} == dict(each.inputs)
+        assert {n: c[row] for n, c in results.outputs.items()} == dict(each.outputs)
+        for name, own in each.derivatives.items():
+            assert {n: c[row] for n, c in results.derivatives[name].items()} == dict(own)
+    assert all(np.isnan(c[2]) for c in results.inputs.values())
+
+
+QUADRATIC = """
+def numbers(model):
+    a, b = model["a"], model["b"]
+    return {"f": a * a * b + b * b, "g": a * b}
+
+def weighed(model):
+    a, b = model["a"], model["b"]
+    return {"f": (a * a * b, {"P.z": a, "a": a * b}), "g": (a, {"P.x": 1.0})}
+
+def bare(model):
+    return {"f": 1.0, "g": 2.0}
+"""
+
+
+def of_quadratic(folder: Path, keys: str, levels: int = 3) -> study.Results:
+    more = f"[plan]\nmethod = 'grid'\nlevels = {levels}\n[analysis.q]\noutputs = ['f', 'g']\n{keys}"
+    path = write(folder, more, DEFINITION.replace("seconds = 20", "derivatives = true"))
+    (folder / "analysis.py").write_text(QUADRATIC)
+    return study.sweep(study.read(path), folder / "q.sqlite")
+
+
+def test_differences_of_an_analysis_are_of_second_order(tmp_path):
+    """Exact for squares, in the range and at its ends."""
+    results = of_quadratic(tmp_path, "python = 'analysis.py:numbers'\ndifferences = 0.01\n")
+    assert results.counts == {"done": 9}, set(results.message)
+    a, b = results.inputs["a"], results.inputs["b"]
+    for name, by, exact in (
+        ("f", "a", 2 * a * b),
+        ("f", "b", a * a + 2 * b),
+        ("g", "a", b),
+        ("area", "a", b),
+    ):
+        assert np.allclose(results.derivatives[name][by], exact, rtol=1e-11), (name, by)
+
+
+def test_an_adjoint_analysis_gives_weights(tmp_path):
+    results = of_quadratic(tmp_path, "python = 'analysis.py:weighed'\nadjoint = true\n")
+    assert results.counts == {"done": 9}, set(results.message)
+    a, b = results.inputs["a"], results.inputs["b"]
+    assert np.allclose(results.derivatives["f"]["a"], 2 * a * b, rtol=1e-13)
+    assert np.allclose(results.derivatives["f"]["b"], a * a, rtol=1e-13)
+    assert (results.derivatives["g"]["a"] == 1).all() and (results.derivatives["g"]["b"] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        (
+            "python = 'analysis.py:bare'\nadjoint = true\n",
+            "returned no number with its weights `f`",
+        ),
+        ("python = 'analysis.py:wrong'\nadjoint = true\n", "the weights of `f`"),
+        ("python = 'analysis.py:late'\ndifferences = 0.25\n", "differences by `a`, at 2.5"),
+    ],
+)
+def test_a_failed_derivative_fails_its_case(tmp_path, monkeypatch, keys, said):
+    more = """
+def wrong(model):
+    return {n: (1.0, {"P.q": 1.0}) for n in "fg"}
+def late(model):
+    if model["a"] > 2.4:
+        raise ValueError("separated")
+    return {"f": 1.0, "g": 2.0}
+"""
+    monkeypatch.setattr(sys.modules[__name__], "QUADRATIC", QUADRATIC + more)
+    results = of_quadratic(tmp_path, keys)
+    assert set(results.state) <= {"solver failed", "done"} and "done" not in results.state[3:6]
+    assert any(said in message for message in results.message), set(results.message)
 
 
 def plan(tmp_path: Path, more: str, text: str = DEFINITION) -> np.ndarray:
@@ -398,7 +500,8 @@ def test_an_optimum_by_values_alone(tmp_path):
 def test_an_objective_of_an_analysis_needs_a_method_by_values(tmp_path):
     more = FAULTY + "[optimize]\nminimize = 'drag'\n"
     with pytest.raises(
-        study.StudyError, match="without derivatives: cobyqa, differential-evolution, nsga2, tpe"
+        study.StudyError,
+        match=r"`adjoint`, or .* derivatives: cobyqa, differential-evolution, nsga2, tpe",
     ):
         study.optimize(study.read(write(tmp_path, more)), tmp_path / "b.sqlite")
     more = more.replace("'drag'", "'drag'\nmethod = 'cobyqa'\nevaluations = 40")
@@ -414,10 +517,10 @@ def test_the_example_has_the_least_area_at_its_displacement(tmp_path):
         chosen = tuple(i for i in definition.inputs if i.name.startswith(("C3", "C4", "C2.z")))
         definition = replace(definition, inputs=chosen, constraints=definition.constraints[:1])
     best = study.optimize(definition, tmp_path / "least.sqlite")
-    assert best.converged and best.feasible and best.evaluations <= 60
+    assert best.converged and best.feasible and best.evaluations <= 30
     assert abs(best.outputs["volume"] - 7.5) < 1e-5
     if SOAK:
-        assert abs(best.outputs["area"] - 19.4204) < 2e-3
+        assert abs(best.outputs["area"] - 19.42041) < 2e-5
         assert abs(best.outputs["lcb"] - 4.95) < 1e-5 and best.outputs["length"] > 9 - 1e-5
     with study.Store(tmp_path / "least.sqlite") as store:
         seen = list(store.outcomes())
@@ -437,6 +540,36 @@ def test_the_command(tmp_path):
     assert json.loads(shown.stdout)["counts"] == {"done": 25}
     assert command("resume", path, "-q").returncode == 0
     assert "no results" in command("show", path, "--store", tmp_path / "none.sqlite").stderr
+
+
+def test_a_page_of_many_cases_counts_them_by_cells():
+    """No case is left out of a plot, and the page does not grow with them."""
+    from moldloft.study.report import html, sensitivities
+
+    rng = np.random.default_rng(2)
+    sizes = []
+    for count in (5_000, 50_000):
+        corner = rng.integers(0, 2, (2, count)).astype(float)
+        corner[:, -1] = 0.5
+        words = np.full(count, "", dtype=object)
+        results = study.Results(
+            {"a": corner[0]},
+            {"f": corner[1], "g": corner[0] - 2 * corner[1]},
+            np.full(count, "done", dtype=object),
+            words,
+            words,
+            np.zeros(count),
+        )
+        page = html(results, "many", {"plan": "sobol"}).decode()
+        sizes.append(len(page))
+        # Four corners, and the one case between them.
+        plot = page.partition('aria-label="f by a, ')[2].partition("</svg>")[0]
+        assert plot.count("M") - 1 == 5 and "<circle" not in plot
+        assert f"f by a, {count} cases in 60 x 40 cells" in page
+        assert f"2000 cases, {count - 2000} more not drawn" in page
+        slope = sensitivities(results)["g"]["a"]
+        assert math.isclose(slope, np.corrcoef(corner[0], results.outputs["g"])[0, 1], rel_tol=1e-9)
+    assert sizes[1] < 1.1 * sizes[0] < 1e6
 
 
 @pytest.mark.parametrize(
@@ -461,6 +594,17 @@ def test_the_command(tmp_path):
         ("[outputs]", "[optimize]\nminimize = 'x'\n[outputs]", "unknown output `x`"),
         ("[outputs]", "[optimize]\nmethod = 'slsqp'\n[outputs]", "needs `minimize` or `maximize`"),
         ("[outputs]", "[analysis.x]\n[outputs]", "either `python` or `command`"),
+        (
+            "[outputs]",
+            "[analysis.x]\ncommand = 'x'\nadjoint = true\nresults.y = {file = 'f', key = 'y'}\n"
+            "[outputs]",
+            "`analysis.x.adjoint` needs `python`",
+        ),
+        (
+            "[outputs]",
+            "[analysis.x]\npython = 'a.py:f'\ndifferences = 0.5\noutputs = ['y']\n[outputs]",
+            "is a fraction up to 0.25",
+        ),
         ("[outputs]", "[constraints]\nx = {value = 'a'}\n[outputs]", "needs `low`"),
         ("[inputs]", "[inputs", "not valid TOML"),
     ],

@@ -274,6 +274,22 @@ s = {{ file = "read.txt", pattern = '(\\d+)$' }}
         assert (folder / "extra.txt").exists() and (folder / "mesh" / "box.stl").exists()
 
 
+def test_differences_of_a_program(tmp_path):
+    analysis = f"""
+command = ["{sys.executable}", "-c", "open('r.txt', 'w').write('{{a:.17g}} {{area:.17g}}')"]
+differences = 0.01
+[analysis.flow.results]
+first = {{ file = "r.txt", pattern = '^(\\S+)' }}
+second = {{ file = "r.txt", pattern = '(\\S+)$' }}
+"""
+    results = swept(box(tmp_path, analysis, {}, "derivatives = true\n"))
+    assert results.counts == {"done": 2}, set(results.message)
+    assert np.allclose(results.derivatives["first"]["a"], 1, rtol=1e-9)
+    # The words of the template are those of the step: area = 3 a.
+    assert np.allclose(results.derivatives["second"]["a"], 3, rtol=1e-9)
+    assert not (tmp_path / "box.cases").exists()
+
+
 @pytest.mark.parametrize(
     "changed", ["case/words.txt", "case/first.sh", "writer.py", "parser.py", "helper.py", "data"]
 )

@@ -223,7 +223,6 @@ def _numbers(results: Results, options: argparse.Namespace) -> None:
     rows = [
         [name, *(f"{v:.6g}" for v in (c[done].min(), c[done].mean(), c[done].max()))]
         for name, c in {**results.inputs, **results.outputs}.items()
-        if not name.startswith("d ")
     ]
     say(options, table(["", "least", "mean", "greatest"], rows))
 

@@ -10,7 +10,7 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import util
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
+from moldloft.study.functions import jacobian
 from moldloft.study.programs import SolverError, finite, run_program
 
 if TYPE_CHECKING:
@@ -48,11 +49,13 @@ def evaluate(request: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``state``, and ``outputs`` by name, or ``id`` and ``message`` of the failure.
+        ``state``, and ``outputs`` by name with ``derivatives`` by name, in the order of the
+        inputs, or ``id`` and ``message`` of the failure.
     """
     began = time.perf_counter()
     try:
-        answer: dict[str, Any] = {"state": DONE, "outputs": _outputs(request)}
+        outputs, derivatives = _outputs(request)
+        answer: dict[str, Any] = {"state": DONE, "outputs": outputs, "derivatives": derivatives}
     except SolverError as error:
         answer = _failed(SOLVER_FAILED, "solver-failed", str(error))
     except Error as error:
@@ -74,24 +77,104 @@ def _failed(state: str, reason: str, message: str) -> dict[str, Any]:
     return {"state": state, "id": reason, "message": message.strip()[:2000]}
 
 
-def _outputs(request: Mapping[str, Any]) -> dict[str, float]:
+def _outputs(request: Mapping[str, Any]) -> tuple[dict[str, float], dict[str, list[float]]]:
+    """The outputs, and where they are wanted their derivatives."""
     model = _model(request)
-    inputs: dict[str, float] = request["inputs"]
-    model.set(inputs)
+    model.set(request["inputs"])
     model.check()
     if request["closed"]:
         _closed(model)
     for name, value, low, high in request["constraints"]:
         _held(model, name, value, low, high)
+    found, weights = _numbers(model, request, request["analyses"])
+    if not request["derivatives"]:
+        return found, {}
+    names, outputs = list(request["inputs"]), request["outputs"]
+    slopes: dict[str, list[float]] = {}
+    if outputs:
+        rows = jacobian(model, list(outputs.values()), [1] * len(outputs), names)
+        slopes = dict(zip(outputs, rows.tolist(), strict=True))
+    for name, by in weights.items():
+        slopes[name] = _adjoint(model, name, by, names)
+    return found, slopes | _differences(model, request, found)
+
+
+def _numbers(
+    model: Model, request: Mapping[str, Any], analyses: Sequence[Mapping[str, Any]]
+) -> tuple[dict[str, float], dict[str, Mapping[str, Any]]]:
+    """The numbers of the model and of analyses, and the weights that adjoint ones return."""
     found = {name: _value(model, name, text) for name, text in request["outputs"].items()}
-    if request["derivatives"] and request["outputs"]:
-        found |= _derivatives(model, request["outputs"], list(inputs))
-    for analysis in request["analyses"]:
+    weights: dict[str, Mapping[str, Any]] = {}
+    for analysis in analyses:
         if analysis["python"]:
-            found |= _of_python(model, analysis, request)
+            numbers, own = _of_python(model, analysis, request)
+            weights |= own
         else:
-            found |= run_program(model, analysis, request, found, _function)
+            numbers = run_program(model, analysis, request, found, _function)
+        found |= numbers
+    return found, weights
+
+
+def _adjoint(model: Model, name: str, weights: Mapping[str, Any], inputs: list[str]) -> list[float]:
+    """The derivatives of a number by the inputs, from those by vertices or measures."""
+    try:
+        rows: list[float] = model.vjp(weights, inputs).tolist()
+    except Error as error:
+        raise SolverError(f"the weights of `{name}`: {error}") from None
+    return rows
+
+
+def _differences(
+    model: Model, request: Mapping[str, Any], here: Mapping[str, float]
+) -> dict[str, list[float]]:
+    """Derivatives by differences of second order: central, one-sided at the end of a range."""
+    analyses = request["analyses"]
+    chosen = [k for k, each in enumerate(analyses) if each["differences"]]
+    if not chosen:
+        return {}
+    names = [name for k in chosen for name in _names(analyses[k])]
+    used = analyses[: chosen[-1] + 1]
+    found: dict[str, list[float]] = {name: [] for name in names}
+    for by, (low, high) in request["ranges"].items():
+        x = request["inputs"][by]
+
+        def at(value: float, by: str = by, x: float = x) -> dict[str, float]:
+            moved = {
+                **request,
+                "inputs": {**request["inputs"], by: value},
+                "place": f"{request['place']} {by} {value - x:+.3g}",
+            }
+            try:
+                model.set({by: value})
+                return _numbers(model, moved, used)[0]
+            except Error as error:
+                raise SolverError(f"differences by `{by}`, at {value:.9g}: {error}") from None
+            finally:
+                model.set({by: x})
+
+        steps = {
+            n: analyses[k]["differences"] * (high - low)
+            for k in chosen
+            for n in _names(analyses[k])
+        }
+        for h in dict.fromkeys(steps.values()):
+            if h == 0.0:
+                slopes = dict.fromkeys(names, 0.0)
+            elif low <= x - h and x + h <= high:
+                before, after = at(x - h), at(x + h)
+                slopes = {n: (after[n] - before[n]) / (2 * h) for n in names}
+            else:
+                inward = h if x + 2 * h <= high else -h
+                near, far = at(x + inward), at(x + 2 * inward)
+                slopes = {n: (4 * near[n] - 3 * here[n] - far[n]) / (2 * inward) for n in names}
+            for n in names:
+                if steps[n] == h:
+                    found[n].append(slopes[n])
     return found
+
+
+def _names(analysis: Mapping[str, Any]) -> tuple[str, ...]:
+    return (*analysis["outputs"], *analysis["results"])
 
 
 def _model(request: Mapping[str, Any]) -> Model:
@@ -174,18 +257,10 @@ REASONS: dict[type[Error], str] = {ConstraintError: "constraint", OpenError: "no
 """Ids of errors that are not diagnostics of the model."""
 
 
-def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) -> dict[str, float]:
-    rows = model.derivatives(list(outputs.values()), inputs)
-    return {
-        f"d {name} / d {by}": float(np.ravel(value)[0])
-        for name, row in zip(outputs, rows, strict=True)
-        for by, value in zip(inputs, row, strict=True)
-    }
-
-
 def _of_python(
     model: Model, analysis: Mapping[str, Any], request: Mapping[str, Any]
-) -> dict[str, float]:
+) -> tuple[dict[str, float], dict[str, Mapping[str, Any]]]:
+    """The numbers by name, and the weights of those of an adjoint analysis."""
     place, _, name = analysis["python"].rpartition(":")
     function = _function(str(Path(request["folder"]) / place), name)
     try:
@@ -200,14 +275,20 @@ def _of_python(
         if len(analysis["outputs"]) != 1:
             raise SolverError(f"`{analysis['python']}` returned no mapping of numbers by name")
         found = {analysis["outputs"][0]: found}
-    numbers = {}
+    numbers: dict[str, float] = {}
+    weights: dict[str, Mapping[str, Any]] = {}
     for key in analysis["outputs"]:
         try:
-            value = float(np.asarray(found[key]).reshape(-1)[0])
+            number = found[key]
+            if analysis["adjoint"]:
+                number, by = number
+                weights[key] = dict(by)
+            value = float(np.asarray(number).reshape(-1)[0])
         except (KeyError, TypeError, ValueError, IndexError):
-            raise SolverError(f"`{analysis['python']}` returned no number `{key}`") from None
+            what = "number with its weights" if analysis["adjoint"] else "number"
+            raise SolverError(f"`{analysis['python']}` returned no {what} `{key}`") from None
         numbers[key] = finite(value, key, analysis["python"])
-    return numbers
+    return numbers, weights
 
 
 def _function(place: str, name: str) -> Any:

@@ -164,6 +164,12 @@ class Analysis:
     """Further files and folders beside the study whose contents decide the numbers."""
     results: Mapping[str, Pattern] = field(default_factory=dict)
     """Numbers that are read afterwards, by name."""
+    differences: float = 0.0
+    """Step of the differences that give the derivatives of its numbers, as a fraction of the range
+    of each input; 0: its numbers have no derivatives."""
+    adjoint: bool = False
+    """True if `python` returns ``(number, weights)`` for each name, weights as for
+    :meth:`moldloft.Model.vjp`: derivatives by the vertices of the mesh, or by measures."""
     seconds: float = DEFAULT_SECONDS
     """Time limit of all commands together."""
     keep: str = "failed"
@@ -173,6 +179,11 @@ class Analysis:
     def names(self) -> tuple[str, ...]:
         """The names of all its numbers."""
         return (*self.outputs, *self.results)
+
+    @property
+    def differentiable(self) -> bool:
+        """True if its numbers have derivatives."""
+        return self.adjoint or self.differences > 0
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -571,12 +582,16 @@ def _analysis(name: str, table: Table) -> Analysis:
         table.take("template", "text", ""),
         table.take("files", "texts", ()),
         {key: _pattern(Table(t, results.at(key))) for key, t in results.data.items()},
+        _step(table),
+        table.take("adjoint", "flag", False),
         _positive(table.take("seconds", "number", DEFAULT_SECONDS), table.at("seconds")),
         _choice(table.take("keep", "text", "failed"), ("failed", "all", "none"), table.at("keep")),
     )
     table.end()
     if bool(found.python) == bool(found.command):
         raise StudyError(f"`{table.where}` needs either `python` or `command`")
+    if found.adjoint and (not found.python or found.differences):
+        raise StudyError(f"`{table.at('adjoint')}` needs `python`, and excludes `differences`")
     for function in found.functions:
         place, _, called = function.rpartition(":")
         if not place or not called.isidentifier():
@@ -585,6 +600,14 @@ def _analysis(name: str, table: Table) -> Analysis:
         raise StudyError(f"`{table.at('outputs')}` is missing: the names of the numbers returned")
     if found.command and not found.results:
         raise StudyError(f"`{table.at('results')}` is missing: the numbers read from files")
+    return found
+
+
+def _step(table: Table) -> float:
+    found: float = table.take("differences", "number", 0.0)
+    # A one-sided difference takes two steps within the range.
+    if not 0 <= found <= 0.25:
+        raise StudyError(f"`{table.at('differences')}` is a fraction up to 0.25, found {found:g}")
     return found
 
 

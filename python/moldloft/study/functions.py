@@ -18,10 +18,65 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Function", "function"]
+__all__ = ["Function", "function", "jacobian"]
 
 #: So many times more inputs than numbers of the outputs, and gradients take less time than columns.
 _FEW_NUMBERS = 4
+
+
+def jacobian(
+    model: Model, expressions: Sequence[str], sizes: Sequence[int], inputs: Sequence[str]
+) -> Floats:
+    """The exact derivatives of expressions by inputs, where the model is.
+
+    Parameters
+    ----------
+    model
+        The model, not changed.
+    expressions
+        Numbers, vectors or arrays.
+    sizes
+        The number of values of each.
+    inputs
+        Parameters and literals.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(values, inputs)``: in reverse mode if there are few values for each input.
+
+    Raises
+    ------
+    Error
+        If an expression has another size.
+    """
+    total = sum(sizes)
+    # A row of weights for each number costs less than four inputs at a time.
+    if _FEW_NUMBERS * total <= len(inputs):
+        return _pulled(model, expressions, sizes, inputs, np.eye(total))
+    rows = model.derivatives(list(expressions), list(inputs))
+    blocks = []
+    for row, size in zip(rows, sizes, strict=True):
+        columns = [np.asarray(value, dtype=np.float64).ravel() for value in row]
+        if any(c.size != size for c in columns):
+            raise Error("an output has changed its size")
+        blocks.append(np.stack(columns, axis=1))
+    found: Floats = np.concatenate(blocks)
+    return found
+
+
+def _pulled(
+    model: Model,
+    expressions: Sequence[str],
+    sizes: Sequence[int],
+    inputs: Sequence[str],
+    weights: Floats,
+) -> Floats:
+    """Derivatives of weighted sums of the expressions, (sums, inputs)."""
+    parts = np.split(weights, np.cumsum(sizes)[:-1], axis=1)
+    outputs = list(zip(expressions, map(np.ascontiguousarray, parts), strict=True))
+    rows, _ = _core.vjp(model._document, outputs, list(inputs), "")
+    return rows
 
 
 class Function:
@@ -102,27 +157,13 @@ class Function:
         return self._derivatives()
 
     def _derivatives(self) -> Floats:
-        total = sum(self.sizes.values())
-        # A row of weights for each number costs less than four inputs at a time.
-        if _FEW_NUMBERS * total <= len(self.inputs):
-            return self._pulled(np.eye(total))
-        rows = self.model.derivatives(list(self.outputs.values()), list(self.inputs))
-        blocks = []
-        for row, size in zip(rows, self.sizes.values(), strict=True):
-            columns = [np.asarray(value, dtype=np.float64).ravel() for value in row]
-            if any(c.size != size for c in columns):
-                raise Error("an output has changed its size")
-            blocks.append(np.stack(columns, axis=1))
-        found: Floats = np.concatenate(blocks)
-        return found
+        return jacobian(
+            self.model, list(self.outputs.values()), list(self.sizes.values()), self.inputs
+        )
 
     def _pulled(self, weights: Floats) -> Floats:
-        """Derivatives of weighted sums of the outputs, (sums, inputs)."""
-        ends = np.cumsum(list(self.sizes.values()))[:-1]
-        parts = [np.ascontiguousarray(part) for part in np.split(weights, ends, axis=1)]
-        outputs = list(zip(self.outputs.values(), parts, strict=True))
-        rows, _ = _core.vjp(self.model._document, outputs, list(self.inputs), "")
-        return rows
+        expressions, sizes = list(self.outputs.values()), list(self.sizes.values())
+        return _pulled(self.model, expressions, sizes, self.inputs, weights)
 
     def vjp(self, x: ArrayLike, weights: ArrayLike) -> Floats:
         """The exact derivatives of a weighted sum of the outputs by all inputs at once.

@@ -26,32 +26,65 @@ __all__ = ["METHODS"]
 #: fraction of their size: a population meets no equality exactly.
 HELD = 1e-6
 
+#: Slopes at the start below this, in objectives by ranges, count as it: the start may be the end.
+LEAST_SLOPE = 1e-3
+
+#: The curvature at the start is that of a step of this fraction of the ranges.
+PROBE = 1e-2
+
 #: Points that Optuna is asked for at a time.
 BATCH = 4
 
 
+def _scale(search: Search) -> float:
+    """The factor of objective and constraints for which the first step of a method is a sound one.
+
+    Quasi-Newton methods begin with the unit matrix for the Hessian of the Lagrangian. With this
+    factor its curvature along the first step is 1 (Shanno and Phua 1978, by one evaluation more),
+    unless the input of the steepest slope would cross its range in that step.
+    """
+    start = search.starts[0]
+    gradient, rows = search.gradient(start), search.jacobian(start)
+    steepest = float(np.abs(gradient).max(initial=0.0))
+    if steepest <= LEAST_SLOPE:
+        return 1.0 / LEAST_SLOPE
+    equal = np.array([b.equal for b in search.bounds], dtype=bool)
+    multipliers = np.zeros(len(search.bounds))
+    multipliers[equal] = np.linalg.lstsq(rows[equal].T, gradient, rcond=None)[0]
+    tangent = gradient - multipliers @ rows
+    size = max(float(np.abs(tangent).max()), np.finfo(np.float64).tiny)
+    end = np.clip(start - PROBE / size * tangent, 0.0, search.points.most)
+    step = end - start
+    if not search.points.has_numbers(end) or not step.any():
+        return 1.0 / steepest
+    change = search.gradient(end) - multipliers @ search.jacobian(end) - tangent
+    curvature = float(step @ change) / float(step @ step)
+    return 1.0 / max(curvature, steepest)
+
+
 def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
     by_gradients = goal.method in BY_GRADIENTS
+    scale = _scale(search) if by_gradients else 1.0
     constraints = []
     # SciPy takes equalities apart from limits.
     for equal in (True, False):
         chosen = np.flatnonzero([b.equal == equal for b in search.bounds])
         if chosen.size:
-            more = {"jac": _rows(search.jacobian, chosen)} if by_gradients else {}
-            low, high = search.low[chosen], search.high[chosen]
-            value = _rows(search.constraints, chosen)
+            more = {"jac": _rows(search.jacobian, chosen, scale)} if by_gradients else {}
+            low, high = scale * search.low[chosen], scale * search.high[chosen]
+            value = _rows(search.constraints, chosen, scale)
             constraints.append(scipy.NonlinearConstraint(value, low, high, **more))
     options: dict[str, Any] = {"maxiter": goal.evaluations}
     if goal.method == "slsqp":
-        options["ftol"] = goal.tolerance
+        options["ftol"] = scale * goal.tolerance
     elif goal.method == "trust-constr":
-        options |= {"gtol": goal.tolerance, "xtol": goal.tolerance}
+        options |= {"gtol": scale * goal.tolerance, "xtol": goal.tolerance}
     else:
         options = {"maxfev": goal.evaluations, "final_tr_radius": goal.tolerance}
     found = scipy.minimize(
-        search.objective,
+        lambda unit: scale * search.objective(unit),
         search.starts[0],
-        jac=search.gradient if by_gradients else None,
+        jac=(lambda unit: scale * search.gradient(unit)) if by_gradients else None,
         method=goal.method,
         bounds=scipy.Bounds(np.zeros(len(search.points.most)), search.points.most),
         constraints=constraints,
@@ -65,8 +98,10 @@ def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
     return str(found.message), bool(found.success)
 
 
-def _rows(function: Callable[[Floats], Floats], chosen: Any) -> Callable[[Floats], Floats]:
-    return lambda unit: function(unit)[chosen]
+def _rows(
+    function: Callable[[Floats], Floats], chosen: Any, scale: float
+) -> Callable[[Floats], Floats]:
+    return lambda unit: scale * function(unit)[chosen]
 
 
 def _differential_evolution(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:

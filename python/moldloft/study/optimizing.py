@@ -135,10 +135,18 @@ class Points:
             raise NoNumbersError(found.message)
         return found
 
+    def has_numbers(self, unit: Floats) -> bool:
+        """True if the model has numbers at a point."""
+        try:
+            self.at(unit)
+        except NoNumbersError:
+            return False
+        return True
+
     def slope(self, name: str, unit: Floats) -> Floats:
         """The derivatives of an output with respect to the coordinates of the unit cube."""
-        outputs = self.at(unit).outputs
-        found: Floats = np.array([outputs[f"d {name} / d {by}"] for by in self.cases.names])
+        slopes = self.at(unit).derivatives[name]
+        found: Floats = np.array([slopes[by] for by in self.cases.names])
         return found * self.scale
 
 
@@ -155,14 +163,15 @@ def _prepared(study: Study) -> tuple[Study, list[Bound]]:
             own[name] = bound.value
         bounds.append(replace(bound, name=name))
     derivatives = study.goal.method in BY_GRADIENTS
-    by_analysis = {n for each in study.analyses for n in each.names}
+    by_analysis = {n for each in study.analyses if not each.differentiable for n in each.names}
     used = {*(o.output for o in study.goal.objectives), *(b.name for b in bounds)}
     if derivatives and used & by_analysis:
         word = sorted(used & by_analysis)[0]
         others = [name for name in OPTIMISERS if name not in BY_GRADIENTS]
         raise StudyError(
             f"`optimize.method`: `{study.goal.method}` needs derivatives, and `{word}` of an "
-            f"analysis has none; without derivatives: {', '.join(others)}"
+            f"analysis has none; give it `differences` or `adjoint`, or use a method without "
+            f"derivatives: {', '.join(others)}"
         )
     return replace(study, outputs=own, constraints=(), derivatives=derivatives), bounds
 
@@ -391,7 +400,6 @@ class Search:
         """The best point, and the front of several objectives."""
         assert self.best is not None
         violation, _, found = self.best
-        outputs = {n: v for n, v in found.outputs.items() if not n.startswith("d ")}
         held = list(self._feasible.values())
         chosen: tuple[Outcome, ...] = ()
         if len(self.names) > 1 and held:
@@ -399,7 +407,7 @@ class Search:
             chosen = tuple(held[k] for k in front(table * self.signs))
         return Optimum(
             dict(found.inputs),
-            outputs,
+            dict(found.outputs),
             converged,
             violation == 0.0,
             message,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from moldloft.study.robustness import by_value, sobol_indices, spreads, validity, worst_cases
+from moldloft.study.robustness import sobol_indices, spreads, validity, worst_cases
 from moldloft.study.store import Results
 
 if TYPE_CHECKING:
@@ -20,14 +21,28 @@ if TYPE_CHECKING:
 
 __all__ = ["failures", "html", "sensitivities"]
 
-#: Points drawn of a plot: more cannot be told apart. The page states the number left out.
+#: Cases drawn one by one. Plots of more have the number of cases by cells; parallel coordinates are
+#: of so many, evenly chosen, and the page states the number left out.
 MAX_DRAWN = 2_000
+
+#: Points of all lines of parallel coordinates: many inputs leave room for fewer cases.
+MAX_LINE_POINTS = 40_000
+
+#: Cells of a plot of more cases, and their shades, each for twice to eight times as many cases.
+CELLS = (60, 40)
+SHADES = (0.15, 0.3, 0.45, 0.6, 0.8, 1.0)
+
+#: Plots of outputs by inputs.
+MAX_SCATTERS = 60
 
 #: Plans whose points fill the ranges, so that a regression means something.
 SAMPLED = ("grid", "latin-hypercube", "sobol", "saltelli")
 
 #: Rows listed of the table.
 MAX_ROWS = 200
+
+#: Correlations whose eigenvalue is below this fraction of the greatest are of dependent inputs.
+RANK = 1e-10
 
 WIDTH, HEIGHT, MARGIN = 300.0, 220.0, 58.0
 
@@ -62,11 +77,14 @@ def sensitivities(results: Results) -> dict[str, dict[str, float]]:
     names = [n for n, c in results.inputs.items() if np.ptp(c[done]) > 0] if done.any() else []
     if done.sum() < len(names) + 2 or not names:
         return {}
-    columns = np.stack([_standard(results.inputs[n][done]) for n in names], axis=1)
+    columns = np.stack([_standard(results.inputs[n][done]) for n in names])
+    # The normal equations: correlations, which are well scaled, and small for a million cases.
+    between = columns @ columns.T / done.sum()
     found = {}
-    for output, values in by_value(results).items():
+    for output, values in results.outputs.items():
         if np.ptp(values[done]) > 0:
-            slopes, *_ = np.linalg.lstsq(columns, _standard(values[done]), rcond=None)
+            with_output = columns @ _standard(values[done]) / done.sum()
+            slopes, *_ = np.linalg.lstsq(between, with_output, rcond=RANK)
             found[output] = dict(zip(names, slopes.tolist(), strict=True))
     return found
 
@@ -140,7 +158,7 @@ def html(
         if results.objectives:
             parts += ["<h2>Objectives by evaluation</h2>", _plots(_histories(results))]
         parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
-        if len(by_value(results)) > 1:
+        if len(results.outputs) > 1:
             parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
             if results.front is not None:
                 parts.append(f"<p>Marked: the {results.front.sum()} points of the front.</p>")
@@ -175,7 +193,7 @@ def _statistics(results: Results) -> list[list[str]]:
     done = results.done
     return [
         [name, *(_text(float(v)) for v in (c[done].min(), c[done].mean(), c[done].max()))]
-        for name, c in {**results.inputs, **by_value(results)}.items()
+        for name, c in {**results.inputs, **results.outputs}.items()
     ]
 
 
@@ -207,13 +225,13 @@ def _sensitivity_parts(results: Results, saltelli: int) -> list[str]:
     return parts
 
 
-def _drawn(results: Results, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The rows shown in plots, including those of a front."""
+def _drawn(results: Results, chosen: NDArray[np.bool_], most: int) -> NDArray[np.int64]:
+    """The rows drawn one by one, including those of a front."""
     rows = np.flatnonzero(chosen)
-    if rows.size > MAX_DRAWN:
-        few = rows[np.linspace(0, rows.size - 1, MAX_DRAWN).astype(int)]
+    if rows.size > most:
+        few = rows[np.linspace(0, rows.size - 1, most).astype(int)]
         if results.front is not None:
-            few = np.union1d(few, np.flatnonzero(results.front & chosen)[:MAX_DRAWN])
+            few = np.union1d(few, np.flatnonzero(results.front & chosen)[:most])
         rows = few
     return rows
 
@@ -221,7 +239,7 @@ def _drawn(results: Results, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
 def _histories(results: Results) -> list[str]:
     """Each objective by the number of the evaluation, points that better all before marked."""
     assert results.feasible is not None
-    rows = _drawn(results, results.done)
+    rows = np.flatnonzero(results.done)
     figures = []
     for name, sign in results.objectives.items():
         values = np.where(results.feasible, sign * results.outputs[name], np.inf)
@@ -238,18 +256,45 @@ def _span(values: Floats) -> tuple[float, float]:
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
+def _dots(px: Floats, py: Floats, radius: int, colour: str) -> str:
+    return "".join(
+        f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{radius}" fill="{colour}" fill-opacity=".65"/>'
+        for a, b in zip(px, py, strict=True)
+    )
+
+
+def _density(px: Floats, py: Floats) -> str:
+    """Cells shaded by the logarithm of the number of cases in them."""
+    across, down = CELLS
+    wide, high = (WIDTH - MARGIN - 8) / across, (HEIGHT - MARGIN - 8) / down
+    i = np.minimum(((px - MARGIN) / wide).astype(np.int64), across - 1)
+    j = np.minimum(((py - 8) / high).astype(np.int64), down - 1)
+    counts = np.bincount(i * down + j, minlength=across * down)
+    filled = np.flatnonzero(counts)
+    share = np.log1p(counts[filled]) / math.log1p(counts.max())
+    shade = np.minimum((share * len(SHADES)).astype(int), len(SHADES) - 1)
+    paths = []
+    for k, opacity in enumerate(SHADES):
+        cells = "".join(
+            f"M{MARGIN + wide * (c // down):.1f} {8 + high * (c % down):.1f}h{wide:.1f}v{high:.1f}"
+            f"h-{wide:.1f}z"
+            for c in filled[shade == k].tolist()
+        )
+        if cells:
+            paths.append(f'<path d="{cells}" fill="#2563a8" fill-opacity="{opacity}"/>')
+    return "".join(paths)
+
+
 def _scatter(
     x: Floats, y: Floats, names: tuple[str, str], marked: NDArray[np.int64] | None = None
 ) -> str:
     (x0, x1), (y0, y1) = _span(x), _span(y)
     px = MARGIN + (x - x0) / (x1 - x0) * (WIDTH - MARGIN - 8)
     py = HEIGHT - MARGIN - (y - y0) / (y1 - y0) * (HEIGHT - MARGIN - 8)
-    special = set() if marked is None else set(marked.tolist())
-    dots = "".join(
-        f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{3 if k in special else 2}" '
-        f'fill="{"#c2410c" if k in special else "#2563a8"}" fill-opacity=".65"/>'
-        for k, (a, b) in enumerate(zip(px, py, strict=True))
-    )
+    dots = _density(px, py) if len(x) > MAX_DRAWN else _dots(px, py, 2, "#2563a8")
+    if marked is not None:
+        few = marked[:MAX_DRAWN]
+        dots += _dots(px[few], py[few], 3, "#c2410c")
     right, low = WIDTH - 8, HEIGHT - MARGIN
     axes = (
         f'<path d="M{MARGIN} 8V{low}H{right}" fill="none" stroke="#8a97a5"/>'
@@ -259,6 +304,8 @@ def _scatter(
         f'<text x="{MARGIN - 4}" y="16" text-anchor="end">{_text(y1)[:8]}</text>'
     )
     label = f"{names[1]} by {names[0]}"
+    if len(x) > MAX_DRAWN:
+        label += f", {len(x)} cases in {CELLS[0]} x {CELLS[1]} cells"
     return (
         f'<figure><svg role="img" aria-label="{escape(label)}" width="{WIDTH:.0f}" '
         f'height="{HEIGHT:.0f}">{axes}{dots}</svg><figcaption>{escape(label)}</figcaption></figure>'
@@ -266,18 +313,18 @@ def _scatter(
 
 
 def _scatters(results: Results) -> list[str]:
-    rows = _drawn(results, results.done)
+    done = results.done
+    pairs = itertools.product(results.outputs.items(), results.inputs.items())
     return [
-        _scatter(x[rows], y[rows], (by, name))
-        for name, y in by_value(results).items()
-        for by, x in results.inputs.items()
-    ][:60]
+        _scatter(x[done], y[done], (by, name))
+        for (name, y), (by, x) in itertools.islice(pairs, MAX_SCATTERS)
+    ]
 
 
 def _output_plots(results: Results) -> list[str]:
-    rows = _drawn(results, results.done)
-    columns = [(n, c[rows]) for n, c in by_value(results).items()]
-    marked = None if results.front is None else np.flatnonzero(results.front[rows])
+    done = results.done
+    columns = [(n, c[done]) for n, c in results.outputs.items()]
+    marked = None if results.front is None else np.flatnonzero(results.front[done])
     return [
         _scatter(x, y, (a, b), marked)
         for k, (a, x) in enumerate(columns)
@@ -317,8 +364,8 @@ def _failure_plots(results: Results) -> list[str]:
 
 
 def _parallel(results: Results) -> str:
-    rows = _drawn(results, results.done)
-    columns = {**results.inputs, **by_value(results)}
+    columns = {**results.inputs, **results.outputs}
+    rows = _drawn(results, results.done, min(MAX_DRAWN, MAX_LINE_POINTS // len(columns)))
     step = 110.0
     width, height = step * (len(columns) - 1) + 120, 260.0
     units = []
@@ -352,8 +399,8 @@ def _parallel(results: Results) -> str:
 
 
 def _listed(results: Results) -> str:
-    columns = results.columns()
-    plain = {n: c for n, c in columns.items() if not n.startswith("d ")}
+    derived = {f"d {name} / d {by}" for name, row in results.derivatives.items() for by in row}
+    plain = {n: c for n, c in results.columns().items() if n not in derived}
     rows = [
         [
             str(k),

@@ -18,15 +18,10 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Validity", "by_value", "sobol_indices", "spreads", "validity", "worst_cases"]
+__all__ = ["Validity", "sobol_indices", "spreads", "validity", "worst_cases"]
 
 #: The quantile of the normal distribution for 95 % of both sides.
 NORMAL_95 = 1.959963984540054
-
-
-def by_value(results: Results) -> dict[str, Floats]:
-    """The outputs without derivatives."""
-    return {n: c for n, c in results.outputs.items() if not n.startswith("d ")}
 
 
 @dataclass(frozen=True)
@@ -82,13 +77,10 @@ def _terms(results: Results, tolerances: Mapping[str, float]) -> dict[str, list[
         if name not in results.inputs:
             raise Error(f"unknown input `{name}`; inputs: {', '.join(results.inputs)}")
     found = {}
-    for output in by_value(results):
-        slopes = {n: f"d {output} / d {n}" for n, t in tolerances.items() if t > 0}
-        # An output without derivatives has no spread, not one of 0.
-        if slopes and all(slope in results.outputs for slope in slopes.values()):
-            found[output] = [
-                np.abs(results.outputs[slope]) * tolerances[n] for n, slope in slopes.items()
-            ]
+    # An output without derivatives has no spread, not one of 0.
+    for output, slopes in results.derivatives.items():
+        if terms := [np.abs(slopes[n]) * t for n, t in tolerances.items() if t > 0]:
+            found[output] = terms
     return found
 
 
@@ -162,7 +154,7 @@ def sobol_indices(results: Results, count: int) -> dict[str, dict[str, tuple[flo
     if len(results) != count * (len(names) + 2):
         return {}
     found: dict[str, dict[str, tuple[float, float]]] = {}
-    for output, values in by_value(results).items():
+    for output, values in results.outputs.items():
         blocks = values.reshape(len(names) + 2, count)
         blocks = blocks[:, np.isfinite(blocks).all(axis=0)]
         a, b = blocks[0], blocks[1]

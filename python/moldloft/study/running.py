@@ -31,7 +31,7 @@ from moldloft.loading import load
 from moldloft.storage import digest, read_bytes
 from moldloft.study.cases import SOLVER_FAILED, number
 from moldloft.study.definition import Study, StudyError
-from moldloft.study.plans import points
+from moldloft.study.plans import points, ranges
 from moldloft.study.sources import check_programs, source_files
 from moldloft.study.store import Outcome, Results, Store
 from moldloft.study.workers import CRASHED, OTHER_VERSION, TIMED_OUT, end_workers, evaluate_apart
@@ -107,7 +107,11 @@ class Cases:
 
     def _common(self) -> dict[str, Any]:
         study = self.study
+        differences = study.derivatives and any(each.differences for each in study.analyses)
+        box = ranges(study, self.model) if differences else np.empty((0, 2))
         return {
+            # Differences stay within them.
+            "ranges": dict(zip(self.names if differences else (), box.tolist(), strict=True)),
             "outputs": dict(study.outputs),
             "derivatives": study.derivatives,
             "closed": study.closed,
@@ -205,6 +209,10 @@ def outcome(request: Mapping[str, Any], answer: Mapping[str, Any]) -> Outcome:
         float(answer.get("seconds", 0.0)),
         request["inputs"],
         answer.get("outputs", {}),
+        {
+            name: dict(zip(request["inputs"], row, strict=True))
+            for name, row in answer.get("derivatives", {}).items()
+        },
     )
 
 

@@ -16,6 +16,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, compress
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -34,10 +35,10 @@ if TYPE_CHECKING:
 __all__ = ["Outcome", "Results", "Store"]
 
 #: The layout of the file; others are refused.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
-#: Rows that are tuples of Python at a time while a table is read.
-ROWS_AT_ONCE = 65_536
+#: Rows that are tuples of Python at a time while a table is read: more of them leave the cache.
+ROWS_AT_ONCE = 1_024
 
 DONE = "done"
 """The state of a case whose numbers are there."""
@@ -59,10 +60,63 @@ class Outcome:
     seconds: float
     inputs: Mapping[str, float]
     outputs: Mapping[str, float]
+    derivatives: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Derivatives of the outputs that have some, by output and input."""
 
 
-def _column(prefix: str, name: str) -> str:
-    return '"' + prefix + name.replace('"', '""') + '"'
+class Layout:
+    """The names of a case's numbers, which are one value of the file: SQLite has 2000 columns.
+
+    Parameters
+    ----------
+    inputs, outputs, derived
+        Names of inputs, of outputs, and of outputs with derivatives by all inputs.
+    """
+
+    def __init__(
+        self, inputs: Sequence[str], outputs: Sequence[str], derived: Sequence[str]
+    ) -> None:
+        self.inputs, self.outputs, self.derived = tuple(inputs), tuple(outputs), tuple(derived)
+
+    @classmethod
+    def of(cls, found: Outcome) -> Layout:
+        """The layout of an outcome."""
+        return cls(tuple(found.inputs), tuple(found.outputs), tuple(found.derivatives))
+
+    @property
+    def text(self) -> str:
+        """The names as they are stored."""
+        return json.dumps([self.inputs, self.outputs, self.derived])
+
+    def packed(self, found: Outcome) -> bytes:
+        """The numbers of an outcome."""
+        rows = [found.derivatives[name] for name in self.derived]
+        numbers = [
+            *(found.inputs[n] for n in self.inputs),
+            *(found.outputs[n] for n in self.outputs),
+            *(row[n] for row in rows for n in self.inputs),
+        ]
+        return np.array(numbers, dtype="<f8").tobytes()
+
+    def columns(self) -> Iterator[tuple[str, str, str]]:
+        """The meaning of each number: in, out or d; the output; the input."""
+        yield from (("in", "", name) for name in self.inputs)
+        yield from (("out", name, "") for name in self.outputs)
+        yield from (("d", name, by) for name in self.derived for by in self.inputs)
+
+    def outcome(self, head: Sequence[Any], data: bytes) -> Outcome:
+        """The outcome with this key, state, id, message and time, and these numbers."""
+        inputs: dict[str, float] = {}
+        outputs: dict[str, float] = {}
+        slopes: dict[str, dict[str, float]] = {}
+        values = np.frombuffer(data, "<f8").tolist()
+        for (kind, name, by), value in zip(self.columns(), values, strict=True):
+            if kind == "out":
+                outputs[name] = value
+            else:
+                (inputs if kind == "in" else slopes.setdefault(name, {}))[by] = value
+        key, state, reason, message, seconds = head
+        return Outcome(key, state, reason, message, seconds, inputs, outputs, slopes)
 
 
 class Store:
@@ -123,15 +177,20 @@ class Store:
                 BEGIN;
                 CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT);
                 CREATE TABLE cases (position INTEGER PRIMARY KEY, key TEXT NOT NULL);
+                CREATE TABLE layouts (layout INTEGER PRIMARY KEY, names TEXT NOT NULL UNIQUE);
                 CREATE TABLE results (
                     key TEXT PRIMARY KEY, state TEXT NOT NULL, id TEXT NOT NULL,
-                    message TEXT NOT NULL, seconds REAL NOT NULL
+                    message TEXT NOT NULL, seconds REAL NOT NULL,
+                    layout INTEGER NOT NULL, numbers BLOB NOT NULL
                 ) WITHOUT ROWID;
                 PRAGMA user_version = {SCHEMA_VERSION};
                 COMMIT;
                 """
             )
-        self._columns = {row[1] for row in self._db.execute("PRAGMA table_info(results)")}
+        self._layouts = self._known_layouts()
+
+    def _known_layouts(self) -> dict[str, int]:
+        return dict(self._db.execute("SELECT names, layout FROM layouts"))
 
     @contextlib.contextmanager
     def _at_once(self) -> Iterator[None]:
@@ -142,6 +201,7 @@ class Store:
                 yield
             except BaseException:
                 self._db.execute("ROLLBACK")
+                self._layouts = self._known_layouts()
                 raise
             self._db.execute("COMMIT")
 
@@ -197,26 +257,23 @@ class Store:
         outcome
             The case with its state and numbers; it replaces an earlier one of the same key.
         """
-        values: dict[str, Any] = {
-            '"key"': outcome.key,
-            '"state"': outcome.state,
-            '"id"': outcome.id,
-            '"message"': outcome.message,
-            '"seconds"': outcome.seconds,
-        }
-        for prefix, numbers in (("in ", outcome.inputs), ("out ", outcome.outputs)):
-            for name, value in numbers.items():
-                values[_column(prefix, name)] = float(value)
-                if prefix + name not in self._columns:
-                    with self._named():
-                        self._db.execute(
-                            f"ALTER TABLE results ADD COLUMN {_column(prefix, name)} REAL"
-                        )
-                    self._columns.add(prefix + name)
-        names, marks = ", ".join(values), ", ".join("?" * len(values))
+        layout = Layout.of(outcome)
+        text = layout.text
         with self._named():
+            if text not in self._layouts:
+                made = self._db.execute("INSERT INTO layouts (names) VALUES (?)", (text,))
+                self._layouts[text] = int(made.lastrowid or 0)
             self._db.execute(
-                f"INSERT OR REPLACE INTO results ({names}) VALUES ({marks})", list(values.values())
+                "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?, ?)",
+                (
+                    outcome.key,
+                    outcome.state,
+                    outcome.id,
+                    outcome.message,
+                    outcome.seconds,
+                    self._layouts[text],
+                    layout.packed(outcome),
+                ),
             )
 
     def forget(self, states: Sequence[str]) -> int:
@@ -293,40 +350,23 @@ class Store:
 
     def _outcomes(self, where: str, values: Sequence[str]) -> Iterator[Outcome]:
         with self._named():
+            layouts = self._read_layouts()
             rows = self._db.execute(f"SELECT * FROM results {where} ORDER BY key", values)
-            names = [column[0] for column in rows.description]
-            for row in rows:
-                found = dict(zip(names, row, strict=True))
-                inputs, outputs = (
-                    {
-                        name.removeprefix(prefix): value
-                        for name, value in found.items()
-                        if name.startswith(prefix) and value is not None
-                    }
-                    for prefix in ("in ", "out ")
-                )
-                yield Outcome(
-                    found["key"],
-                    found["state"],
-                    found["id"],
-                    found["message"],
-                    found["seconds"],
-                    inputs,
-                    outputs,
-                )
+            for *head, layout, data in rows:
+                yield layouts[layout].outcome(head, data)
+
+    def _read_layouts(self) -> dict[int, Layout]:
+        rows = self._db.execute("SELECT layout, names FROM layouts")
+        return {number: Layout(*json.loads(names)) for number, names in rows}
 
     def results(self) -> Results:
         """The table of the plan, in its order."""
-        with self._named():
-            columns = [row[1] for row in self._db.execute("PRAGMA table_info(results)")]
-            names = [n for n in columns if n.startswith(("in ", "out "))]
-            keys = _keys(self._db.execute("SELECT key FROM cases ORDER BY position"))
+        # One state of the file, although a run may be adding to it.
+        with self._at_once():
+            rows = self._db.execute("SELECT key FROM cases ORDER BY position")
+            keys = _texts(list(chain.from_iterable(rows)))
             # The rows of results are in the order of their keys: no join of a million texts.
-            known = _keys(self._db.execute("SELECT key FROM results ORDER BY key"))
-            selected = ", ".join(_column("", n) for n in ("seconds", *names))
-            numbers = _numbers(
-                self._db.execute(f"SELECT {selected} FROM results ORDER BY key"), 1 + len(names)
-            )
+            known, seconds, numbers = self._numbers()
             texts = self._db.execute(
                 f"SELECT key, state, id, message FROM results WHERE state <> '{DONE}'"
                 " OR id <> '' OR message <> ''"
@@ -346,9 +386,17 @@ class Store:
                 column[at] = said
         # The row behind the last is that of a case without a result.
         states[-1] = PENDING
-        numbers = np.concatenate([numbers, np.full((1, 1 + len(names)), np.nan)])
         row = np.where(has, row, len(known))
-        values = {name: numbers[row, k] for k, name in enumerate(names, start=1)}
+        inputs: dict[str, Floats] = {}
+        outputs: dict[str, Floats] = {}
+        slopes: dict[str, dict[str, Floats]] = {}
+        for (kind, name, by), values in numbers.items():
+            column = values[row]
+            if kind == "out":
+                outputs[name] = column
+            elif not np.isnan(column).all():
+                # Not of another plan of the store.
+                (inputs if kind == "in" else slopes.setdefault(name, {}))[by] = column
         facts = self.facts()
         objectives = json.loads(facts.get("objectives", "{}"))
         held, best = (
@@ -358,16 +406,45 @@ class Store:
             for name in ("feasible", "front")
         )
         return Results(
-            {n.removeprefix("in "): v for n, v in values.items() if n.startswith("in ")},
-            {n.removeprefix("out "): v for n, v in values.items() if n.startswith("out ")},
+            inputs,
+            outputs,
             states[row],
             ids[row],
             messages[row],
-            numbers[row, 0],
+            seconds[row],
             objectives,
             held,
             best if len(objectives) > 1 else None,
+            slopes,
         )
+
+    def _numbers(self) -> tuple[NDArray[np.bytes_], Floats, dict[tuple[str, str, str], Floats]]:
+        """Keys, seconds and columns of all results by key, and a row without numbers at the end."""
+        layouts = self._read_layouts()
+        names = dict.fromkeys(name for layout in layouts.values() for name in layout.columns())
+        keys, seconds = [_texts([])], []
+        parts: dict[int, list[bytes]] = {number: [] for number in layouts}
+        places: dict[int, list[NDArray[np.int64]]] = {number: [] for number in layouts}
+        rows = self._db.execute("SELECT key, seconds, layout, numbers FROM results ORDER BY key")
+        count = 0
+        while part := rows.fetchmany(ROWS_AT_ONCE):
+            texts, times, which, data = zip(*part, strict=True)
+            keys.append(_texts(texts))
+            seconds.append(np.array(times))
+            kinds = np.array(which)
+            for number in set(which):
+                own = kinds == number
+                parts[number].append(b"".join(compress(data, own.tolist())))
+                places[number].append(count + np.flatnonzero(own))
+            count += len(part)
+        found = {name: np.full(count + 1, np.nan) for name in names}
+        for number, blobs in parts.items():
+            if blobs:
+                at = np.concatenate(places[number])
+                table = np.frombuffer(b"".join(blobs), "<f8").reshape(len(at), -1)
+                for name, column in zip(layouts[number].columns(), table.T, strict=True):
+                    found[name][at] = column
+        return np.concatenate(keys), np.concatenate([*seconds, [np.nan]]), found
 
     def close(self) -> None:
         """Releases the file."""
@@ -392,17 +469,8 @@ class Store:
         self.close()
 
 
-def _keys(rows: sqlite3.Cursor) -> NDArray[np.bytes_]:
-    found = np.array([key for (key,) in rows], dtype=np.bytes_)
-    return found if found.size else np.empty(0, dtype="S1")
-
-
-def _numbers(rows: sqlite3.Cursor, columns: int) -> Floats:
-    """Rows of numbers; NULL is NaN. Tuples of few rows at a time: they are large."""
-    parts = [np.empty((0, columns))]
-    while part := rows.fetchmany(ROWS_AT_ONCE):
-        parts.append(np.array(part, dtype=np.float64))
-    return np.concatenate(parts)
+def _texts(keys: Sequence[str]) -> NDArray[np.bytes_]:
+    return np.array(keys, dtype=np.bytes_) if keys else np.empty(0, dtype="S1")
 
 
 class _Named:
@@ -449,6 +517,8 @@ class Results:
     """Mask of the points that satisfy the constraints of an optimisation, ``(cases,)``."""
     front: NDArray[np.bool_] | None = None
     """The points of the Pareto front of several objectives, ``(cases,)``."""
+    derivatives: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    """Derivatives of the outputs that have some, by output and input, ``(cases,)`` each."""
 
     def __len__(self) -> int:
         return len(self.state)
@@ -465,8 +535,14 @@ class Results:
         return found
 
     def columns(self) -> dict[str, Any]:
-        """All columns by name: inputs, outputs, state, id, message; feasible and front if known."""
+        """All columns by name.
+
+        Inputs, outputs, derivatives (``d output / d input``), state, id, message; feasible and
+        front if known.
+        """
         columns: dict[str, Any] = {**self.inputs, **self.outputs}
+        for name, row in self.derivatives.items():
+            columns |= {f"d {name} / d {by}": values for by, values in row.items()}
         columns |= {"state": self.state, "id": self.id, "message": self.message}
         for name, chosen in (("feasible", self.feasible), ("front", self.front)):
             if chosen is not None and name not in columns:
