@@ -403,5 +403,5 @@ def test_a_curve_is_picked_in_the_picture(desk: Callable[..., DeskHand]) -> None
     x, y, _ = places[np.argmin(abs(places[:, 0] - 3.5))]
     d.page.mouse.click(x3 + (x - 3) * (x4 - x3), y3 + y / 0.2 * (y4 - y3))
     d.page.get_by_role("button", name="Fair on the desk").click()
-    d.page.wait_for_function("() => window.moldloft.desk && window.moldloft.desk.look().session")
+    d.until(lambda: d.look()["session"], 120)
     assert d.look()["facts"]["title"] == "rail"
