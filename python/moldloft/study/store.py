@@ -64,7 +64,7 @@ class Outcome:
     """Derivatives of the outputs that have some, by output and input."""
 
 
-class Layout:
+class RowLayout:
     """The names of a case's numbers, which are one value of the file: SQLite has 2000 columns.
 
     Parameters
@@ -79,7 +79,7 @@ class Layout:
         self.inputs, self.outputs, self.derived = tuple(inputs), tuple(outputs), tuple(derived)
 
     @classmethod
-    def of(cls, found: Outcome) -> Layout:
+    def of(cls, found: Outcome) -> RowLayout:
         """The layout of an outcome."""
         return cls(tuple(found.inputs), tuple(found.outputs), tuple(found.derivatives))
 
@@ -257,7 +257,7 @@ class Store:
         outcome
             The case with its state and numbers; it replaces an earlier one of the same key.
         """
-        layout = Layout.of(outcome)
+        layout = RowLayout.of(outcome)
         text = layout.text
         with self._named():
             if text not in self._layouts:
@@ -355,9 +355,9 @@ class Store:
             for *head, layout, data in rows:
                 yield layouts[layout].outcome(head, data)
 
-    def _read_layouts(self) -> dict[int, Layout]:
+    def _read_layouts(self) -> dict[int, RowLayout]:
         rows = self._db.execute("SELECT layout, names FROM layouts")
-        return {number: Layout(*json.loads(names)) for number, names in rows}
+        return {number: RowLayout(*json.loads(names)) for number, names in rows}
 
     def results(self) -> Results:
         """The table of the plan, in its order."""
