@@ -39,12 +39,19 @@ impl SketchFace {
 }
 
 /// The point whose coordinates are given outright.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// The point.
     pub point: PointId,
     /// Coordinates.
-    pub at: [f64; 3],
+    pub at: [DimensionExpr; 3],
+}
+
+impl Reference {
+    /// A point at plain numbers.
+    pub fn number(point: PointId, at: [f64; 3]) -> Reference {
+        Reference { point, at: at.map(DimensionExpr::number) }
+    }
 }
 
 /// An object.
@@ -192,9 +199,9 @@ impl SketchObject {
     /// The reference point and where it is.
     pub fn reference(&self) -> Option<Reference> {
         let first = self.drawing.points.keys().next();
-        self.reference
+        (self.reference.clone())
             .filter(|r| self.drawing.points.contains_key(&r.point))
-            .or_else(|| first.map(|&point| Reference { point, at: [0.0; 3] }))
+            .or_else(|| first.map(|&point| Reference::number(point, [0.0; 3])))
     }
 
     /// The first unused `prefix` + number among dimensions, variables and curves.
@@ -255,7 +262,7 @@ impl SketchObject {
             stays
         });
         self.faces.retain(|_, f| f.loops().all(|cycle| cycle.iter().all(point)));
-        if self.reference.is_some_and(|r| !point(&r.point)) {
+        if self.reference.as_ref().is_some_and(|r| !point(&r.point)) {
             self.reference = None;
         }
         gone

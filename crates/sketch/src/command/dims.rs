@@ -8,7 +8,7 @@ use super::question::Question;
 use super::session::{CommandReply, SketchSession};
 use super::subject::{ReplySubject, all_missing};
 use super::words::{Command, CommandToken, CommandTokenKind, UNITS};
-use crate::dimension::layout::agree;
+use crate::dimension::layout::{REFERENCE_NAME, agree};
 use crate::{
     CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionRole, MeasuredQuantity,
     Naming, PointId, Reference, SketchObject, Variable, chain, chain_text,
@@ -91,7 +91,7 @@ impl SketchSession {
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let planes = &view.planes;
-        let number = value.eval(&|n| layout.values.get(n).copied());
+        let number = value.eval(&|n| self.known_number(&object, &layout, n));
         if planes.same(axis, p, q) {
             let zero = number.as_ref().is_ok_and(|x| *x == 0.0);
             if zero {
@@ -320,7 +320,7 @@ impl SketchSession {
         /// Smaller gaps, as a part of the drawing, say nothing.
         const CLEAR: f64 = 0.02;
         let (view, layout) = self.laid_out(object);
-        let Ok(asked) = value.eval(&|n| layout.values.get(n).copied()) else { return };
+        let Ok(asked) = value.eval(&|n| self.known_number(object, &layout, n)) else { return };
         let planes = &view.planes;
         let (Some(e), Some(a), Some(b)) =
             (view.estimate(), planes.plane(axis, p), planes.plane(axis, q))
@@ -628,25 +628,43 @@ impl SketchSession {
     }
 
     pub(super) fn reference(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        let point = args.point()?;
+        let placed = self.reference_at(args)?;
         let object = self.active()?.clone();
-        require_point(&object, point)?;
-        let mut at = object.reference().map_or([0.0; 3], |r| r.at);
+        let object = SketchObject { reference: Some(placed), ..object };
+        let own = |fault: &DimensionFault| match fault {
+            DimensionFault::NoValue { name, .. } | DimensionFault::NotFinite { name } => {
+                name == REFERENCE_NAME
+            }
+            _ => false,
+        };
+        let mut faults = self.laid_out(&object).1.faults.into_iter();
+        if let Some(fault) = faults.find(own) {
+            return Err(dimension_fault(&fault));
+        }
+        self.replace_active(Arc::new(object));
+        Ok(())
+    }
+
+    /// A point and its coordinates; in a section those of its plane are enough.
+    pub(super) fn reference_at(&mut self, args: &mut Args) -> Result<Reference, CommandError> {
+        let point = args.point()?;
+        let object = self.active()?;
+        require_point(object, point)?;
         let mut given = Vec::new();
-        while args.at_number() && given.len() < 3 {
-            given.push(args.number("a coordinate")?);
+        while args.len() > 0 && given.len() < 3 {
+            given.push(args.value(object.units.as_deref())?);
         }
         args.end()?;
-        match (object.drawing.section, given[..].len()) {
-            (_, 3) => at.copy_from_slice(&given),
+        let mut placed = object.reference().unwrap_or_else(|| Reference::number(point, [0.0; 3]));
+        placed.point = point;
+        match (object.drawing.section, given.len()) {
+            (_, 3) => placed.at.iter_mut().zip(given).for_each(|(own, x)| *own = x),
             (Some(normal), 2) => {
-                let plane = CoordinateAxis::ALL.into_iter().filter(|a| *a != normal);
-                plane.zip(&given).for_each(|(a, x)| at[a.index()] = *x);
+                normal.others().into_iter().zip(given).for_each(|(a, x)| placed.at[a.index()] = x);
             }
             _ => return Err(args.wants("three coordinates")),
         }
-        self.active_mut()?.reference = Some(Reference { point, at });
-        Ok(())
+        Ok(placed)
     }
 
     pub(super) fn reverse(&mut self, args: &mut Args) -> Result<(), CommandError> {

@@ -220,7 +220,7 @@ impl SketchSession {
             return Ok(());
         };
         let at = CoordinateAxis::ALL.map(|a| drawing.drawn_coordinate(a, point).unwrap_or(0.0));
-        self.active_mut()?.reference = Some(crate::Reference { point, at });
+        self.active_mut()?.reference = Some(crate::Reference::number(point, at));
         Ok(())
     }
 
@@ -266,8 +266,14 @@ impl SketchSession {
         Ok(())
     }
 
-    /// `GIVE name measure = value [ONLY]`: a dimension exactly as it is, for files.
+    /// `GIVE name measure = value [ONLY]`: a dimension exactly as it is, for files; `GIVE REFERENCE p = x y z`: the
+    /// reference point.
     pub(super) fn give(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        if args.tokens_at(0, "REFERENCE") && args.number_at(1) {
+            args.skip();
+            self.active_mut()?.reference = Some(self.reference_at(args)?);
+            return Ok(());
+        }
         let name = self.new_name(args)?;
         let object = self.active()?.clone();
         let line = |args: &mut Args| -> Result<crate::LineId, CommandError> {
@@ -491,8 +497,8 @@ fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
     for (id, l) in b.lines.iter().filter(|(id, _)| !a.lines.contains_key(id)) {
         out.push(format!("LINE {id} FROM {} TO {}", l.p, l.q));
     }
-    if let Some(r) = now.reference.filter(|r| before.reference != Some(*r)) {
-        out.push(format!("REFERENCE {} {}", r.point, r.at.map(plain).join(" ")));
+    if now.reference != before.reference {
+        out.extend(now.reference.as_ref().map(crate::format::script::reference_text));
     }
     for v in now.variables.values().filter(|v| !before.has_name(&v.name)) {
         out.push(format!("VARIABLE {} {}", v.name, v.value.text()));

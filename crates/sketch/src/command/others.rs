@@ -3,7 +3,7 @@
 use super::session::{SessionState, SketchSession};
 use crate::identifier::identifier;
 use crate::solid::feature::foreign;
-use crate::{DimensionExpr, SketchObject, numbers};
+use crate::{DimensionExpr, DimensionLayout, SketchObject, numbers};
 use moldloft_num::Real;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,6 +63,21 @@ impl SessionState {
 }
 
 impl SketchSession {
+    /// The value that a name in the expressions of an object has now: of its own numbers, or of another object's.
+    pub(super) fn known_number(
+        &self,
+        object: &SketchObject,
+        layout: &DimensionLayout<f64>,
+        name: &str,
+    ) -> Option<f64> {
+        let own = layout.values.get(name).copied();
+        own.or_else(|| {
+            let (of, number) = name.split_once('.').filter(|_| !object.has_name(name))?;
+            let other = self.state.called(of)?;
+            numbers(other, &self.state.others(other)).get(number).copied()
+        })
+    }
+
     /// Objects that read numbers of one, with the names.
     pub(super) fn readers(&self, name: &str) -> Vec<(String, Vec<String>)> {
         let prefix = format!("{}.", identifier(name).to_ascii_lowercase());
@@ -108,5 +123,5 @@ fn expressions_of(object: &mut SketchObject) -> impl Iterator<Item = &mut Dimens
         .curves
         .values_mut()
         .flat_map(|c| c.radius.iter_mut().chain(c.semi.iter_mut().flatten()));
-    values.chain(sizes)
+    values.chain(sizes).chain(object.reference.iter_mut().flat_map(|r| &mut r.at))
 }

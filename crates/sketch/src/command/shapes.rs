@@ -6,8 +6,8 @@ use super::args::Args;
 use super::session::{CommandReply, SketchSession};
 use super::subject::ReplySubject;
 use super::{verbs, words};
-use crate::dimension::expr::DimensionExpr;
-use crate::{CoordinateAxis, PointId};
+use crate::format::script::quoted;
+use crate::{CoordinateAxis, DimensionExpr, PointId, Reference};
 use moldloft_num::Real;
 use moldloft_syntax::number::plain;
 use std::f64::consts::TAU;
@@ -68,7 +68,7 @@ impl SketchSession {
         let mut text = String::new();
         for stem in stems {
             let value = args.value(units)?;
-            let size = now(&value, &|name| layout.values.get(name).copied())?;
+            let size = now(&value, &|name| self.known_number(&object, &layout, name))?;
             if !(size > 0.0 && size.is_finite()) {
                 let text = format!("a {} of {}", stem.to_lowercase(), plain(size));
                 return Err(CommandError::text(text, "give more than 0"));
@@ -79,8 +79,8 @@ impl SketchSession {
             names.push(name);
         }
         let at = match args.take_short("AT") {
-            true => Some([args.value(units)?, args.value(units)?]),
-            false => None,
+            true => [args.value(units)?, args.value(units)?],
+            false => [0.0; 2].map(DimensionExpr::number),
         };
         args.end()?;
         let first = object.drawing.next_point().0;
@@ -88,16 +88,12 @@ impl SketchSession {
         let numbers = names.iter().cloned().zip(drawn.iter().copied()).collect();
         let mut outline = SectionOutline { text, points, axes: normal.others(), numbers };
         // What has a centre is placed by it.
-        let from_centre = match verb {
-            "CIRCLE" => Some(["-0.5", "-0.5"]),
-            "POLYGON" => Some(["+0.5", "+0"]),
-            _ => None,
+        let at = match verb {
+            "CIRCLE" => shifted(at, ["-0.5", "-0.5"], &names[0])?,
+            "POLYGON" => shifted(at, ["+0.5", "+0"], &names[0])?,
+            _ => at,
         };
-        let at = match (at, from_centre) {
-            (Some(at), Some(shares)) => Some(shifted(at, shares, &names[0])?),
-            (at, _) => at,
-        };
-        let start = self.start(&mut outline, at.as_ref())?;
+        let start = self.start(&mut outline, &at)?;
         match verb {
             "POLYGON" => outline.polygon(start, drawn[0], &names[0]),
             _ => {
@@ -137,11 +133,12 @@ impl SketchSession {
         Ok(())
     }
 
-    /// The page coordinates of a shape's first point, which `at` places relative to the section's reference point.
+    /// The page coordinates of a shape's first point, which `at` places from the origin. The first shape of a section
+    /// has the reference point, the others are dimensioned from it.
     fn start(
         &mut self,
         outline: &mut SectionOutline,
-        at: Option<&[DimensionExpr; 2]>,
+        at: &[DimensionExpr; 2],
     ) -> Result<[f64; 2], CommandError> {
         let object = self.active()?.clone();
         let first = outline.points[0];
@@ -149,53 +146,38 @@ impl SketchSession {
         let own = |name: &str| {
             outline.numbers.iter().find(|n| n.0.eq_ignore_ascii_case(name)).map(|n| n.1)
         };
-        let known = |name: &str| own(name).or_else(|| layout.values.get(name).copied());
+        let known = |name: &str| own(name).or_else(|| self.known_number(&object, &layout, name));
+        let place = [now(&at[0], &known)?, now(&at[1], &known)?];
         let Some(reference) = object.reference() else {
-            // The first shape of the section stays where it is put.
-            let Some(at) = at else { return Ok([0.0; 2]) };
-            if let Some(e) = at.iter().find(|e| e.names().any(|n| own(n).is_none())) {
-                return Err(CommandError::text(
-                    format!("{e} places the first outline of a section, which has a fixed place"),
-                    "give a number, and MOVE the finished body by the expression",
-                ));
+            let mut xyz = [0.0; 3].map(DimensionExpr::number);
+            for (axis, e) in outline.axes.into_iter().zip(at) {
+                xyz[axis.index()] = e.clone();
             }
-            let (p, q) = (now(&at[0], &known)?, now(&at[1], &known)?);
-            let mut xyz = [0.0; 3];
-            for (axis, x) in outline.axes.into_iter().zip([p, q]) {
-                xyz[axis.index()] = x;
+            let placed = Reference { point: first, at: xyz };
+            if placed != Reference::number(first, [0.0; 3]) {
+                let at = placed.at.each_ref().map(|e| quoted(e.text()));
+                outline.text += &format!("REFERENCE {first} {}\n", at.join(" "));
             }
-            outline.text += &format!("REFERENCE {first} {}\n", xyz.map(plain).join(" "));
-            return Ok([p, q]);
+            return Ok(place);
         };
         let origin = object.drawing.points[&reference.point];
         let mut page = [origin.u, origin.v];
-        let zero = [DimensionExpr::number(0.0), DimensionExpr::number(0.0)];
-        let at = at.unwrap_or(&zero);
         for (k, axis) in outline.axes.into_iter().enumerate() {
-            // From the reference point, which need not be at the origin.
-            let shift = reference.at[axis.index()];
-            let by = now(&at[k], &known)? - shift;
-            let text = match shift == 0.0 {
-                true => at[k].text().to_owned(),
-                false => format!("({})-({})", at[k].text(), plain(shift)),
+            let from = &reference.at[axis.index()];
+            let by = place[k] - now(from, &known)?;
+            let text = match from.literal() {
+                Some(0.0) => at[k].text().to_owned(),
+                Some(_) | None => format!("({})-({from})", at[k]),
             };
             page[k] += by;
             let point = reference.point;
-            outline.text += &if by > 0.0 {
-                format!("DIMENSION {axis} {point} {first} \"{text}\"\n")
+            let fixed = at[k].literal().is_some() && from.literal().is_some();
+            outline.text += &if by == 0.0 && fixed {
+                format!("ALIGN {axis} {point} {first}\n")
             } else if by < 0.0 {
                 format!("DIMENSION {axis} {first} {point} \"-({text})\"\n")
-            } else if at[k].literal().is_some() {
-                format!("ALIGN {axis} {point} {first}\n")
             } else {
-                return Err(CommandError::text(
-                    format!(
-                        "{} is {} now: on neither side of the section's first point",
-                        at[k],
-                        plain(shift)
-                    ),
-                    "give a number, or another value",
-                ));
+                format!("DIMENSION {axis} {point} {first} \"{text}\"\n")
             };
         }
         Ok(page)

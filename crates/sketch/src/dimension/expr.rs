@@ -103,6 +103,27 @@ impl DimensionExpr {
         }
     }
 
+    /// The same plus a number.
+    pub fn plus(&self, shift: f64) -> DimensionExpr {
+        match self.literal() {
+            Some(x) => DimensionExpr::number(x + shift),
+            None => self.within(&format!("({self})+({})", moldloft_syntax::number::plain(shift))),
+        }
+    }
+
+    /// The same times a number.
+    pub fn times(&self, factor: f64) -> DimensionExpr {
+        match self.literal() {
+            Some(x) => DimensionExpr::number(x * factor),
+            None => self.within(&format!("({self})*({})", moldloft_syntax::number::plain(factor))),
+        }
+    }
+
+    /// A text with this expression in it; two of them parse if each does.
+    fn within(&self, text: &str) -> DimensionExpr {
+        DimensionExpr::parse(text).unwrap_or_else(|_| self.clone())
+    }
+
     /// The names it reads, in lower case.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.ops.iter().filter_map(|op| match op {

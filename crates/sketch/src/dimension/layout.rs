@@ -201,6 +201,9 @@ impl DimensionGraph {
 /// Not a dimension but the reference point.
 const REFERENCE: usize = usize::MAX;
 
+/// Its name among those of dimensions.
+pub(crate) const REFERENCE_NAME: &str = "REFERENCE";
+
 /// The two nodes that a dimension joins on its axis, from and to; the ground is node `planes`.
 fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(CoordinateAxis, usize, usize)> {
     match *measure {
@@ -243,7 +246,7 @@ pub fn chain(
                 _ => continue,
             },
             None => match object.reference() {
-                Some(r) => (r.point, r.point, "REFERENCE".to_owned()),
+                Some(r) => (r.point, r.point, REFERENCE_NAME.to_owned()),
                 None => continue,
             },
         };
@@ -301,6 +304,7 @@ pub fn solve<T: Real>(
     estimate: &dyn Fn() -> Option<Estimate>,
 ) -> DimensionLayout<T> {
     let (values, mut faults) = evaluate(object, overrides);
+    let origin = origin(object, &values, &mut faults);
     let (graphs, closing) = graphs(object, planes);
     let value = |k: usize| -> Option<T> {
         let (key, _) = object.dimensions.get_index(k)?;
@@ -326,11 +330,7 @@ pub fn solve<T: Real>(
                     if offset[to].is_some() {
                         continue;
                     }
-                    let step = if d == REFERENCE {
-                        object.reference().map(|r| T::from(r.at[k]))
-                    } else {
-                        value(d)
-                    };
+                    let step = if d == REFERENCE { origin[k] } else { value(d) };
                     // A dimension without a value leaves its far side open.
                     let Some(step) = step else { continue };
                     let there = if forward { here + step } else { here - step };
@@ -382,10 +382,7 @@ pub fn solve<T: Real>(
         for (d, forward) in graphs[axis.index()].path(a, b) {
             let (name, step) = match object.dimensions.get_index(d) {
                 Some((key, d)) => (d.name.clone(), layout.values.get(key).copied()),
-                None => {
-                    let at = object.reference().map(|r| T::from(r.at[axis.index()]));
-                    ("REFERENCE".to_owned(), at)
-                }
+                None => (REFERENCE_NAME.to_owned(), origin[axis.index()]),
             };
             path.push(name);
             let step = step.unwrap_or_default();
@@ -415,6 +412,27 @@ pub fn numbers<T: Real>(
     overrides: &BTreeMap<String, T>,
 ) -> BTreeMap<String, T> {
     evaluate(object, overrides).0
+}
+
+/// The coordinates of the reference point, as far as they have values.
+fn origin<T: Real>(
+    object: &SketchObject,
+    values: &BTreeMap<String, T>,
+    faults: &mut Vec<DimensionFault>,
+) -> [Option<T>; 3] {
+    let Some(reference) = object.reference() else { return [None; 3] };
+    let name = || REFERENCE_NAME.to_owned();
+    reference.at.map(|e| match e.eval(&|name| values.get(name).copied()) {
+        Ok(x) if x.is_finite() => Some(x),
+        Ok(_) => {
+            faults.push(DimensionFault::NotFinite { name: name() });
+            None
+        }
+        Err(no) => {
+            faults.push(DimensionFault::NoValue { name: name(), reads: no.name });
+            None
+        }
+    })
 }
 
 /// Evaluates all variables and dimensions, each after those it reads.
@@ -525,7 +543,7 @@ fn evaluate<T: Real>(
 }
 
 /// The driving dimensions between two points as a sum of names; `None` when they are not connected,
-/// or through given coordinates only.
+/// or through a reference at the origin only.
 pub fn chain_expression(
     object: &SketchObject,
     planes: &Planes,
@@ -537,15 +555,14 @@ pub fn chain_expression(
     let path = graphs(object, planes).0[axis.index()].path(a, b);
     let mut sum = String::new();
     for (d, forward) in path {
-        // The reference is a number, and so are given coordinates.
         let term = match object.dimensions.get_index(d) {
             Some((_, dimension)) => dimension.name.clone(),
             None => {
-                let at = object.reference()?.at[axis.index()];
-                if at == 0.0 {
+                let at = &object.reference()?.at[axis.index()];
+                if at.literal() == Some(0.0) {
                     continue;
                 }
-                format!("({})", moldloft_syntax::number::plain(at))
+                format!("({at})")
             }
         };
         sum.push_str(match (forward, sum.is_empty()) {

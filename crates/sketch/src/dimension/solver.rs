@@ -129,8 +129,8 @@ pub(crate) fn solve_derived<T: Real>(
                 }
                 sum / n
             });
-            let origin = object.reference().map_or(0.0, |r| r.at[axis.index()]);
-            at + origin
+            let origin = object.reference().and_then(|r| layout.coordinate(planes, *axis, r.point));
+            at + origin.map_or(0.0, T::re)
         };
         let x: Vec<f64> = unknowns.iter().map(|&u| start(&floating[u])).collect();
         let mut system = System {

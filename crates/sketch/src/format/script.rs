@@ -5,7 +5,8 @@ use crate::feature::{
 };
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
-    CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, SketchObject,
+    CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, Reference,
+    SketchObject,
 };
 use moldloft_syntax::number::plain;
 use std::fmt::Write;
@@ -293,8 +294,8 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     for a in &drawing.aligns {
         writeln!(out, "ALIGN {} {} {}", a.axis, a.p, a.q)?;
     }
-    if let Some(r) = object.reference {
-        writeln!(out, "REFERENCE {} {}", r.point, r.at.map(plain).join(" "))?;
+    if let Some(r) = &object.reference {
+        writeln!(out, "{}", reference_text(r))?;
     }
     for v in object.variables.values() {
         writeln!(out, "DECLARE {} {}{}", v.name, quoted(v.value.text()), range_text(v.range))?;
@@ -321,6 +322,14 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
         writeln!(out, "ERASE {}", quoted(&object.name))?;
     }
     writeln!(out, "END")
+}
+
+/// Expressions may read names that come later.
+pub(crate) fn reference_text(r: &Reference) -> String {
+    let plain = r.at.iter().all(|e| e.literal().is_some());
+    let word = if plain { "REFERENCE" } else { "GIVE REFERENCE" };
+    let at = r.at.each_ref().map(|e| quoted(e.text()));
+    format!("{word} {} {}", r.point, at.join(" "))
 }
 
 pub(crate) fn curve_text(c: &SketchCurve) -> String {

@@ -783,7 +783,9 @@ pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let feature = object.feature.iter();
     let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
     let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
-    let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
+    let reference = object.reference.iter().flat_map(|r| &r.at);
+    let own =
+        values.chain(sizes).chain(reference).flat_map(names).chain(kinds.iter().flat_map(names));
     // References of its operands are references of the feature, and so are the numbers of those that it follows.
     let inner = feature.clone().flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
     let follows = feature.flat_map(|f| &f.operands).filter(|o| o.follows).flat_map(|o| {

@@ -8,7 +8,6 @@ use crate::{
     Reference, SketchObject, Variable,
 };
 use moldloft_num::Vec3;
-use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -44,7 +43,7 @@ pub fn merge(
     let mut out = SketchObject::new(name, None);
     let mut report = MergeReport::default();
     let mut placed: Vec<(PointId, Vec3)> = Vec::new();
-    let mut references: Vec<(String, PointId, Vec3)> = Vec::new();
+    let mut references: Vec<(String, Reference)> = Vec::new();
     for (k, part) in parts.iter().enumerate() {
         let old = part.object;
         if k == 0 {
@@ -124,22 +123,21 @@ pub fn merge(
             }
         }
         if let Some(r) = old.reference() {
-            references.push((prefix, number[&r.point], r.at.into()));
+            let at = r.at.map(|e| e.renamed(&own));
+            references.push((prefix, Reference { point: number[&r.point], at }));
         }
     }
-    if let Some((_, point, at)) = references.first() {
-        out.reference = Some(Reference { point: *point, at: at.to_array() });
-    }
+    out.reference = references.first().map(|(_, first)| first.clone());
     settle(&mut out, &mut report, solve);
     // Coordinates without a common plane keep the position of their own reference.
-    for (prefix, point, at) in references.iter().skip(1) {
+    for (prefix, Reference { point, at }) in references.iter().skip(1) {
         for axis in CoordinateAxis::ALL {
             let planes = Planes::of(&out.drawing);
             if solve(&out).coordinate(&planes, axis, *point).is_none() {
                 out.add_dimension(Dimension {
                     name: format!("{prefix}ref_{}", axis.letter().to_ascii_lowercase()),
                     measure: MeasuredQuantity::Datum { axis, point: *point },
-                    value: Some(DimensionExpr::number(at[axis.index()])),
+                    value: Some(at[axis.index()].clone()),
                     role: DimensionRole::Driving,
                     range: None,
                 });
@@ -219,10 +217,20 @@ pub fn clean(
     }
     let Some(reference) = object.reference() else { return out };
     // The reference must stay: it moves to another corner.
+    let old_planes = Planes::of(&object.drawing);
     if gone.contains(&reference.point)
         && let Some((&point, p)) = at.iter().find(|(p, _)| !gone.contains(p))
     {
-        out.reference = Some(Reference { point, at: p.to_array() });
+        let coordinate = |axis: CoordinateAxis| {
+            let here = &reference.at[axis.index()];
+            if old_planes.same(axis, reference.point, point) {
+                return here.clone();
+            }
+            let way = chain_expression(object, &old_planes, axis, reference.point, point);
+            way.and_then(|way| DimensionExpr::parse(&format!("({here}) + ({way})")).ok())
+                .unwrap_or_else(|| DimensionExpr::number(p[axis.index()]))
+        };
+        out.reference = Some(Reference { point, at: CoordinateAxis::ALL.map(coordinate) });
     }
     let doomed: Vec<String> = (object.dimensions.iter())
         .filter(|(_, d)| match d.measure {
@@ -241,7 +249,7 @@ pub fn clean(
     }
     out.drop_dangling();
     out.faces.clear();
-    let (old_planes, new_planes) = (Planes::of(&object.drawing), Planes::of(&out.drawing));
+    let new_planes = Planes::of(&out.drawing);
     let Some(from) = out.reference() else { return out };
     for axis in CoordinateAxis::ALL {
         let mut seen: Vec<usize> = Vec::new();
@@ -333,14 +341,6 @@ pub fn extrude(section: &SketchObject, name: &str, value: DimensionExpr) -> Opti
     Some(out)
 }
 
-fn product(e: &DimensionExpr, factor: f64) -> DimensionExpr {
-    match e.literal() {
-        Some(x) => DimensionExpr::number(x * factor),
-        None => DimensionExpr::parse(&format!("({e})*({})", plain(factor)))
-            .unwrap_or_else(|_| e.clone()),
-    }
-}
-
 /// Every length times a positive factor.
 pub fn scaled(object: &SketchObject, factor: f64) -> SketchObject {
     let mut out = object.clone();
@@ -351,16 +351,16 @@ pub fn scaled(object: &SketchObject, factor: f64) -> SketchObject {
                 | MeasuredQuantity::Datum { .. }
                 | MeasuredQuantity::Length(_)
         ) {
-            d.value = d.value.as_ref().map(|v| product(v, factor));
+            d.value = d.value.as_ref().map(|v| v.times(factor));
             d.range = d.range.map(|r| r.map(|x| x * factor));
         }
     }
     for c in out.curves.values_mut() {
-        c.radius = c.radius.as_ref().map(|r| product(r, factor));
-        c.semi = c.semi.as_ref().map(|s| [product(&s[0], factor), product(&s[1], factor)]);
+        c.radius = c.radius.as_ref().map(|r| r.times(factor));
+        c.semi = c.semi.as_ref().map(|[a, b]| [a.times(factor), b.times(factor)]);
     }
     if let Some(r) = object.reference() {
-        out.reference = Some(Reference { at: r.at.map(|x| x * factor), ..r });
+        out.reference = Some(Reference { at: r.at.each_ref().map(|e| e.times(factor)), ..r });
     }
     out
 }
@@ -369,17 +369,12 @@ pub fn scaled(object: &SketchObject, factor: f64) -> SketchObject {
 pub fn moved(object: &SketchObject, by: Vec3) -> SketchObject {
     let mut out = object.clone();
     if let Some(r) = object.reference() {
-        let at = Vec3::from(r.at) + by;
-        out.reference = Some(Reference { at: at.to_array(), ..r });
+        let at = CoordinateAxis::ALL.map(|a| r.at[a.index()].plus(by[a.index()]));
+        out.reference = Some(Reference { at, ..r });
     }
     for d in out.dimensions.values_mut() {
         if let (MeasuredQuantity::Datum { axis, .. }, Some(v)) = (d.measure, &d.value) {
-            let shift = by[axis.index()];
-            d.value = Some(match v.literal() {
-                Some(x) => DimensionExpr::number(x + shift),
-                None => DimensionExpr::parse(&format!("({v})+({})", plain(shift)))
-                    .unwrap_or_else(|_| v.clone()),
-            });
+            d.value = Some(v.plus(by[axis.index()]));
         }
     }
     out
@@ -392,14 +387,14 @@ pub fn mirrored(object: &SketchObject, axis: CoordinateAxis) -> SketchObject {
         match &mut d.measure {
             MeasuredQuantity::Along { axis: a, p, q } if *a == axis => std::mem::swap(p, q),
             MeasuredQuantity::Datum { axis: a, .. } if *a == axis => {
-                d.value = d.value.as_ref().map(|v| product(v, -1.0));
+                d.value = d.value.as_ref().map(|v| v.times(-1.0));
             }
             _ => {}
         }
     }
     if let Some(r) = object.reference() {
-        let mut at = r.at;
-        at[axis.index()] = -at[axis.index()];
+        let mut at = r.at.clone();
+        at[axis.index()] = at[axis.index()].times(-1.0);
         out.reference = Some(Reference { at, ..r });
     }
     out.faces = out.faces.iter().map(|(id, f)| (*id, f.reversed())).collect();
@@ -436,7 +431,7 @@ pub fn quarter_turned(object: &SketchObject, about: CoordinateAxis) -> SketchObj
         }
     }
     if let Some(r) = object.reference() {
-        let mut at = r.at;
+        let mut at = r.at.clone();
         at.swap(a.index(), b.index());
         out.reference = Some(Reference { at, ..r });
     }

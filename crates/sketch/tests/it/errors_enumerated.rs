@@ -232,7 +232,7 @@ const HOLED: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 100 0; POINT 3 100 80;
 const CASES: &[(&str, &str)] = &[
     (
         "SKETCH A 2D XY; RECTANGLE 4 4; EXTRUDE A 2; SKETCH D 2D XY",
-        "CIRCLE DIAMETER 2 AT \"A.WIDTH1/2\" 0",
+        "CIRCLE DIAMETER 2 AT \"A.WIDTH9/2\" 0",
     ),
     (DRILLED, "COPY D E; MOVE E 20 0 0; CUT P E INTO A"),
     (DRILLED, "COPY D F; MOVE F 20 0 0; CUT P F; RENAME P Q; RENAME F P"),
@@ -395,7 +395,7 @@ const CASES: &[(&str, &str)] = &[
     ("BOX", "HOLE B 0.2 AT 0.5 0.5 COUNTERBORE 0.2 0.1"),
     ("BOX", "HOLE B 0.2 AT 50 50"),
     ("", "SKETCH P 2D XY; POLYGON 2 5"),
-    ("", "SKETCH P 2D XY; RECTANGLE 5 4; SLOT 5 2 AT \"WIDTH1-5\" 1"),
+    ("", "SKETCH P 2D XY; RECTANGLE 5 4; REFERENCE 1 \"WIDTH1/0\" 1"),
     ("PYRAMID", "DRAFT P Z 5"),
     ("PYRAMID", "DRAFT P X 5"),
     ("ELL", "CHAMFER ELL 1 EDGES ALL INTO Q"),

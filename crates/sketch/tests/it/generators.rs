@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 pub fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
     let mut object = with_faces(cuboid(size));
     object.name = name.to_owned();
-    object.reference = Some(Reference { point: PointId(1), at });
+    object.reference = Some(Reference::number(PointId(1), at));
     object
 }
 

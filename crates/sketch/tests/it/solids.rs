@@ -43,7 +43,7 @@ fn mass_of_every_case() {
 #[test]
 fn inertia_of_a_box_is_the_textbook_one() {
     let mut object = with_faces(cuboid([10.0, 6.0, 4.0]));
-    object.reference = Some(Reference { point: PointId(1), at: [100.0, -20.0, 3.0] });
+    object.reference = Some(Reference::number(PointId(1), [100.0, -20.0, 3.0]));
     let mass = built(&object).mass();
     let expected = [240.0 * 52.0 / 12.0, 240.0 * 116.0 / 12.0, 240.0 * 136.0 / 12.0, 0.0, 0.0, 0.0];
     for (a, b) in mass.inertia.iter().zip(expected) {
