@@ -206,11 +206,16 @@ def folds(model: moldloft.Model) -> bool:
     """
     mesh = model.mesh()
     for patch in mesh.patches:
+        if patch.name not in model.objects or model[patch.name].kind != "RuledSurf":
+            continue
         a, b, c, d = (mesh.vertices[k] for k in mesh.faces[patch.start : patch.stop].T)
         normals = np.cross(c - a, d - b)
-        sizes = np.linalg.norm(normals, axis=1)
-        along = normals @ normals[np.argmax(sizes)] / sizes.max()
-        if np.abs(np.abs(along) - sizes).max() < 1e-9 * sizes.max() and along.min() < 0:
+        covered = np.linalg.norm(normals.sum(axis=0))
+        out = normals.sum(axis=0) / covered
+        plane = (
+            np.abs(np.linalg.norm(normals, axis=1) - np.abs(normals @ out)).max() < 1e-9 * covered
+        )
+        if plane and model[patch.name].area > (1 + 1e-9) * covered / 2:
             return True
     return False
 
