@@ -31,7 +31,7 @@ ENGINE := python/moldloft/workbench/wasm/engine.wasm.xz
 ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine living quick test check bits reference site release soak fuzz clean help
+.PHONY: setup demo optimised web engine living quick test check bits reference site release soak changes fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -148,6 +148,9 @@ bits: ## rewrites tests/bits.txt after a change of results
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
+
+changes: ## applies each patch of tests/changes to this clean tree, builds it, checks all faces of the addition
+	@$(PYTHON) tools/changes.py
 
 fuzz: $(VENV)/.with-tests ## coverage-guided fuzzing, SECONDS (600) for each target; needs a C++ compiler
 	@$(BIN)/python tools/fuzz.py --seconds $(or $(SECONDS),600)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from moldloft.arguments import explain, names_of
 from moldloft.errors import Error
@@ -31,6 +31,9 @@ __all__ = ["Floating"]
 #: Beyond it an angle is one in degrees.
 _MOST_TURN = 2 * math.pi + 1e-9
 
+#: Coordinates of the centre of buoyancy.
+_CENTRE = ("lcb", "tcb", "vcb", "kb")
+
 #: Figures that a skin has with water inside.
 _WHEN_FLOODED = frozenset(
     [
@@ -46,6 +49,23 @@ _WHEN_FLOODED = frozenset(
         "weight",
     ]
 )
+
+
+def _add_misses(answer: dict[str, Any], off: dict[str, float], images: int, water: float) -> None:
+    """Adds the misses of triangles to the bounds of a state's main figures.
+
+    Triangles beside whole surfaces leave slits along their common rim. The volumes along x, y and z
+    differ by them, which is the closure error.
+    """
+    bounds = answer["bounds"]
+    volume = off["volume"] * images + abs(answer["closure_error"] * answer["volume"])
+    misses = {"volume": volume, "displacement": volume * water, "wetted_area": off["area"] * images}
+    if answer["volume"]:
+        reach = off["reach"] + abs(answer["level"])
+        misses |= dict.fromkeys(_CENTRE, volume * reach / abs(answer["volume"]))
+    for name, miss in misses.items():
+        if name in bounds:
+            bounds[name] += miss
 
 
 class Floating:
@@ -376,7 +396,6 @@ class Floating:
         names, off = triangles_off(cast("Model", self))
         sets = faceted(cast("Model", self))
         images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
-        scales = {"volume": 1.0, "displacement": water or 1.0, "wetted_area": 1.0}
         partial = self._document.partial() and not self._document.is_whole()
         inner = [found.message for found in self._document.inner_skins()]
         for answer in answers:
@@ -390,10 +409,7 @@ class Floating:
             answer["faceted"] = sets
             if names:
                 answer["on_triangles"] = names
-                bounds = answer["bounds"]
-                for name, scale in scales.items():
-                    more = off["area" if name == "wetted_area" else "volume"] * images * scale
-                    bounds[name] = bounds.get(name, 0.0) + more
+                _add_misses(answer, off, images, water or 1.0)
             if sets or answer["open_edges"]:
                 answer["bounds"] = {}
             if water is None:

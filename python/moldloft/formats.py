@@ -43,7 +43,7 @@ class Format:
     """``panels``, ``panels, lines, points``, ``grids``, ``surfaces``, ``volumes``, ``drawing``,
     ``model`` or ``table``."""
     symmetry: str = ""
-    """The planes of symmetry that a file can name: ``y``; ``y, xy``; or ``x, y, xy``."""
+    """The planes of symmetry that a file can name: ``y``; ``y, xy``; ``x, y``; or ``x, y, xy``."""
     lids: bool = False
     """Lids are written only on request."""
     immersed: bool = False

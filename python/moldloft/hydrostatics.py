@@ -30,31 +30,45 @@ __all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 _RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
 
 
-def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
-    """Trimmed surfaces, with twice their faceting errors of volume and area.
+#: Kinds whose panels are triangles near a shape of known volume and area.
+_ON_TRIANGLES = ("TrimSurf", "MeshBody")
 
-    The triangles' figures are compared with the integrals over the surfaces themselves. Twice, as
-    what is missed above the water may cancel what is missed below.
+#: Misses of volume and area, relative to the body's, that are rounding.
+_ROUNDING = 1e-12
+
+
+def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
+    """Trimmed surfaces and round bodies of sketches, with the misses of their triangles.
+
+    The triangles' figures are compared with those of the shape. ``volume`` is twice the miss of the
+    cones, as what is missed above the water may cancel what is missed below, for bodies also that
+    of the area times their size, as bores may cancel bosses. ``area`` is twice the miss of the
+    areas; ``reach`` is the largest distance of the panels from the model's origin.
     """
     import numpy as np
 
     mesh = model.mesh()
     names: list[str] = []
     volume = area = 0.0
+    size = float(np.ptp(mesh.vertices, axis=0).max()) if len(mesh.vertices) else 0.0
     for patch in mesh.patches:
-        if patch.name not in model.objects or (part := model[patch.name]).kind != "TrimSurf":
+        if patch.name not in model.objects or (part := model[patch.name]).kind not in _ON_TRIANGLES:
             continue
-        names.append(patch.name)
-        corners = mesh.vertices[mesh.faces[patch.start : patch.stop, :3]]
-        cone = (
-            float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
-        )
+        corners = mesh.vertices[mesh.faces[patch.start : patch.stop]]
+        halves = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+        cross = np.cross(halves[:, 1], halves[:, 2])
+        cone = float(np.einsum("ij,ij->", halves[:, 0], cross)) / 6
         exact = float(np.ravel(model.eval(f"{patch.name}.volume"))[0])
         # Panels may run against the surface.
-        miss = min(exact - cone, -exact - cone, key=abs)
-        volume += abs(miss)
-        area += abs(part.area - patch.area)
-    return names, {"volume": 2 * volume, "area": 2 * area}
+        miss = abs(min(exact - cone, -exact - cone, key=abs))
+        less = abs(part.area - patch.area)
+        if part.kind == "MeshBody" and miss + less * size <= _ROUNDING * part.area * size:
+            continue
+        names.append(patch.name)
+        volume += 2 * miss + (less * size if part.kind == "MeshBody" else 0.0)
+        area += 2 * less
+    reach = float(np.linalg.norm(mesh.vertices, axis=1).max()) if names else 0.0
+    return names, {"volume": volume, "area": area, "reach": reach}
 
 
 def faceted(model: Model) -> list[str]:
@@ -197,8 +211,8 @@ class Hydrostatics:
     accuracy: float = 0.0
     """Requested relative accuracy."""
     on_triangles: list[str] = field(default_factory=list)
-    """Trimmed surfaces that are measured on the triangles of their panels. Their errors of volume
-    and area are estimated in ``bounds``.
+    """Trimmed surfaces and round bodies of sketches, which are measured on the triangles of their
+    panels. The errors of volume, area and centre are estimated in ``bounds``.
     """
     faceted: list[str] = field(default_factory=list)
     """Bodies of sets, which are measured on their facets. Their distance from the set is unknown,
@@ -236,8 +250,8 @@ class Hydrostatics:
             more = len(self.on_triangles) - 3
             named += f" and {more} more" if more > 0 else ""
             lines.append(
-                f"{named}: measured on the triangles of the panels, which more divisions (nu, nv, "
-                "rim) bring nearer to the surface"
+                f"{named}: measured on the triangles of the panels; their distance from the shape "
+                "is in the bounds"
             )
         if self.faceted:
             named = ", ".join(f"`{name}`" for name in self.faceted[:3])

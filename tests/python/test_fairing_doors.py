@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import re
 
 import numpy as np
 import pytest
 
 import moldloft
+from moldloft.cli import main
+from moldloft.language import reference
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
@@ -78,42 +81,199 @@ OPTIONS = {
 }
 
 
-def test_one_answer(cli, tmp_path):
-    """200 draws in a long run, each with the default or one of the options."""
-    for seed in range(200 if SOAK else len(OPTIONS)):
-        name = list(OPTIONS)[seed % len(OPTIONS)] if seed % 2 or not SOAK else "default"
-        text, options, words = OPTIONS[name]
+def listed(values):
+    return "{" + ", ".join(repr(float(x)) for x in values) + "}"
+
+
+def of_data(name, rows, tol):
+    """Options of which data are a part: text, options, words; values for files by their option."""
+    n = len(rows)
+    k, m = n // 3, 2 * n // 3
+    ring = np.linspace(0, 1, n + 1)
+    ring[1:-1] += 0.2 / n * np.sin(np.arange(1, n))
+    knots = np.r_[[0.0] * 3, np.linspace(0, 1, n - 2), [1.0] * 3]
+    knots[4:-4] += 0.2 / n * np.sin(np.arange(n - 4))
+    weights = 1 + 0.5 * np.sin(np.arange(n))
+    tols = tol * (1 + 0.5 * np.cos(np.arange(n)))
+    at = np.linspace(0, 1, n) ** 1.1
+    x, y = map(float, rows[k])
+    by = [float(d) for d in rows[m] - rows[k]]
+    local = {"as_": "control", "steps": 5}
+    return {
+        "breaks": (f"breaks = {{{k + 1}}}", {"breaks": [k]}, ["--breaks", str(k + 1)], {}),
+        "closed": ("closed = 1", {"closed": True}, ["--closed"], {}),
+        "fixed": (f"fixed = {{{k + 1}}}", {"fixed": [k]}, ["--fixed", str(k + 1)], {}),
+        "release": (f"release = {{{k + 1}}}", {"release": [k]}, ["--release", str(k + 1)], {}),
+        "through": (
+            f"through = {{{{{x!r}, {y!r}, 0}}}}, through_at = {{0.3}}",
+            {"through": [(0.3, rows[k])]},
+            ["--through", f"0.3={x!r},{y!r}"],
+            {},
+        ),
+        "tangents": (
+            f"tangents = {{{{{by[0]!r}, {by[1]!r}, 0}}}}, tangents_at = {{0.5}}",
+            {"tangents": [(0.5, by)]},
+            ["--tangent", f"0.5={by[0]!r},{by[1]!r}"],
+            {},
+        ),
+        "tolerances": (f"tolerances = {listed(tols)}", {"tol": tols}, [], {"--tol": tols}),
+        "at": (f"at = {listed(at)}", {"at": at}, [], {"--at": at}),
+        "count": ("count = 7", {"count": 7}, ["--count", "7"], {}),
+        "energy": (
+            'goal = "energy", share = 1e9',
+            {"goal": ("energy", 1e9)},
+            ["--goal", "energy=1e9"],
+            {},
+        ),
+        "weights": (
+            f"weights = {listed(weights)}",
+            {"weights": weights},
+            [],
+            {"--weights": weights},
+        ),
+        "knots": (
+            f"knots = {listed(knots)}",
+            {"knots": knots},
+            [],
+            {"--knots": knots},
+        ),
+        "period": (
+            f"closed = 1, period = 2, knots = {listed(2 * ring[:-1])}",
+            {"closed": True, "period": 2.0, "knots": 2 * ring[:-1]},
+            ["--closed", "--period", "2"],
+            {"--knots": 2 * ring[:-1]},
+        ),
+        "joins": (
+            "joins = {before}",
+            {"joins": [moldloft.fairing.Spline(neighbour(rows))]},
+            None,
+            {},
+        ),
+        "least_move": (
+            'mode = "faithful", as = "control", least_move = 0.5',
+            {"mode": "faithful", "as_": "control", "least_move": 0.5},
+            ["--mode", "faithful", "--as", "control", "--stop", "move=0.5"],
+            {},
+        ),
+        "least_drop": (
+            'mode = "faithful", as = "control", least_drop = 0.05',
+            {"mode": "faithful", "as_": "control", "least_drop": 0.05},
+            ["--mode", "faithful", "--as", "control", "--stop", "drop=0.05"],
+            {},
+        ),
+        "stop_gap": (
+            'mode = "faithful", as = "control", stop_gap = 0.1',
+            {"mode": "faithful", "as_": "control", "stop_gap": 0.1},
+            ["--mode", "faithful", "--as", "control", "--stop", "gap=0.1"],
+            {},
+        ),
+        "stop_pieces": (
+            'mode = "faithful", as = "control", stop_pieces = 1',
+            {"mode": "faithful", "as_": "control", "stop_pieces": True},
+            ["--mode", "faithful", "--as", "control", "--stop", "pieces"],
+            {},
+        ),
+        **{
+            mode: (
+                f'mode = "{mode}", as = "control", steps = 5',
+                {"mode": mode, **local},
+                ["--mode", mode, "--as", "control", "--steps", "5"],
+                {},
+            )
+            for mode in ("literal", "vertex", "sweeps", "levels")
+        },
+    }[name]
+
+
+#: Names of `of_data`.
+OF_DATA = (
+    "breaks", "closed", "fixed", "release", "through", "tangents", "tolerances", "at", "count",
+    "energy", "weights", "knots", "period", "joins", "least_move", "least_drop", "stop_gap",
+    "stop_pieces", "literal", "vertex", "sweeps", "levels",
+)  # fmt: skip
+
+
+def neighbour(rows):
+    """Control points of a cubic curve that ends where the data begin, with their direction."""
+    step = rows[1] - rows[0]
+    lift = np.array([[0, 0.05], [0, 0.03], [0, 0], [0, 0], [0, 0]]) * np.ptp(rows)
+    return rows[0] - np.arange(4, -1, -1)[:, None] * step + lift
+
+
+def program(rows, tol, text):
+    points = [f"AbsPoint p{k}({float(x)!r}, {float(y)!r}, 0);" for k, (x, y) in enumerate(rows)]
+    names = ", ".join(f"p{k}" for k in range(len(rows)))
+    if "before" in text:
+        for k, (x, y) in enumerate(neighbour(rows)[:-1]):
+            points.append(f"AbsPoint b{k}({float(x)!r}, {float(y)!r}, 0);")
+        points.append("BCurve before({b0, b1, b2, b3, p0}, 3);")
+    rest = f", {text}" if text else ""
+    whole = " ".join(points) + f" FairCurve c({{{names}}}, {float(tol)!r}{rest});"
+    return re.sub(r"(?<=\d)e-", "E-", whole)
+
+
+def by_command(rows, tol, words, files, folder, capsys):
+    """The control points of the command in this process, or its status."""
+    path = folder / "rows.csv"
+    path.write_text("\n".join(f"{float(x)!r},{float(y)!r}" for x, y in rows) + "\n")
+    given = {"--tol": repr(float(tol))}
+    for word, values in files.items():
+        given[word] = folder / f"{word.strip('-')}.txt"
+        given[word].write_text("\n".join(repr(float(x)) for x in values) + "\n")
+    capsys.readouterr()
+    options = [str(part) for pair in given.items() for part in pair]
+    status = main(["fair", str(path), *options, *words, "--json"])
+    out = capsys.readouterr().out
+    return status if status else np.array(json.loads(out)["spline"]["control_points"])
+
+
+@pytest.mark.parametrize("name", [*OPTIONS, *OF_DATA])
+def test_one_answer(name, tmp_path, capsys):
+    """Every option in 200 draws in a long run; a draw each otherwise."""
+    every = [*OPTIONS, *OF_DATA]
+    for seed in range(200) if SOAK else [every.index(name)]:
         rows, tol = draw(seed)
+        text, options, words, files = (
+            (*OPTIONS[name], {}) if name in OPTIONS else of_data(name, rows, tol)
+        )
         here = f"{name}, draw {seed}"
-        n = len(rows)
-        points = " ".join(
-            f"AbsPoint p{k}({float(x)!r}, {float(y)!r}, 0);" for k, (x, y) in enumerate(rows)
-        ).replace("e-", "E-")
-        listed = "{" + ", ".join(f"p{k}" for k in range(n)) + "}"
-        rest = f", {text}" if text else ""
+        options = dict(options)
+        bound = options.pop("tol", tol)
+        written = program(rows, tol, text)
         try:
-            faired = moldloft.fair(rows, tol, **options)
+            faired = moldloft.fair(rows, bound, **options)
         except moldloft.FairingError:
             with pytest.raises(moldloft.Error):
-                moldloft.loads(f"{points} FairCurve c({listed}, {float(tol)!r}{rest});").eval(
-                    "c(0)"
-                )
+                moldloft.loads(written).eval("c(0)")
+            if words is not None:
+                status = by_command(rows, tol, words, files, tmp_path, capsys)
+                assert status == 1, here
             continue
-        model = moldloft.loads(f"{points} FairCurve c({listed}, {float(tol)!r}{rest});")
+        model = moldloft.loads(written)
         t = np.linspace(0, 1, 41)
         drawn = faired
         if options.get("as_") == "control":
             # Those of models are control points of a clamped spline, which ends at them.
             rest = {word: value for word, value in options.items() if word != "as_"}
-            drawn = moldloft.fair(moldloft.fairing.Spline(rows), tol, **rest)
+            drawn = moldloft.fair(moldloft.fairing.Spline(rows), bound, **rest)
+        elif "joins" in options:
+            # Those of models move the control points of the curve through the points.
+            drawn = moldloft.fair(rows, bound, bound="curve", spacing="index", **options)
         wanted = drawn.spline(t)
         found = np.array([model.eval(f"c({float(x)!r})") for x in t], float)
         size = np.ptp(rows, axis=0).max()
         assert np.abs(found - wanted).max() <= 1e-12 * size, here
-        if seed < len(OPTIONS):
-            path = tmp_path / "rows.csv"
-            path.write_text("\n".join(f"{float(x)!r},{float(y)!r}" for x, y in rows) + "\n")
-            done = cli("fair", path, "--tol", repr(float(tol)), *words, "--json")
-            told = json.loads(done.stdout)["spline"]
-            control = np.array(told["control_points"])
+        if words is not None:
+            control = by_command(rows, tol, words, files, tmp_path, capsys)
             assert np.abs(control - faired.control_points).max() <= 1e-12 * size, here
+
+
+def test_every_option_of_curves_is_asked_for():
+    """A new option of the row is one of these, or of no data here."""
+    rows, tol = draw(3)
+    asked = [text for text, *_ in OPTIONS.values()]
+    asked += [of_data(name, rows, tol)[0] for name in OF_DATA]
+    named = set(re.findall(r"(\w+) = ", ", ".join(asked)))
+    (row,) = (row for row in reference() if row["name"] == "FairCurve")
+    options = {field["name"] for field in row["fields"][2:]}
+    assert options - named == {"relabel"}

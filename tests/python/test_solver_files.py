@@ -92,19 +92,43 @@ def test_aqwa_by_its_columns(hull, tmp_path):
         hull.write(tmp_path / "hull.dat")
 
 
+#: A quarter of the sphere's lower half, mirrored in both planes.
+EIGHTH_BALL = QUARTER_BALL.replace('"y"', '"xy"').replace(
+    "-3.141592653589793,", "-1.5707963267948966,"
+)
+
+
 def test_a_symmetry_without_a_flag_is_written_out(tmp_path):
-    quarter = QUARTER_BALL.replace('"y"', '"xy"').replace(
-        "-3.141592653589793,", "-1.5707963267948966,"
-    )
-    model = moldloft.loads(quarter)
+    model = moldloft.loads(EIGHTH_BALL)
     panels = len(model.mesh().faces)
-    for format, sides in [("gdf", 1), ("nemoh", 2), ("hydrostar", 1), ("hams", 1)]:
+    for format, sides in [("gdf", 1), ("nemoh", 2), ("hydrostar", 1), ("hams", 2)]:
         (path,) = model.write(tmp_path / f"ball.{format}", format=format)
         mesh = capytaine.load_mesh(str(path), file_format=format)
         assert mesh.nb_faces == 4 * panels
         listed = mesh.half if sides == 2 else mesh.half.half
         assert listed.nb_faces == sides * panels
         assert mesh.merged().volumes[2] == pytest.approx(2 * np.pi / 3, rel=0.02)
+
+
+@pytest.mark.parametrize(("symmetry", "flags"), [("y", "0 1"), ("x", "1 0"), ("xy", "0 1")])
+def test_hams_has_one_plane_of_symmetry(symmetry, flags, tmp_path):
+    """HAMS stops at both flags; hull and lid have the same one, and Capytaine the whole of both."""
+    text = EIGHTH_BALL if symmetry == "xy" else QUARTER_BALL.replace('"y"', f'"{symmetry}"')
+    if symmetry == "x":
+        text = text.replace("bow(1, 0, 0)", "bow(0, 1, 0)")
+    lid = """
+        Line spoke(O, bow);
+        RevSurf cover(spoke, axis, 0, TURN, divisions = {2, 2 * n}, tags = {"lid"});
+    """
+    turn = "-1.5707963267948966" if symmetry == "xy" else "-3.141592653589793"
+    model = moldloft.loads(text + lid.replace("TURN", turn))
+    hull, water = model.write(tmp_path / "ball.pnl", lids=True)
+    for path, area in ((hull, 2 * np.pi), (water, np.pi)):
+        counts = path.read_text().splitlines()[3].split()
+        assert counts[2:] == flags.split(), path.name
+        mesh = capytaine.load_mesh(str(path), file_format="hams").merged()
+        assert mesh.nb_faces == 2 * int(counts[0])
+        assert mesh.faces_areas.sum() == pytest.approx(area, rel=0.03), path.name
 
 
 @pytest.mark.parametrize(

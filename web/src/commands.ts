@@ -4,7 +4,6 @@ import type { App } from './app'
 import type { Standard } from './camera'
 import { chooseLaid } from './files'
 import { type Command, help } from './palette'
-import type { SheetName } from './sheets'
 import { model } from './state'
 import type { Style } from './view'
 
@@ -27,7 +26,7 @@ export const STYLES: [Style, string, string][] = [
   ['xray', 'X-ray', 'R'],
 ]
 
-export const SHEETS: [SheetName, string][] = [
+export const SHEETS = [
   ['model', 'Model'],
   ['lines', 'Lines plan'],
   ['hydrostatics', 'Hydrostatics'],
@@ -36,7 +35,9 @@ export const SHEETS: [SheetName, string][] = [
   ['graph', 'Dependencies'],
   ['curvature', 'Curvature'],
   ['tables', 'Tables'],
-]
+] as const
+
+export type SheetName = (typeof SHEETS)[number][0]
 
 /** Colours that the engine computes at the vertices: name of the field, words. */
 export const FIELDS: [string, string][] = [

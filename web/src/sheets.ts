@@ -1,12 +1,11 @@
 // What is shown beside the picture: lines plan, hydrostatics, mesh, digraph, curvature; all follow the model.
 
+import type { SheetName } from './commands'
 import { h, s, shown } from './dom'
 import { FIGURES, unitOf } from './figures'
 import { type Link, Newest } from './link'
 import type { Actions } from './panels'
 import { model, on } from './state'
-
-export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'areas' | 'mesh' | 'graph' | 'curvature' | 'tables'
 
 /** Widths of the lines plan, in picture points: its text is legible at the first one. */
 const [LEAST_PLAN, FIRST_PLAN, MOST_PLAN] = [400, 1400, 6000]

@@ -125,6 +125,8 @@ pub enum SymmetryPlanes {
     Y,
     /// y = 0, or both; a model that is mirrored in x = 0 alone is written with its image.
     YThenX,
+    /// Either; a model that is mirrored in both is written with its image in x = 0.
+    Either,
     /// Either, or both.
     Both,
 }
@@ -135,6 +137,7 @@ impl SymmetryPlanes {
         match self {
             Self::None | Self::Y => false,
             Self::YThenX => mirror_y,
+            Self::Either => !mirror_y,
             Self::Both => true,
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! Three lines of title; `panels nodes xsym ysym`; the vertices `i x y z` and the panels `i n v1 .. vn`
 //! between lines of comment (Liu 2019, HAMS user manual; read by Capytaine's `_read_pnl`). The flag
-//! xsym says that x = 0 is a symmetry plane, ysym that y = 0 is. Corners are counter-clockwise seen
-//! from the water; a triangle has three.
+//! xsym says that x = 0 is a symmetry plane, ysym that y = 0 is; HAMS refuses both at once. Corners are
+//! counter-clockwise seen from the water; a triangle has three.
 
 use crate::solver::{SolverPanels, corners};
 use crate::text::put;
@@ -13,8 +13,12 @@ use moldloft_mesh::{Mesh, Tag, TopologyBuilder};
 /// The file of the mesh's skin.
 ///
 /// # Errors
-/// Positions that are not finite; a half that crosses its plane.
+/// [`WriteError::CannotHold`] for a mesh mirrored in both planes: write one of them out first
+/// ([`Mesh::with_mirror_image`]). Positions that are not finite; a half that crosses its plane.
 pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
+    if options.mirror_x && options.mirror_y {
+        return Err(WriteError::CannotHold { format: "HAMS", what: "symmetry in x = 0 and y = 0" });
+    }
     Ok(file(&SolverPanels::of(mesh, options)?, "Hull", options))
 }
 

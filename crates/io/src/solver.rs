@@ -160,6 +160,9 @@ mod tests {
             let error = error.unwrap_err().to_string();
             assert!(error.contains("cannot hold symmetry in x = 0"), "{error}");
         }
+        let both = PanelFileOptions { mirror_y: true, ..x };
+        let error = hams::write(&mesh, both).unwrap_err().to_string();
+        assert!(error.contains("cannot hold symmetry in x = 0 and y = 0"), "{error}");
         let error = aqwa::write(&mesh, "", half()).unwrap_err();
         assert!(matches!(error, WriteError::AboveWater { ref patch, .. } if patch == "aft"));
         let mut p = mesh.positions().to_vec();

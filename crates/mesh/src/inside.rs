@@ -17,6 +17,9 @@ pub struct InnerSkin {
     pub around: usize,
     /// True for one with open edges: a plate.
     pub open: bool,
+    /// True for a closed piece wholly inside another one that faces the other way: its volume is
+    /// subtracted.
+    pub cavity: bool,
     /// A point of it inside the piece around it.
     pub at: Vec3,
 }
@@ -50,14 +53,15 @@ pub fn inner_skins(mesh: &Mesh<f64>, mirrors: &[u8]) -> Vec<InnerSkin> {
     let mut found: Vec<InnerSkin> = Vec::new();
     for (i, piece) in pieces.iter().enumerate().filter(|(_, p)| p.image_of.is_none()) {
         for (j, around) in pieces.iter().enumerate().filter(|&(j, _)| j != i) {
-            let at = piece.places.iter().find(|&&p| within(&around.bounds, p) && around.winds(p));
+            let at = piece.places.iter().find(|&&p| around.contains(p));
             let Some(&at) = at else { continue };
+            let cavity = piece.is_cavity_of(around);
             let (patch, around) = (piece.patch, pieces[around.image_of.unwrap_or(j)].patch);
             let pair = |f: &InnerSkin| {
                 (f.patch, f.around) == (patch, around) || (f.around, f.patch) == (patch, around)
             };
             if !found.iter().any(pair) {
-                found.push(InnerSkin { patch, around, open: piece.open, at });
+                found.push(InnerSkin { patch, around, open: piece.open, cavity, at });
             }
         }
     }
@@ -69,9 +73,21 @@ fn within(b: &Box3, p: Vec3) -> bool {
 }
 
 impl SkinPiece {
-    fn winds(&self, p: Vec3) -> bool {
-        let angle: f64 = self.triangles.iter().map(|t| solid_angle(t.map(|q| q - p))).sum();
-        angle.abs() > INSIDE * 4.0 * std::f64::consts::PI
+    fn contains(&self, p: Vec3) -> bool {
+        let angle =
+            || self.triangles.iter().map(|t| solid_angle(t.map(|q| q - p))).sum::<f64>().abs();
+        within(&self.bounds, p) && angle() > INSIDE * 4.0 * std::f64::consts::PI
+    }
+
+    /// Six times the enclosed volume, negative for normals that face inward.
+    fn six_volumes(&self) -> f64 {
+        self.triangles.iter().map(|[a, b, c]| a.dot(b.cross(*c))).sum()
+    }
+
+    fn is_cavity_of(&self, around: &Self) -> bool {
+        !(self.open || around.open)
+            && self.six_volumes() * around.six_volumes() < 0.0
+            && self.places.iter().all(|&p| around.contains(p))
     }
 }
 
@@ -205,7 +221,12 @@ mod tests {
         assert_eq!(found(&[cube, across], &[]).len(), 1);
         let within = ([1.0, 0.5, 0.5], [2.0, 1.0, 1.0], 6);
         let inner = found(&[cube, within], &[]);
-        assert!(inner.len() == 1 && !inner[0].open);
+        assert!(inner.len() == 1 && !inner[0].open && !inner[0].cavity);
+        // Its corners exchanged along x, it faces the other way.
+        let turned = ([2.0, 0.5, 0.5], [1.0, 1.0, 1.0], 6);
+        assert!(found(&[cube, turned], &[])[0].cavity);
+        let through = ([5.0, 0.5, 0.5], [1.0, 1.0, 1.0], 6);
+        assert!(!found(&[cube, through], &[])[0].cavity);
         // Images: a body that reaches to the plane is one with its own, and one across it overlaps.
         assert_eq!(found(&[cube], &[1]), []);
         let off = ([0.0, 1.0, 0.0], [4.0, 2.0, 2.0], 6);

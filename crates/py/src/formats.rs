@@ -23,6 +23,7 @@ pub fn formats(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
             SymmetryPlanes::None => "",
             SymmetryPlanes::Y => "y",
             SymmetryPlanes::YThenX => "y, xy",
+            SymmetryPlanes::Either => "x, y",
             SymmetryPlanes::Both => "x, y, xy",
         };
         dict.set_item("symmetry", symmetry)?;

@@ -126,7 +126,18 @@ impl Document {
             }
             fault
         };
-        Ok(inner_skins(mesh, &self.mirrors()).iter().map(report).collect())
+        // A set or a sketch has cavities, whose patches are those of one object.
+        let own = |inner: &&InnerSkin| {
+            let [skin, around] = [inner.patch, inner.around].map(|patch| self.owner(name(patch)));
+            !(inner.cavity && skin.is_some() && skin == around)
+        };
+        Ok(inner_skins(mesh, &self.mirrors()).iter().filter(own).map(report).collect())
+    }
+
+    /// The object of a patch, whose name is that of the object or begins with it and a dot.
+    fn owner<'a>(&self, patch: &'a str) -> Option<&'a str> {
+        let ends = patch.match_indices('.').map(|(k, _)| k).chain([patch.len()]);
+        ends.map(|end| &patch[..end]).rfind(|name| self.graph().find(name).is_some())
     }
 
     /// Rejects a mirrored model with shapes on both sides of the symmetry plane: these would count

@@ -1,6 +1,6 @@
 //! HAMS's panels, and the lids that it reads from a file of their own.
 
-use crate::format::{Format, Lids};
+use crate::format::{Format, Lids, SymmetryPlanes};
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{PanelFileOptions, hams};
@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     aliases: &["pnl"],
     suffix: "pnl",
     about: "HAMS panels (.pnl)",
+    symmetry: SymmetryPlanes::Either,
     lids: Lids::OwnFile,
     write,
     ..Format::PANEL_CODE

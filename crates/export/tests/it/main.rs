@@ -127,6 +127,10 @@ fn a_symmetry_without_a_flag_is_written_out() {
     // Nemoh has no flag for x = 0: twice the panels.
     assert!(panels("xy", "nemoh").lines().count() > panels("y", "nemoh").lines().count() * 3 / 2);
     assert_eq!(SymmetryPlanes::YThenX.names_x(true), !SymmetryPlanes::YThenX.names_x(false));
+    // HAMS has one flag at a time: the image in x = 0 is written.
+    let hams = panels("xy", "hams");
+    let counts: Vec<&str> = hams.lines().nth(3).unwrap().split_whitespace().collect();
+    assert_eq!((counts[0], &counts[2..]), ("32", &["0", "1"][..]));
 }
 
 /// A hull without its end or bottom displaces nothing: its files are errors, unless patches are chosen

@@ -46,7 +46,7 @@ pub(crate) struct GridFormat {
 }
 
 /// Points alone, or pictures of them.
-const PLAIN: GridFormat = GridFormat {
+pub(crate) const PLAIN: GridFormat = GridFormat {
     blocks: false,
     joins: false,
     blanking: false,
