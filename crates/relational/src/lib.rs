@@ -15,6 +15,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod affine;
+mod alias;
 mod arguments;
 mod chebyshev;
 mod contours;
