@@ -132,7 +132,7 @@ pub fn rows() -> Vec<Row> {
         curve::TanCurve,
         curve::MirrCurve,
         search::ProjCurve,
-        search::IntCurve,
+        search::Intersection,
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,
