@@ -65,6 +65,7 @@ WITHOUT = {
     "not-nested",
     "other-edge",
     "out-of-memory",
+    "part-not-named",
     "rail-singular",
     "rough-volume",
     "search-unfinished",

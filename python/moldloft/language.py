@@ -245,7 +245,7 @@ SYNONYMS = {
     "magnet": ("Magnet",),
     "snake": ("Snake",),
     "ring": ("Ring",),
-    "intersection": ("IntSnake", "IntPoint", "IntBead", "IntMagnet", "intersect"),
+    "intersection": ("Intersection", "IntSnake", "IntPoint", "IntBead", "IntMagnet", "intersect"),
     "project": ("ProjSnake", "ProjPoint", "ProjMagnet"),
     "geodesic": ("GeoSnake",),
     "fillet": ("Fillet", "Blend"),

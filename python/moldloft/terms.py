@@ -169,7 +169,7 @@ FIELDS: dict[str, dict[str, str]] = {
         "SubCurve": "part of a curve, trimmed curve",
         "OffsetCurve": "offset curve, parallel curve",
         "ProjCurve": "projection of a curve",
-        "IntCurve": "intersection curve of cylinders",
+        "Intersection": "intersection curve of cylinders",
         "RuledSurf": "ruled surface",
         "CLoftSurf": "loft, lofted surface, skinning",
         "BLoftSurf": "B-spline loft",

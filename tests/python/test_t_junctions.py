@@ -1,7 +1,7 @@
-"""Plates beside a taller one: whole edges joined to parts of its edge, on random models.
+"""Plates beside a taller one: edges on parts of its edge, by a `Join` or between its beads.
 
-The mesh is judged by its faces alone: each edge that two plates share belongs to two faces, which
-traverse it in opposite directions.
+The models are random. The mesh is judged by its faces alone: each edge that two plates share
+belongs to two faces, which traverse it in opposite directions.
 """
 
 from __future__ import annotations
@@ -29,20 +29,22 @@ def plates(rng: np.random.Generator) -> tuple[str, int]:
     lines = [f"param float t{k} = {k / count} in [0, 1];" for k in range(1, count)]
     lines.append(f"AbsPoint F({numbers(foot)[1:-1]}); AbsPoint H({numbers(head)[1:-1]});")
     lines.append("Line edge(F, H);")
+    lines += [f"AbsBead m{k}(edge, {cut[k]});" for k in range(count + 1)]
+    between_beads = rng.random() < 0.5
     lines.append(f"Line far({numbers(foot + aside)}, {numbers(head + aside)});")
     divisions = count * int(rng.integers(2, 5))
     surfaces = [f"RuledSurf tall(edge, far, divisions = {{{divisions}, 2}});"]
     for k in range(count):
         ends = [k, k + 1] if rng.random() < 0.5 else [k + 1, k]
-        near = [f"{numbers(foot)} + {numbers(head - foot)} * {cut[end]}" for end in ends]
-        away = [f"{point} - {numbers(aside)}" for point in near]
+        places = [f"{numbers(foot)} + {numbers(head - foot)} * {cut[end]}" for end in ends]
+        near = [f"m{end}" for end in ends] if between_beads else places
+        away = [f"{point} - {numbers(aside)}" for point in places]
         surfaces.append(
             f"Line a{k}({near[0]}, {near[1]}); Line b{k}({away[0]}, {away[1]}); "
             f"RuledSurf low{k}(a{k}, b{k}, divisions = {{{0 if k else 3}, 2}});"
         )
     lines += [surfaces[k] for k in rng.permutation(count + 1)]
-    lines += [f"AbsBead m{k}(edge, {cut[k]});" for k in range(count + 1)]
-    for k in rng.permutation(count):
+    for k in [] if between_beads else rng.permutation(count):
         ends = [k, k + 1] if rng.random() < 0.5 else [k + 1, k]
         lines.append(f"SubCurve part{k}(m{ends[0]}, m{ends[1]});")
         sides = [f"low{k}.v0", f"part{k}"]

@@ -10,7 +10,7 @@
 //! `roots in use -> origin of each -> those of equal origin -> coincident ones -> one root`
 
 use crate::draft::{Draft, surface_of};
-use crate::roots::pieces;
+use crate::roots::{MarkSource, pieces, places_of};
 use moldloft_model::Graph;
 use moldloft_num::trace::{EDGE_CORNERS, Edge, Key, Mark, Named, Piece, Root, Trace};
 use moldloft_num::{Box3, Order, Real, Vec3};
@@ -44,6 +44,40 @@ pub(crate) enum AliasStep {
         /// Which of its edges.
         edge: u8,
     },
+    /// Onto the part of a root between two points of it.
+    Between([PartEnd; 2]),
+}
+
+/// A point of a root at which a part of it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum PartEnd {
+    /// The begin of the root.
+    Begin,
+    /// Its end.
+    End,
+    /// A bead or ring or, on an edge of its surface, a magnet; in the opposite direction to the
+    /// root that it is defined on.
+    Point {
+        /// The object.
+        point: Key,
+        /// The edge, 0..4, of its surface.
+        edge: Option<u8>,
+        /// True for the opposite direction.
+        turned: bool,
+    },
+}
+
+impl PartEnd {
+    /// Source of the parameter of a point on the root that it is defined on.
+    pub fn source(self) -> Option<MarkSource> {
+        match self {
+            PartEnd::Point { point, edge: Some(edge), .. } => {
+                Some(MarkSource::Magnet { point, edge, alias: 0 })
+            }
+            PartEnd::Point { point, .. } => Some(MarkSource::Bead { point, alias: 0 }),
+            PartEnd::Begin | PartEnd::End => None,
+        }
+    }
 }
 
 /// The steps from the parameter of a root to that of its representative.
@@ -82,11 +116,13 @@ pub(crate) fn on_part<T: Real>([from, to]: [T; 2], t: T) -> T {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Identities {
     roots: HashMap<Root, (Root, Alias)>,
-    /// Parameters, on their roots, of the ends of edges of declared joins that are parts.
-    parts: HashMap<(Key, u8), [f64; 2]>,
+    /// Parameters, on their roots, of the ends of parts.
+    parts: HashMap<AliasStep, [f64; 2]>,
     points: HashMap<Key, Key>,
     /// The roots of declared joins, with the maximum distance of their edges.
     declared: Vec<(Root, f64)>,
+    /// Declared joins of parts whose ends are no points of the other edge: the joins, and the ends.
+    unnamed: Vec<(Key, Option<Key>)>,
 }
 
 impl Identities {
@@ -124,6 +160,11 @@ impl Identities {
         points.all(|p| p.is_some_and(|p| self.point(p) == first)).then_some(first)
     }
 
+    /// Declared joins of an edge with a part of another of which an end, which follows, is no point of that.
+    pub fn unnamed(&self) -> &[(Key, Option<Key>)] {
+        &self.unnamed
+    }
+
     /// True when joins are declared.
     pub fn has_declared(&self) -> bool {
         !self.declared.is_empty()
@@ -144,12 +185,20 @@ impl Identities {
             finder.makes.clear();
             let before = finder.unions;
             finder.join_points();
+            finder.join_by_ends();
             finder.join_lines();
+            finder.join_parts_of_lines();
             finder.found.flatten();
             if finder.unions == before {
                 break;
             }
         }
+        // Hidden patches join nothing.
+        let used: HashSet<Root> = finder.roots.iter().copied().collect();
+        let shown = |edges: &[Piece<f64>; 2]| edges.iter().all(|edge| used.contains(&edge.root));
+        let unnamed = finder.pending.iter().filter(|(_, edges)| shown(edges));
+        let unnamed = unnamed.map(|(join, edges)| (*join, finder.unnamed_end(edges))).collect();
+        finder.found.unnamed = unnamed;
         finder.found
     }
 
@@ -208,7 +257,7 @@ impl Identities {
     pub fn on_representative(&self, alias: &Alias, t: f64) -> f64 {
         alias.iter().fold(t, |t, step| match step {
             AliasStep::Turned => 1.0 - t,
-            AliasStep::Part { join, edge } => on_part(self.parts[&(*join, *edge)], t),
+            part => on_part(self.parts[part], t),
         })
     }
 
@@ -244,6 +293,10 @@ struct IdentityFinder<'g> {
     points: Vec<Key>,
     makes: HashMap<Key, Make>,
     lines: HashMap<Root, Make>,
+    /// The points on curves and surfaces, by the one name of each.
+    names: HashMap<Key, Vec<Key>>,
+    /// Declared joins of a whole edge with a part of another that are not resolved yet.
+    pending: Vec<(Key, [Piece<f64>; 2])>,
     unions: usize,
 }
 
@@ -293,6 +346,8 @@ impl<'g> IdentityFinder<'g> {
             points: points.all,
             makes: HashMap::new(),
             lines: HashMap::new(),
+            names: HashMap::new(),
+            pending: Vec::new(),
             unions: 0,
         }
     }
@@ -530,7 +585,7 @@ impl<'g> IdentityFinder<'g> {
         for object in self.graph.objects() {
             let Some(Value::Curve(curve)) = object.value() else { continue };
             let Some(join) = &curve.joins else { continue };
-            let (edges, tolerance) = (&join.0, join.1);
+            let (edges, tolerance) = (&join.edges, join.tolerance);
             let [Some(a), Some(b)] = [0, 1].map(|k| edges[k].pieces().first().copied()) else {
                 continue;
             };
@@ -545,10 +600,11 @@ impl<'g> IdentityFinder<'g> {
             let against = against < alike;
             let runs = |p: &Piece<f64>| (p.from.t - p.to.t).abs() == 1.0;
             match [runs(&a), runs(&b)] {
-                [true, true] => {
+                [true, true] if join.whole => {
                     let turned = against ^ (a.from.t > a.to.t) ^ (b.from.t > b.to.t);
                     self.join_line(a.root, b.root, turned);
                 }
+                [true, true] => self.pending.push((object.key, [a, b])),
                 [true, false] => self.join_part(&a, (object.key, 1), &b, against),
                 [false, true] => self.join_part(&b, (object.key, 0), &a, against),
                 [false, false] => continue,
@@ -566,9 +622,10 @@ impl<'g> IdentityFinder<'g> {
         part: &Piece<f64>,
         against: bool,
     ) {
-        self.found.parts.insert((join, edge), [part.from.t, part.to.t]);
+        let step = AliasStep::Part { join, edge };
+        self.found.parts.insert(step, [part.from.t, part.to.t]);
         let turned = against ^ (whole.from.t > whole.to.t);
-        let steps = turn(turned).into_iter().chain([AliasStep::Part { join, edge }]);
+        let steps = turn(turned).into_iter().chain([step]);
         if !self.place_on(whole.root, steps, part.root) {
             return;
         }
@@ -585,6 +642,125 @@ impl<'g> IdentityFinder<'g> {
                 self.join_point(p, q);
             }
         }
+    }
+
+    /// The declared joins of a whole edge with the part of another between the points that it ends at.
+    fn join_by_ends(&mut self) {
+        self.name_points();
+        for (join, [a, b]) in std::mem::take(&mut self.pending) {
+            if !(self.is_between_points(a.root, b.root) || self.is_between_points(b.root, a.root)) {
+                self.pending.push((join, [a, b]));
+            }
+        }
+    }
+
+    /// Makes a root a part of another, if it ends at points of that.
+    fn is_between_points(&mut self, root: Root, on: Root) -> bool {
+        let (on, alias) = self.found.root(on);
+        let ends = self.ends(root).map(|end| self.part_end(end?, on));
+        match ends {
+            // It may be known already.
+            _ if self.found.root(root).0 == on => true,
+            [Some(from), Some(to)] if is_whole(&alias) => self.place_between(root, [from, to], on),
+            _ => false,
+        }
+    }
+
+    /// The end of a pending join that is no point of the longer edge, if the other end is one.
+    fn unnamed_end(&self, [a, b]: &[Piece<f64>; 2]) -> Option<Key> {
+        [[a, b], [b, a]].into_iter().find_map(|[edge, longer]| {
+            let (on, _) = self.found.root(longer.root);
+            let [from, to] = self.ends(edge.root);
+            let is_known = |end: Option<Key>| end.is_some_and(|p| self.part_end(p, on).is_some());
+            match [is_known(from), is_known(to)] {
+                [true, false] => to,
+                [false, true] => from,
+                _ => None,
+            }
+        })
+    }
+
+    /// Straight lines between two points of another are parts of that.
+    fn join_parts_of_lines(&mut self) {
+        self.name_points();
+        for root in self.roots.clone() {
+            let line = self.found.straightened(root).0;
+            let Root::Segment(a, b) = line else { continue };
+            let (own, alias) = self.found.root(line);
+            if !is_whole(&alias) || self.found.point(a) == self.found.point(b) {
+                continue;
+            }
+            let mut others: Vec<Root> = [a, b]
+                .into_iter()
+                .flat_map(|point| self.places_on_roots(point))
+                .filter(|(_, root, ..)| matches!(root, Root::Segment(..)))
+                .map(|(_, root, ..)| self.found.root(root))
+                .filter(|(other, alias)| is_whole(alias) && *other != own)
+                .map(|(other, _)| other)
+                .collect();
+            others.sort_unstable();
+            others.dedup();
+            for other in others {
+                if let [Some(from), Some(to)] = [a, b].map(|end| self.part_end(end, other))
+                    && self.place_between(line, [from, to], other)
+                {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Collects the names of points that are defined on curves or surfaces.
+    fn name_points(&mut self) {
+        self.names.clear();
+        for &name in &self.points {
+            if let Some(Value::Point(point)) = self.graph.get(name).and_then(|o| o.value())
+                && (point.on_curve.is_some() || point.on_surface.is_some())
+            {
+                self.names.entry(self.found.point(name)).or_default().push(name);
+            }
+        }
+    }
+
+    /// The points in use that are one with this, each with its positions on roots.
+    fn places_on_roots(&self, point: Key) -> Vec<(Key, Root, f64, MarkSource)> {
+        let names = self.names.get(&self.found.point(point)).into_iter().flatten();
+        let mut places = Vec::new();
+        for &name in names {
+            if let Some(Value::Point(point)) = self.graph.get(name).and_then(|o| o.value()) {
+                let on = places_of(point, name).into_iter();
+                places.extend(on.map(|(root, t, source)| (name, root, t, source)));
+            }
+        }
+        places
+    }
+
+    /// A point as the end of a part of a root that represents itself, with its parameter.
+    fn part_end(&self, point: Key, on: Root) -> Option<(PartEnd, f64)> {
+        let one = self.found.point(point);
+        let is_it = |end: Option<Key>| end.is_some_and(|p| self.found.point(p) == one);
+        match self.ends(on).map(is_it) {
+            [true, false] => return Some((PartEnd::Begin, 0.0)),
+            [false, true] => return Some((PartEnd::End, 1.0)),
+            _ => {}
+        }
+        self.places_on_roots(point).into_iter().find_map(|(point, root, t, source)| {
+            let (root, alias) = self.found.root(root);
+            let edge = match source {
+                MarkSource::Magnet { edge, .. } => Some(edge),
+                _ => None,
+            };
+            let end = PartEnd::Point { point, edge, turned: is_turned(&alias) };
+            let t = self.found.on_representative(&alias, t);
+            (root == on && is_whole(&alias)).then_some((end, t))
+        })
+    }
+
+    /// A root is the part of another between two points of that.
+    fn place_between(&mut self, root: Root, [from, to]: [(PartEnd, f64); 2], on: Root) -> bool {
+        let step = AliasStep::Between([from.0, to.0]);
+        self.found.parts.insert(step, [from.1, to.1]);
+        from.1 != to.1 && self.place_on(root, [step], on)
     }
 
     /// A root is on another by these steps from now on; false when that cannot be said of it, or is

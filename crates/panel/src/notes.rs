@@ -74,6 +74,13 @@ pub enum PanelNote {
         /// Start.
         at: Vec3,
     },
+    /// A declared join of an edge with a part of another, whose ends are no points of that.
+    PartEnds {
+        /// The join.
+        join: String,
+        /// The end that is none, if the other end is one.
+        end: Option<String>,
+    },
     /// The border of a sheet of triangles intersects itself, or has no area, with the divisions of
     /// its neighbours; so it is joined to none of them.
     Border {
@@ -114,6 +121,7 @@ impl PanelNote {
             PanelNote::Apart { .. } => "edges-apart",
             PanelNote::Junction { .. } => "corner-not-joined",
             PanelNote::Unjoined { .. } => "edges-not-joined",
+            PanelNote::PartEnds { .. } => "part-not-named",
             PanelNote::Border { .. } => "border-not-joined",
             PanelNote::Knuckle { .. } => "knuckle-across-panels",
             PanelNote::Coarse { .. } => "coarse-panels",
@@ -161,6 +169,10 @@ impl PanelNote {
             PanelNote::Junction { .. } => {
                 "build both patches on the same point and the same curves: patches are joined by shared objects, not by coordinates"
             }
+            PanelNote::PartEnds { .. } => {
+                "build the shorter patch on beads, rings or ends of the longer edge, or name the part: \
+                 `AbsBead b(curve, t); SubCurve part(a, b); Join j(patch.v0, part);`"
+            }
             PanelNote::Border { .. } => "give it, or its neighbours, more divisions",
             PanelNote::Knuckle { .. } => {
                 "make two parts of it that meet at a snake along the knuckle, such as UVSnake or EdgeSnake"
@@ -177,6 +189,7 @@ impl PanelNote {
     pub fn object(&self) -> Option<&str> {
         match self {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
+            PanelNote::PartEnds { join, .. } => Some(join),
             PanelNote::Pieces { patch, .. }
             | PanelNote::Border { patch, .. }
             | PanelNote::Knuckle { patch, .. }
@@ -264,6 +277,14 @@ impl std::fmt::Display for PanelNote {
                     at.z
                 )
             }
+            PanelNote::PartEnds { join, end: Some(end) } => write!(
+                f,
+                "`{join}` joins an edge to a part of another, but {end} is no point of the longer edge: coordinates join nothing"
+            ),
+            PanelNote::PartEnds { join, end: None } => write!(
+                f,
+                "`{join}` joins an edge to a part of another, but neither end is a point of the longer edge: coordinates join nothing"
+            ),
             PanelNote::Border { patch, divisions } => {
                 let counts: Vec<String> = divisions.iter().map(usize::to_string).collect();
                 write!(

@@ -4,9 +4,9 @@
 use crate::border_curves;
 use crate::draft::surface_of;
 use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
-use crate::identity::{AliasStep, on_part};
+use crate::identity::{AliasStep, PartEnd, on_part};
 use crate::knuckles::ASIDE;
-use crate::roots::{AliasId, EdgeParameter, MarkSource};
+use crate::roots::{AliasId, EdgeParameter, MarkSource, on_its_root};
 use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
@@ -51,11 +51,20 @@ pub(crate) fn evaluated_all<T: Scalar>(
 /// The names of the point objects that plans of edges refer to, and of the joins of aliases.
 pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Key, Arc<str>> {
     let mut names = HashMap::new();
+    let mut add = |key: Key| {
+        if let Some(object) = graph.get(key) {
+            names.insert(key, object.name.clone());
+        }
+    };
     for step in structure.aliases.iter().flatten() {
-        if let AliasStep::Part { join, .. } = step
-            && let Some(object) = graph.get(*join)
-        {
-            names.insert(*join, object.name.clone());
+        match step {
+            AliasStep::Turned => {}
+            AliasStep::Part { join, .. } => add(*join),
+            AliasStep::Between(ends) => ends.iter().for_each(|end| {
+                if let PartEnd::Point { point, .. } = end {
+                    add(*point);
+                }
+            }),
         }
     }
     for plan in structure.patches.iter().flat_map(|f| &f.plans) {
@@ -64,9 +73,8 @@ pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Ke
             if let EdgeParameter::Inside(_, source, _) = segment.until
                 && let MarkSource::Bead { point: key, .. } | MarkSource::Magnet { point: key, .. } =
                     source
-                && let Some(object) = graph.get(key)
             {
-                names.insert(key, object.name.clone());
+                add(key);
             }
         }
     }
@@ -113,6 +121,18 @@ impl<'a, T: Scalar> PatchValues<'a, T> {
     ) -> Self {
         Self { graph, structure, names, keys: vec![], surfaces: vec![], edges: vec![] }
     }
+
+    /// The parameter, on its root, of the end of a part.
+    fn part_end(&self, end: PartEnd) -> Option<T> {
+        Some(match end {
+            PartEnd::Begin => T::zero(),
+            PartEnd::End => T::one(),
+            PartEnd::Point { point, turned, .. } => {
+                let t = on_its_root(PatchLookup::point(self, point)?, end.source()?)?;
+                if turned { -t + 1.0 } else { t }
+            }
+        })
+    }
 }
 
 impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
@@ -144,9 +164,13 @@ impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
                 AliasStep::Part { join, edge } => {
                     let object = self.graph.get(self.graph.find(self.names.get(join)?)?)?;
                     let Value::Curve(curve) = object.value()? else { return None };
-                    let part = &curve.joins.as_ref()?.0[usize::from(*edge)];
+                    let part = &curve.joins.as_ref()?.edges[usize::from(*edge)];
                     let piece = part.pieces().first().copied()?;
                     ends = ends.map(|t| on_part([piece.from.t, piece.to.t], t));
+                }
+                AliasStep::Between([from, to]) => {
+                    let part = [self.part_end(*from)?, self.part_end(*to)?];
+                    ends = ends.map(|t| on_part(part, t));
                 }
             }
         }

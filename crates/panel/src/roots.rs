@@ -149,6 +149,11 @@ impl RootTable {
         all
     }
 
+    /// Declared joins of an edge with a part of another of which an end, which follows, is no point of that.
+    pub fn unnamed(&self) -> &[(Key, Option<Key>)] {
+        self.identities.unnamed()
+    }
+
     /// True when joins are declared.
     pub fn has_declared(&self) -> bool {
         self.identities.has_declared()
@@ -336,7 +341,7 @@ fn with_alias(source: MarkSource, of: AliasId) -> MarkSource {
 }
 
 /// Positions of a point on roots, by its own data.
-fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource); 2]> {
+pub(crate) fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource); 2]> {
     let mut places = SmallVec::new();
     if let Some(place) = &point.on_curve {
         let (curve, t) = (&place.0, place.1);

@@ -176,6 +176,7 @@ pub(crate) fn solve<'g>(
     }
     let divided = maker.divider.solve(&|sum| maker.weights(sum));
     let mut remarks = maker.reported(&divided.conflicts, &divided.counts);
+    remarks.extend(maker.unnamed());
     let structure = maker.finish(&divided.counts);
     if divided.conflicts.is_empty() {
         remarks.extend(maker.unexplained(&structure, &divided.counts));
@@ -498,6 +499,14 @@ impl TopologySolver<'_, '_> {
             divisions: counts[*whole],
             pieces,
         }
+    }
+
+    /// The declared joins of parts whose ends are not named.
+    fn unnamed(&self) -> impl Iterator<Item = PanelNote> {
+        self.roots.unnamed().iter().map(|&(join, end)| PanelNote::PartEnds {
+            join: self.graph.get(join).map_or_else(String::new, |o| o.name.to_string()),
+            end: end.map(|end| words_for(self.graph, end)),
+        })
     }
 
     /// True for the node of an interval of a root.

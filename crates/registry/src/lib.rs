@@ -37,8 +37,8 @@ pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, MirrorArgument, many};
 pub use refs::{
-    CurveRef, FieldRef, Figures, ImplicitFunction, Point, ReparametrizationRef, SetRef, SolidRef,
-    SurfaceRef,
+    CurveRef, DeclaredJoin, FieldRef, Figures, ImplicitFunction, Point, ReparametrizationRef,
+    SetRef, SolidRef, SurfaceRef,
 };
 pub use relabelled::relabelled;
 pub use row::{

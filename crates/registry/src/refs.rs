@@ -112,6 +112,17 @@ impl<T: Real> Point<T> {
 /// members of the object.
 pub type Figures = Arc<Vec<(&'static str, f64)>>;
 
+/// Two edges of patches that are declared to be one.
+#[derive(Clone)]
+pub struct DeclaredJoin<T: Real> {
+    /// The edges.
+    pub edges: [CurveRef<T>; 2],
+    /// Maximum distance of the two.
+    pub tolerance: f64,
+    /// True if they coincide as they are; else one of them coincides with a part of the other.
+    pub whole: bool,
+}
+
 /// A curve with the identity of its object.
 #[derive(Clone)]
 pub struct CurveRef<T: Real> {
@@ -125,8 +136,10 @@ pub struct CurveRef<T: Real> {
     /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
     /// parameters there of the part's ends.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
-    /// For the common edge of a declared join: the two edges, and their maximum distance.
-    pub joins: Option<Arc<([CurveRef<T>; 2], f64)>>,
+    /// For the common edge of a declared join.
+    pub joins: Option<Arc<DeclaredJoin<T>>>,
+    /// For an intersection: the same curve as snakes on its surfaces.
+    pub snakes: Arc<[CurveRef<T>]>,
     /// Report of the search, if there was one.
     pub found: Option<Arc<SearchReport>>,
     /// Figures of its construction.
@@ -254,6 +267,7 @@ impl<T: Real> CurveRef<T> {
             surface: None,
             part_of: None,
             joins: None,
+            snakes: Arc::new([]),
             found: None,
             figures: None,
             depth,

@@ -15,6 +15,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod affine;
+mod alias;
 mod arguments;
 mod chebyshev;
 mod contours;
@@ -131,7 +132,7 @@ pub fn rows() -> Vec<Row> {
         curve::TanCurve,
         curve::MirrCurve,
         search::ProjCurve,
-        search::IntCurve,
+        search::Intersection,
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,

@@ -487,6 +487,76 @@ fn whole_edges_join_parts_of_others() {
     assert!(ids(&open(&parts)).contains(&"not-an-edge".to_string()));
 }
 
+/// A patch along the whole of a curved or straight edge, and two beside parts of it that are drawn through
+/// the bead between them: curves by the theorem of de Casteljau, straight lines without a join.
+fn beside_parts(curved: bool, joins: &str) -> String {
+    let (edge, parts) = if curved {
+        (
+            "BCurve edge({O, M, N}, degree = 2);",
+            "AbsPoint q1(2 * t, 1.2 * t, 0); AbsPoint q2(2 + 2 * t, 1.2 - 0.7 * t, 0.8 * t);
+             BCurve c1({O, q1, b}, degree = 2); BCurve c2({N, q2, b}, degree = 2);",
+        )
+    } else {
+        ("Line edge(O, N);", "Line c1(O, b); Line c2(N, b);")
+    };
+    format!(
+        "param float t = 0.3 in [0.02, 0.98];
+         AbsPoint O(0, 0, 0); AbsPoint M(2, 1.2, 0); AbsPoint N(4, 0.5, 0.8); {edge} AbsBead b(edge, t); {parts}
+         Line up({{0, 0, 2}}, {{4, 0, 2}}); AbsPoint E(1, 0, -2); Line d1({{0, 0, -2}}, E); Line d2({{3, 0, -2}}, E);
+         RuledSurf low1(c1, d1, divisions = {{3, 2}}); RuledSurf whole(edge, up, divisions = {{0, 2}});
+         RuledSurf low2(c2, d2, divisions = {{4, 2}}); {joins}"
+    )
+}
+
+#[test]
+fn parts_end_at_the_points_that_they_are_drawn_through() {
+    let joins = ["Join j1(low1.v0, whole.v0); Join j2(whole.v0, low2.v0);", ""];
+    for (curved, joins) in [(true, joins[0]), (false, joins[0]), (false, joins[1])] {
+        let text = beside_parts(curved, joins);
+        let mut d = sound(&text);
+        assert_eq!(divisions(&mut d, "whole"), [7, 2], "{text}");
+        let at_home = panelled(&mut d).panelling.topology().clone();
+        for k in 0..40 {
+            d.set(&[("t".into(), 0.03 + 0.0237 * f64::from(k))]).unwrap();
+            let p = panelled(&mut d);
+            assert_eq!(*p.panelling.topology(), at_home);
+            assert!(p.panelling.remarks().is_empty(), "{:?}", p.panelling.remarks());
+            assert!(d.junctions().unwrap().is_empty());
+            let report = p.mesh.report();
+            assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
+        }
+        d.set(&[("t".into(), 0.35)]).unwrap();
+        let exact = d.jacobian(&["t".into()]).unwrap();
+        let mut at = |t: f64| {
+            d.set(&[("t".into(), t)]).unwrap();
+            panelled(&mut d).mesh.positions().to_vec()
+        };
+        let (low, high) = (at(0.35 - 1e-5), at(0.35 + 1e-5));
+        for (k, d) in exact[0].iter().enumerate() {
+            let difference = (high[k] - low[k]) / 2e-5;
+            assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
+        }
+    }
+    // A point typed at the place of the bead is another point, at any distance.
+    let typed = beside_parts(true, joins[0]).replace(
+        "BCurve c1({O, q1, b}",
+        "AbsPoint e(4 * t * (1 - t) + 4 * t * t, 2.4 * t * (1 - t) + 0.5 * t * t, 0.8 * t * t);
+         BCurve c1({O, q1, e}",
+    );
+    let mut d = open(&typed);
+    let p = panelled(&mut d);
+    let unnamed = p.panelling.remarks().iter().find(|r| r.id() == "part-not-named");
+    assert_eq!(
+        unnamed.map(ToString::to_string).as_deref(),
+        Some(
+            "`j1` joins an edge to a part of another, but `e` is no point of the longer edge: \
+             coordinates join nothing"
+        ),
+        "{:?}",
+        p.panelling.remarks()
+    );
+}
+
 /// A cone of two grids, whose apex is a row of one place, and a plane that ends on its side.
 fn cone_and_plane(tags: &str, join: &str) -> String {
     format!(

@@ -1,16 +1,19 @@
 //! Edges declared to be one.
 
+use crate::alias::AliasCurve;
+use moldloft_locate::PlainCurve;
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
-use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, DeclaredJoin, FieldId, Kind, Value};
 use std::sync::Arc;
 
 /// A declared join: two coincident edges of patches count as one edge in meshes, though they come
 /// from different objects. The result is the first edge.
 ///
 /// Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
-/// Curves and snakes along edges are accepted too; the directions may be opposite. One of the two may
-/// be a part of an edge, such as a `SubCurve` between beads: the whole other edge is on that part.
+/// Curves and snakes along edges are accepted too; the directions may be opposite. One edge may be on a part
+/// of the other, at equal fractions of both: the part between the beads, rings or ends of the longer edge that
+/// the shorter one ends at, or the part that is given, such as a `SubCurve` between beads.
 /// Patches on the same curves and points join without a declaration. Edges farther apart than the tolerance at
 /// any point are an error; the vertices are those of the patch declared first.
 #[derive(Kind)]
@@ -47,24 +50,18 @@ impl<T: Real> Build<T> for Join<T> {
                 .help("divide one of the patches where the other ends")
                 .in_field(Self::SECOND));
         }
-        // The widest gap in equal and in opposite direction, and its parameter on the first edge.
-        let gap = |turned: bool| {
-            let mut widest = (0.0f64, 0.0, Vec3::zero());
-            for i in 0..=TRIALS {
-                let t = i as f64 / TRIALS as f64;
-                let p = first.jet(T::from(t), Order::Zero)[0].re();
-                let other = T::from(if turned { 1.0 - t } else { t });
-                let gap = p.distance(second.jet(other, Order::Zero)[0].re());
-                // Written so that NaN counts.
-                if gap.is_nan() || gap > widest.0 {
-                    widest = (gap, t, p);
-                }
-            }
-            widest
-        };
-        let (alike, against) = (gap(false), gap(true));
+        let alike = widest_gap(&first, &second, [0.0, 1.0]);
+        let against = widest_gap(&first, &second, [1.0, 0.0]);
         let (gap, t, at) = if against.0 < alike.0 { against } else { alike };
-        if gap.is_nan() || gap > tolerance {
+        let whole = gap <= tolerance;
+        let in_part = || {
+            parts == [false; 2]
+                && [[&first, &second], [&second, &first]].into_iter().any(|[edge, longer]| {
+                    let ends = [0.0, 1.0].map(|t| nearest(longer, edge.end(t).re()));
+                    ends[0] != ends[1] && widest_gap(edge, longer, ends).0 <= tolerance
+                })
+        };
+        if !whole && !in_part() {
             return Err(CallError::new("edges-apart", "the edges do not coincide")
                 .expected(format!("at most {tolerance} between them"))
                 .found(format!("{gap} at t = {t} of the first, at ({}, {}, {})", at.x, at.y, at.z))
@@ -73,15 +70,41 @@ impl<T: Real> Build<T> for Join<T> {
                 .help("move one of them, or state a larger `tolerance`")
                 .in_field(Self::SECOND));
         }
-        let shape = JoinedEdge { first: first.clone() };
+        let shape = AliasCurve { curve: first.clone(), trace: Trace::Pieces(first.pieces()) };
         let nesting = context.nesting.max(first.depth).max(second.depth);
         let mut edge = match &first.surface {
             Some(surface) => CurveRef::snake(shape, (**surface).clone(), nesting),
             None => CurveRef::new(shape, nesting),
         };
-        edge.joins = Some(Arc::new(([first, second], tolerance)));
+        edge.joins = Some(Arc::new(DeclaredJoin { edges: [first, second], tolerance, whole }));
         Ok(Value::Curve(edge))
     }
+}
+
+/// The widest gap between an edge and the part of another between two parameters, its parameter on
+/// the edge and its position; NaN if a position is.
+fn widest_gap<T: Real>(
+    edge: &CurveRef<T>,
+    other: &CurveRef<T>,
+    [from, to]: [f64; 2],
+) -> (f64, f64, Vec3) {
+    let mut widest = (0.0f64, 0.0, Vec3::zero());
+    for i in 0..=TRIALS {
+        let t = i as f64 / TRIALS as f64;
+        let place = |curve: &CurveRef<T>, t: f64| curve.jet(T::from(t), Order::Zero)[0].re();
+        let p = place(edge, t);
+        let gap = p.distance(place(other, from * (1.0 - t) + to * t));
+        // Written so that NaN counts.
+        if gap.is_nan() || gap > widest.0 {
+            widest = (gap, t, p);
+        }
+    }
+    widest
+}
+
+/// The parameter of the point of an edge nearest to `p`.
+fn nearest<T: Real>(edge: &CurveRef<T>, p: Vec3) -> f64 {
+    moldloft_locate::nearest_on_curve(&PlainCurve(&**edge), p, None).at[0]
 }
 
 /// True for a part of an edge or of a curve, false for all of it.
@@ -101,27 +124,4 @@ fn is_part<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<bool, CallErro
             .help("join the patches' edges piece by piece, or build both on one curve")
             .in_field(field)),
     }
-}
-
-struct JoinedEdge<T: Real> {
-    first: CurveRef<T>,
-}
-
-impl<T: Real> Curve<T> for JoinedEdge<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        self.first.jet(t, order)
-    }
-
-    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        self.first.grid(ts, out);
-    }
-    fn trace(&self) -> Trace<T> {
-        Trace::Pieces(self.first.pieces())
-    }
-
-    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
-        self.first.on_surface(t, order)
-    }
-
-    moldloft_num::curve_facts!(breaks of [self.first], closed of [self.first], rational of [self.first]);
 }

@@ -9,6 +9,7 @@ use moldloft_num::{
     Curve, CurveJet, Jet, Order, Plane, Real, SurfJet, Vec3, slope_scale, solve_dense,
 };
 use moldloft_registry::{FieldRef, SurfaceRef};
+use std::sync::Arc;
 
 /// The second shape of a cut.
 #[derive(Clone)]
@@ -140,9 +141,8 @@ impl<T: Real> CutPiece<T> {
     }
 }
 
-/// X(t) = S(w(t)) on both shapes.
+/// The common curve of two shapes, by the fraction of its length.
 pub(super) struct Cut<T: Real> {
-    pub trace: Trace<T>,
     pub both: Both<T>,
     pub pieces: Vec<CutPiece<T>>,
     pub total: T,
@@ -162,7 +162,7 @@ pub(super) struct Both<T: Real> {
 pub(super) struct CutJet<T> {
     pub x: Vec3<T>,
     pub tangent: Vec3<T>,
-    /// First derivatives of u and v.
+    /// First derivatives of u and v of one of the surfaces.
     rate: [T; 2],
     /// Second derivatives of u and v, and of the position.
     bend: [T; 2],
@@ -282,7 +282,18 @@ impl<T: Real> Both<T> {
 
     /// Derivatives with respect to the length at a point, in the direction of `d`: with N = n1 x n2
     /// for normals that are not unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
-    pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<CutJet<T>> {
+    pub fn along(&self, q: [T; 4], d: Vec3, order: Order) -> Option<CutJet<T>> {
+        self.along_on(0, q, d, order)
+    }
+
+    /// The same, with the parameters of the first (0) or the second surface (1).
+    fn along_on(
+        &self,
+        side: usize,
+        [u, v, p, r]: [T; 4],
+        d: Vec3,
+        order: Order,
+    ) -> Option<CutJet<T>> {
         let j = self.first.jet(u, v, order);
         let k = match &self.second {
             Second::Surface(surface) => Some(surface.jet(p, r, order)),
@@ -309,7 +320,8 @@ impl<T: Real> Both<T> {
             let a = s.u.dot(s.v);
             solve(&[[s.u.norm_sq(), a], [a, s.v.norm_sq()]], [x.dot(s.u), x.dot(s.v)])
         };
-        let rate = in_plane(&j, tangent)?;
+        let own = if side == 0 { &j } else { k.as_ref()? };
+        let rate = in_plane(own, tangent)?;
         let mut found =
             CutJet { x: j.p, tangent, rate, bend: [T::zero(); 2], curvature: Vec3::zero() };
         if order != Order::Second {
@@ -319,7 +331,7 @@ impl<T: Real> Both<T> {
         let turn = |s: &SurfJet<T>, [a, b]: [T; 2]| {
             (s.uu * a + s.uv * b).cross(s.v) + s.u.cross(s.uv * a + s.vv * b)
         };
-        let dm = turn(&j, rate);
+        let dm = turn(&j, in_plane(&j, tangent)?);
         let dn = match &k {
             Some(k) => turn(k, in_plane(k, tangent)?),
             None => match &self.second {
@@ -334,8 +346,8 @@ impl<T: Real> Both<T> {
         let change = dm.cross(n) + m.cross(dn);
         found.curvature = (change - tangent * tangent.dot(change)) / length;
         let [a, b] = rate;
-        let own = j.uu * (a * a) + j.uv * (a * b * 2.0) + j.vv * (b * b);
-        found.bend = in_plane(&j, found.curvature - own)?;
+        let turns = own.uu * (a * a) + own.uv * (a * b * 2.0) + own.vv * (b * b);
+        found.bend = in_plane(own, found.curvature - turns)?;
         Some(found)
     }
 }
@@ -349,18 +361,11 @@ impl<T: Real> Cut<T> {
         (piece, s - piece.begin)
     }
 
-    /// (u, v, 0) with derivatives by t.
+    /// (u, v, 0) on the first (0) or the second surface (1), with derivatives by t.
     ///
     /// The parameter is the fraction of the length, so derivatives are those with respect to
     /// length, from the normals of both shapes: they do not depend on the ends of pieces.
-    fn place(&self, t: T, order: Order) -> CurveJet<T> {
-        let first = PlainSurface(&*self.both.first);
-        let second = self.both.second.plain();
-        let crossing = Crossing::local(&first, second.other(), self.size);
-        self.place_of(&crossing, t, order)
-    }
-
-    fn place_of(&self, crossing: &Crossing<'_>, t: T, order: Order) -> CurveJet<T> {
+    fn place(&self, side: usize, crossing: &Crossing<'_>, t: T, order: Order) -> CurveJet<T> {
         let (piece, run) = self.share(t);
         let y = piece.at_length(run);
         let [c, d, _] = on_guide(&piece.guide, y.re());
@@ -368,43 +373,81 @@ impl<T: Real> Cut<T> {
         let solved = || crossing.across_close(guess, c, d / d.norm());
         let q = if piece.exact { guess } else { solved().unwrap_or(guess) };
         let flat = |[u, v]: [T; 2], by: T| Vec3::new(u * by, v * by, T::zero());
-        let plain_jet =
-            [flat([T::from(q[0]), T::from(q[1])], T::one()), Vec3::zero(), Vec3::zero()];
+        let pair = |q: [T; 4]| flat([q[2 * side], q[2 * side + 1]], T::one());
+        let plain_jet = [pair(q.map(T::from)), Vec3::zero(), Vec3::zero()];
         let Some(all) = self.both.unknowns(&piece.guide, q, y) else { return plain_jet };
-        let w = flat([all[0], all[1]], T::one());
+        let w = pair(all);
         if order == Order::Zero {
             return [w, Vec3::zero(), Vec3::zero()];
         }
-        let Some(along) = self.both.along(all, d, order) else { return plain_jet };
+        let Some(along) = self.both.along_on(side, all, d, order) else { return plain_jet };
         let rate = self.total;
         [w, flat(along.rate, rate), flat(along.bend, rate * rate)]
     }
+
+    /// Evaluates with the crossing of both shapes.
+    fn crossed<R>(&self, evaluate: impl FnOnce(&Crossing<'_>) -> R) -> R {
+        let first = PlainSurface(&*self.both.first);
+        let second = self.both.second.plain();
+        evaluate(&Crossing::local(&first, second.other(), self.size))
+    }
 }
 
-impl<T: Real> Curve<T> for Cut<T> {
+/// A cut on one of its surfaces.
+#[derive(Clone)]
+pub(super) struct CutView<T: Real> {
+    pub cut: Arc<Cut<T>>,
+    /// 0 for the first surface of the cut, 1 for the second.
+    pub side: usize,
+    /// True in the opposite direction.
+    pub backwards: bool,
+    pub trace: Trace<T>,
+    /// False for a curve in space, whose surface is not known.
+    pub snake: bool,
+}
+
+impl<T: Real> CutView<T> {
+    /// The surface that it is on; the first where the second shape is none.
+    pub fn surface(&self) -> &SurfaceRef<T> {
+        let second = self.cut.both.second.surface().filter(|_| self.side == 1);
+        second.unwrap_or(&self.cut.both.first)
+    }
+
+    fn place(&self, crossing: &Crossing<'_>, t: T, order: Order) -> CurveJet<T> {
+        if !self.backwards {
+            return self.cut.place(self.side, crossing, t, order);
+        }
+        let [w, d, dd] = self.cut.place(self.side, crossing, -t + 1.0, order);
+        [w, -d, dd]
+    }
+}
+
+impl<T: Real> Curve<T> for CutView<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface::on_surface_jet(&self.both.first, self.place(t, order), order)
+        let place = self.cut.crossed(|crossing| self.place(crossing, t, order));
+        super::on_surface::on_surface_jet(self.surface(), place, order)
     }
 
     /// Point by point, independently.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        let first = PlainSurface(&*self.both.first);
-        let second = self.both.second.plain();
-        let crossing = Crossing::local(&first, second.other(), self.size);
-        for (out, &t) in out.iter_mut().zip(ts) {
-            let [w, ..] = self.place_of(&crossing, T::from(t), Order::Zero);
-            *out = self.both.first.jet(w.x, w.y, Order::Zero).p;
-        }
+        self.cut.crossed(|crossing| {
+            for (out, &t) in out.iter_mut().zip(ts) {
+                let [w, ..] = self.place(crossing, T::from(t), Order::Zero);
+                *out = self.surface().jet(w.x, w.y, Order::Zero).p;
+            }
+        });
     }
 
     /// Crossings of joints and seams of the surfaces.
     fn breaks(&self) -> Vec<f64> {
-        let share = |p: &CutPiece<T>| p.begin.re() / self.total.re();
-        self.pieces[1..].iter().filter(|p| p.joint).map(share).collect()
+        let total = self.cut.total.re();
+        let joints = self.cut.pieces[1..].iter().filter(|p| p.joint);
+        let breaks = joints.map(|p| p.begin.re() / total);
+        if self.backwards { breaks.rev().map(|t| 1.0 - t).collect() } else { breaks.collect() }
     }
 
     fn closed(&self) -> bool {
-        self.closed
+        self.cut.closed
     }
 
     fn trace(&self) -> Trace<T> {
@@ -412,7 +455,7 @@ impl<T: Real> Curve<T> for Cut<T> {
     }
 
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
-        Some(self.place(t, order))
+        self.snake.then(|| self.cut.crossed(|crossing| self.place(crossing, t, order)))
     }
 
     moldloft_num::curve_facts!(broken, not_rational);

@@ -1,35 +1,82 @@
 //! Intersections of a surface with a plane, another surface or a field.
+//!
+//! An intersection is one curve ([`Cut`]), of two surfaces in the order of their declaration; a snake is a view of it
+//! on one of them.
 
 use super::arguments::{Onto, Target};
-use super::cut::{Both, Cut, CutJet, Second};
+use super::cut::{Both, Cut, CutJet, CutView, Second};
 use super::outcome::no_intersection;
 use super::pieces::{PieceEnd, at_seam, fitted, laid};
+use crate::alias::AliasCurve;
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other, TracePoint, Unknowns};
 use moldloft_locate::{LocateReport, LocateStatus, PlainSurface};
-use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
+use moldloft_num::trace::{Key, Trace};
+use moldloft_num::{Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, FieldId, Kind, Point, SearchReport, SearchStatus,
     SurfaceRef, Value,
 };
+use std::sync::Arc;
 
-/// The intersection of a surface with a plane, another surface or the zero set of a field, as a
-/// snake on the surface. Its parameter is the fraction of its length.
+/// The intersection of two surfaces, or of a surface with a plane or the zero set of a field: one
+/// curve, whichever surface it is used on. Its parameter is the fraction of its length.
 ///
-/// A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of its
-/// parameters (of the surface declared first). Other branches are reported. The direction of the
-/// snake is n1 x n2, the product of both normals. It extends from edge to edge, or from the magnet
-/// `start` to the magnet `end`, which must be on the intersection and keep their identity, so that
-/// patches join. A closed branch begins at the point nearest to the magnet or, without one, to
-/// S(0.3, 0.4) of the surface declared first: the cuts of two surfaces by each other are the same
-/// curve. Each point is on both shapes to rounding. At the seam of a closed surface the parameter
-/// jumps between 0 and 1.
+/// `IntSnake(a, x)` is the intersection `x` as a snake on its surface `a`. The snakes on both surfaces
+/// are `x` itself from end to end, so panels on both sides share its vertices.
+///
+/// A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of the
+/// parameters of the surface declared first. Other branches are reported. The direction is n1 x n2, the product of both
+/// normals. The curve extends from edge to edge, or from the magnet `start` to the magnet `end`, each on either
+/// surface and on the intersection, which keep their identity, so that patches join. A closed branch begins at
+/// the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface declared first. Each point
+/// is on both shapes to rounding.
 ///
 /// All branches are found that are longer than 2 % of the size and somewhere cross at an angle
 /// larger than the shapes turn within that length; of two branches closer than that all along, one
 /// may be missed. Shapes that only touch have no intersection.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel surface target start end",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0); AbsPoint E(2, -1, -2); \
+               AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); \
+               RuledSurf T(n, o, visible = 0); Intersection x(S, T); IntSnake a(S, x); IntSnake b(T, x); \
+               SubSurf half({S.u0, a}); SubSurf web({b, T.v1}); AbsBead p(x, 0.5); XPlane y(1); Intersection c(S, y);"
+)]
+pub struct Intersection<T: Real> {
+    /// The surface, or a magnet on it near the intended branch.
+    surface: Onto<T>,
+    /// The plane, the other surface (or a magnet on it), or the field with the zero set.
+    target: Target<T>,
+    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
+    start: Option<Magnet<T>>,
+    /// End.
+    end: Option<Magnet<T>>,
+    /// With a plane: selects the parallel plane through this point.
+    point: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for Intersection<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
+        let Self { surface, target, start, end, point } = self;
+        let found = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
+        let in_space = CutView { snake: false, ..found.view(0) };
+        let mut curve = CurveRef::new(in_space, context.nesting).with_found(found.report.clone());
+        let sides = if found.cut.both.second.surface().is_some() { 2 } else { 1 };
+        curve.snakes = (0..sides).map(|side| found.snake(side, context)).collect();
+        Ok(Value::Curve(curve))
+    }
+}
+
+/// The intersection of a surface with a plane, another surface or the zero set of a field, as a
+/// snake on the surface: [`Intersection`] on one of its surfaces.
+///
+/// `IntSnake(a, x)` is the intersection `x` on its surface `a`. Otherwise the arguments are those of the
+/// intersection: `IntSnake(a, b)` and `IntSnake(b, a)` are one curve in opposite directions, which patches on both
+/// sides share. At the seam of a closed surface the parameter jumps between 0 and 1.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -43,7 +90,8 @@ use moldloft_registry::{
 pub struct IntSnake<T: Real> {
     /// The surface of the snake, or a magnet on it near the intended branch.
     surface: Onto<T>,
-    /// The plane, the other surface (or a magnet on it), or the field with the zero set.
+    /// The plane, the other surface (or a magnet on it), the field with the zero set, or an intersection
+    /// on the surface.
     target: Target<T>,
     /// Start: a magnet or ring on the intersection. Default: the start of the branch.
     start: Option<Magnet<T>>,
@@ -56,84 +104,123 @@ pub struct IntSnake<T: Real> {
 impl<T: Real> Build<T> for IntSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, target, start, end, point } = self;
-        let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
-        let nesting = context.nesting;
-        Ok(Value::Curve(CurveRef::snake(shape, surface.surface, nesting).with_found(found)))
+        if let Target::Curve(along) = &target
+            && !along.curve.snakes.is_empty()
+        {
+            let unused = [
+                (surface.start.is_some() || along.start.is_some(), Self::SURFACE),
+                (start.is_some(), Self::START),
+                (end.is_some(), Self::END),
+                (point.is_some(), Self::POINT),
+            ];
+            if let Some((_, field)) = unused.into_iter().find(|(given, _)| *given) {
+                return Err(CallError::new(
+                    "unused-argument",
+                    "an intersection has its branch and its ends",
+                )
+                .expected("a surface and the intersection alone")
+                .found("a magnet or a point, too")
+                .help("give it to the intersection; `SubSnake` is a part of the snake")
+                .in_field(field));
+            }
+            return on_surface(&along.curve, &surface.surface, Self::SURFACE, context);
+        }
+        let found = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
+        let snake = found.snake(0, context);
+        Ok(Value::Curve(snake.with_found(found.report)))
     }
 }
 
-/// The intersection of a surface with a plane, another surface or the zero set of a field, as a
-/// curve in space: [`IntSnake`] without its surface.
-#[derive(Kind)]
-#[kind(
-    class = Curve,
-    columns = "relabel surface target start end",
-    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
-               Line l(A, B); Line m(C, D); RuledSurf S(l, m); XPlane x(2.5); IntCurve c(S, x); \
-               AbsBead b(c, 0.5);"
-)]
-pub struct IntCurve<T: Real> {
-    /// The surface, or a magnet on it near the intended branch.
-    surface: Onto<T>,
-    /// The plane, the other surface (or a magnet on it), or the field with the zero set.
-    target: Target<T>,
-    /// Start: a magnet or ring on the intersection. Default: the start of the branch.
-    start: Option<Magnet<T>>,
-    /// End.
-    end: Option<Magnet<T>>,
-    /// With a plane: selects the parallel plane through this point.
-    point: Option<Point<T>>,
+/// An intersection as a snake on one of its surfaces.
+fn on_surface<T: Real>(
+    whole: &CurveRef<T>,
+    surface: &SurfaceRef<T>,
+    field: FieldId,
+    context: &Context,
+) -> Result<Value<T>, CallError> {
+    let is_it =
+        |snake: &&CurveRef<T>| snake.surface.as_ref().is_some_and(|own| is_one(own, surface));
+    let Some(snake) = whole.snakes.iter().find(is_it) else {
+        return Err(CallError::new("wrong-surface", "the intersection is not on this surface")
+            .expected("one of the surfaces of the intersection")
+            .found("another surface")
+            .related(whole.key, "is the intersection")
+            .related(surface.key, "is the surface")
+            .in_field(field));
+    };
+    let pieces = whole.pieces();
+    let trace = if pieces.is_empty() { Trace::own() } else { Trace::Pieces(pieces) };
+    let nesting = context.nesting.max(whole.depth);
+    let curve = AliasCurve { curve: snake.clone(), trace };
+    Ok(Value::Curve(CurveRef::snake(curve, surface.clone(), nesting)))
 }
 
-impl<T: Real> Build<T> for IntCurve<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let Self { surface, target, start, end, point } = self;
-        let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
-        Ok(Value::Curve(CurveRef::new(InSpace(shape), context.nesting).with_found(found)))
-    }
+/// True for one surface: of one name, or the same shape without a name.
+fn is_one<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> bool {
+    if a.key.is_some() || b.key.is_some() { a.key == b.key } else { a.same(b) }
 }
 
-/// The fields that an intersection may fail for.
+/// The fields that an intersection may fail for, and the words for its ends.
 #[derive(Clone, Copy)]
 struct IntersectionFields {
     target: FieldId,
-    ends: [FieldId; 2],
+    ends: [(FieldId, &'static str); 2],
 }
 
 impl<T: Real> IntSnake<T> {
-    const FIELDS: IntersectionFields =
-        IntersectionFields { target: Self::TARGET, ends: [Self::START, Self::END] };
+    const FIELDS: IntersectionFields = IntersectionFields {
+        target: Self::TARGET,
+        ends: [(Self::START, "start"), (Self::END, "end")],
+    };
 }
 
-impl<T: Real> IntCurve<T> {
-    const FIELDS: IntersectionFields =
-        IntersectionFields { target: Self::TARGET, ends: [Self::START, Self::END] };
+impl<T: Real> Intersection<T> {
+    const FIELDS: IntersectionFields = IntersectionFields {
+        target: Self::TARGET,
+        ends: [(Self::START, "start"), (Self::END, "end")],
+    };
 }
 
-/// A cut that is not known as a curve on its surface.
-struct InSpace<T: Real>(Cut<T>);
-
-impl<T: Real> Curve<T> for InSpace<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        self.0.jet(t, order)
-    }
-    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        self.0.grid(ts, out);
-    }
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
-    }
-    fn closed(&self) -> bool {
-        self.0.closed()
-    }
-    fn trace(&self) -> Trace<T> {
-        self.0.trace()
-    }
-
-    moldloft_num::curve_facts!(broken, not_rational);
+/// A given end of an intersection.
+struct CutEnd<T: Real> {
+    x: Vec3<T>,
+    /// Its surface, 0 or 1 of the cut, and its parameters there.
+    side: usize,
+    uv: [f64; 2],
+    key: Option<Key>,
 }
 
-/// The cut of a surface, from the arguments of both kinds.
+/// An intersection that was found from the surfaces as they are given.
+struct FoundCut<T: Real> {
+    cut: Arc<Cut<T>>,
+    /// True if the surface that is given first is the second of the cut: then the intersection has
+    /// the opposite direction.
+    swapped: bool,
+    trace: Trace<T>,
+    report: SearchReport,
+}
+
+impl<T: Real> FoundCut<T> {
+    /// On the surface that is given first (0) or second (1).
+    fn view(&self, given: usize) -> CutView<T> {
+        CutView {
+            cut: self.cut.clone(),
+            side: given ^ usize::from(self.swapped),
+            backwards: self.swapped,
+            trace: self.trace.clone(),
+            snake: true,
+        }
+    }
+
+    fn snake(&self, given: usize, context: &Context) -> CurveRef<T> {
+        let view = self.view(given);
+        let surface = view.surface().clone();
+        CurveRef::snake(view, surface, context.nesting)
+    }
+}
+
+/// The intersection, from the arguments of both kinds. Two named surfaces are cut in the order of
+/// their declaration, in whichever order they are given: there is one curve.
 fn cut<T: Real>(
     surface: &Onto<T>,
     target: Target<T>,
@@ -141,8 +228,8 @@ fn cut<T: Real>(
     point: Option<Point<T>>,
     fields: IntersectionFields,
     context: &Context,
-) -> Result<(Cut<T>, SearchReport), CallError> {
-    let (other, second_start) = match target {
+) -> Result<FoundCut<T>, CallError> {
+    let (second, second_start) = match target {
         Target::Plane(plane) => {
             let point = point.map_or(plane.point, |p| p.xyz);
             (Second::Plane(Plane { point, normal: plane.normal }), None)
@@ -157,38 +244,107 @@ fn cut<T: Real>(
                 "wrong-class",
                 "a surface is cut by a plane, a surface or a field",
             )
-            .expected("a plane, a surface, a magnet or a field")
+            .expected("a plane, a surface, a magnet, a field or, for a snake, an intersection")
             .found("a curve or a point")
             .in_field(fields.target));
         }
     };
-    for (field, magnet) in fields.ends.into_iter().zip([&start, &end]) {
-        if let Some(magnet) = magnet {
-            let named = magnet.surface.key.is_some() || surface.surface.key.is_some();
-            let same = if named {
-                magnet.surface.key == surface.surface.key
-            } else {
-                magnet.surface.same(&surface.surface)
-            };
-            if !same {
-                return Err(CallError::new("wrong-surface", "the end is on another surface")
-                    .expected("a magnet or ring of the surface that is cut")
-                    .found("one of another surface")
-                    .related(magnet.key, "is on another surface")
-                    .related(magnet.surface.key, "is its surface")
-                    .in_field(field));
-            }
-        }
-    }
     let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
-    let (shape, found) = traced(surface, other, second_start, [start, end], fields, context)?;
-    let closed = shape.closed;
-    let trace = match (keys, closed) {
+    let mut request = CutRequest {
+        first: surface.surface.clone(),
+        second,
+        starts: [surface.start, second_start],
+        ends: [None, None],
+        swapped: false,
+        fields,
+    };
+    for (k, magnet) in [start, end].into_iter().enumerate() {
+        request.ends[k] = magnet.map(|magnet| request.end(magnet, k)).transpose()?;
+    }
+    request.order();
+    let swapped = request.swapped;
+    let (cut, report) = traced(request, context)?;
+    let trace = match (keys, cut.closed) {
         // A closed snake ends where it begins.
         ([Some(k), None], true) => Trace::Own([Some(k); 2]),
         _ => Trace::Own(keys),
     };
-    Ok((Cut { trace, ..shape }, found))
+    Ok(FoundCut { cut: Arc::new(cut), swapped, trace, report })
+}
+
+/// Two shapes, and what selects a branch of their intersection and its ends.
+struct CutRequest<T: Real> {
+    first: SurfaceRef<T>,
+    second: Second<T>,
+    /// The parameters of magnets near the branch, on each surface.
+    starts: [Option<[T; 2]>; 2],
+    ends: [Option<CutEnd<T>>; 2],
+    /// True if the surfaces are in the opposite order to the given one, and so are the ends.
+    swapped: bool,
+    fields: IntersectionFields,
+}
+
+impl<T: Real> CutRequest<T> {
+    /// The end `k` at a magnet on one of the surfaces.
+    fn end(&self, magnet: Magnet<T>, k: usize) -> Result<CutEnd<T>, CallError> {
+        let surfaces = [Some(&self.first), self.second.surface()];
+        let is_it = |surface: &Option<&SurfaceRef<T>>| {
+            surface.is_some_and(|surface| is_one(surface, &magnet.surface))
+        };
+        let Some(side) = surfaces.iter().position(is_it) else {
+            return Err(CallError::new("wrong-surface", "the end is on another surface")
+                .expected("a magnet or ring of a surface of the intersection")
+                .found("one of another surface")
+                .related(magnet.key, "is on another surface")
+                .related(magnet.surface.key, "is its surface")
+                .in_field(self.fields.ends[k].0));
+        };
+        let [u, v] = magnet.uv;
+        let x = magnet.surface.jet(u, v, Order::Zero).p;
+        Ok(CutEnd { x, side, uv: magnet.uv.map(|x| x.re()), key: magnet.key })
+    }
+
+    /// Exchanges named surfaces that are not in the order of their declaration.
+    fn order(&mut self) {
+        let Second::Surface(second) = &mut self.second else { return };
+        let (Some(a), Some(b)) = (self.first.key, second.key) else { return };
+        if b < a {
+            std::mem::swap(&mut self.first, second);
+            self.starts.swap(0, 1);
+            self.ends.swap(0, 1);
+            self.fields.ends.swap(0, 1);
+            self.ends.iter_mut().flatten().for_each(|end| end.side = 1 - end.side);
+            self.swapped = true;
+        }
+    }
+
+    /// The point that a closed branch without a start begins next to: the magnet or, without one, a point
+    /// off the usual symmetries of surfaces, so that it is unique as a rule.
+    fn reference(&self) -> Vec3<T> {
+        let at = |surface: &SurfaceRef<T>, [u, v]: [T; 2]| surface.jet(u, v, Order::Zero).p;
+        match (self.starts, self.second.surface()) {
+            ([None, Some(uv)], Some(second)) => at(second, uv),
+            ([uv, _], _) => at(&self.first, uv.unwrap_or([0.3, 0.4].map(T::from))),
+        }
+    }
+
+    /// Parameters from which the branch is searched, on each surface.
+    fn seeds(&self, first: &PlainSurface<'_, T>) -> [Option<[f64; 2]>; 2] {
+        let end = self.ends.iter().flatten().next();
+        let seed = |side: usize| {
+            let start = self.starts[side].map(|uv| uv.map(|x| x.re()));
+            start.or_else(|| end.filter(|end| end.side == side).map(|end| end.uv))
+        };
+        let [own, other] = [seed(0), seed(1)];
+        let nearest = || {
+            let x = match (self.starts[1], end) {
+                (None, Some(end)) => end.x.re(),
+                _ => self.reference().re(),
+            };
+            Some(moldloft_locate::nearest_on_surface(first, x, None).at)
+        };
+        [own.or_else(|| other.and_then(|_| nearest())), other]
+    }
 }
 
 /// The end of a branch at an edge: unknown `k` stays, the others follow.
@@ -260,17 +416,12 @@ fn lost(why: &str) -> CallError {
         .help("move one of them, or give `start` and `end` before the point of contact")
 }
 
-/// Follows the intersection and sets up the snake.
+/// Follows the intersection and sets it up.
 fn traced<T: Real>(
-    onto: &Onto<T>,
-    second: Second<T>,
-    second_start: Option<[T; 2]>,
-    ends: [Option<Magnet<T>>; 2],
-    fields: IntersectionFields,
+    request: CutRequest<T>,
     context: &Context,
 ) -> Result<(Cut<T>, SearchReport), CallError> {
-    let first = &onto.surface;
-    let reference = BranchReference::new(onto, &second, second_start);
+    let (first, second, fields) = (&request.first, &request.second, request.fields);
     let plain = PlainSurface(&**first);
     let plain_second = second.plain();
     let crossing = match plain_second.other() {
@@ -278,13 +429,11 @@ fn traced<T: Real>(
         Other::Surface(surface) => Crossing::with_surface(&plain, surface),
         Other::Level(field) => Crossing::with_level(&plain, field),
     };
-    let given = onto.from().or_else(|| ends[0].as_ref().map(|m| m.uv.map(|x| x.re())));
-    let given = given.or_else(|| {
-        let place = second_start.map(|_| reference.place.re())?;
-        Some(moldloft_locate::nearest_on_surface(&plain, place, None).at)
-    });
-    let second_from = second_start.map(|uv| uv.map(|x| x.re()));
-    let seed = given.and_then(|uv| crossing.near(uv, second_from));
+    let seeds = request.seeds(&plain);
+    // The parameters that a report states are those of the surface that is given first.
+    let given = usize::from(request.swapped);
+    let report_at = |q: &Unknowns| vec![q[2 * given], q[2 * given + 1]];
+    let seed = seeds[0].and_then(|uv| crossing.near(uv, seeds[1]));
     let mut status = SearchStatus::Ok;
     let mut alternatives = Vec::new();
     let branch = match seed.and_then(|q| crossing.branch(q)) {
@@ -292,11 +441,9 @@ fn traced<T: Real>(
         None => {
             let found = crossing.branches();
             let mut all = found.branches;
-            let from = given.unwrap_or([0.5, 0.5]);
-            let side = if given.is_some() { 0 } else { 2 * reference.side };
+            let from = seeds[0].unwrap_or([0.5, 0.5]);
             let away = |b: &Branch| {
-                let d =
-                    |q: &Unknowns| (q[side] - from[0]).powi(2) + (q[side + 1] - from[1]).powi(2);
+                let d = |q: &Unknowns| (q[0] - from[0]).powi(2) + (q[1] - from[1]).powi(2);
                 b.stations.iter().map(|s| d(&s.q)).fold(f64::INFINITY, f64::min)
             };
             let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
@@ -304,31 +451,9 @@ fn traced<T: Real>(
                 if let Some(touch) = found.touches.first() {
                     return Err(touching(touch.x).in_field(fields.target));
                 }
-                let x = plain.jet(from[0], from[1], Order::Zero).p;
-                let residual = match crossing.other {
-                    Other::Plane(plane) => plane.distance(x).abs(),
-                    Other::Level(field) => {
-                        let (f, g) = field.value_and_gradient(x);
-                        (f * slope_scale(g)).abs()
-                    }
-                    Other::Surface(s) => {
-                        let [p, r] = moldloft_locate::nearest_on_surface(s, x, None).at;
-                        s.jet(p, r, Order::Zero).p.distance(x)
-                    }
-                };
-                let report = LocateReport {
-                    status: LocateStatus::NoSolution,
-                    residual,
-                    iterations: 0,
-                    start: from.into_iter().collect(),
-                    last: from.into_iter().collect(),
-                    alternatives: Vec::new(),
-                };
-                return Err(
-                    no_intersection(&report, "surface", second.name()).in_field(fields.target)
-                );
+                return Err(apart(&crossing, from, second.name()).in_field(fields.target));
             };
-            if given.is_some() {
+            if seeds[0].is_some() {
                 status = SearchStatus::Fallback;
             } else if all.len() > 1 {
                 let middle = |b: &Branch| b.stations[b.stations.len() / 2];
@@ -339,74 +464,76 @@ fn traced<T: Real>(
                     .map(|s| own.iter().map(|o| o.x.distance(s.x)).fold(f64::INFINITY, f64::min))
                     .fold(f64::INFINITY, f64::min);
                 status = SearchStatus::Multiple { count: all.len(), chosen, next };
-                for (k, b) in all.iter().enumerate().filter(|(k, _)| *k != chosen) {
-                    let _ = k;
-                    let s = middle(b);
-                    alternatives.push((s.q[..2].to_vec(), s.x));
-                }
+                let others = all.iter().enumerate().filter(|(k, _)| *k != chosen);
+                let middles = others.map(|(_, b)| middle(b));
+                alternatives.extend(middles.map(|s| (report_at(&s.q), s.x)));
             }
             all.swap_remove(chosen)
         }
     };
-    let begin = branch.stations[0].q;
-    let place = reference.place;
-    let shape = set_up(first, second.clone(), &crossing, branch, place, (&ends, fields), context)?;
+    let begin = if request.swapped { branch.stations.last() } else { branch.stations.first() };
+    let last = begin.map_or_else(Vec::new, |s| report_at(&s.q));
+    let shape = set_up(&request, &crossing, branch, context)?;
     let found = SearchReport {
         status,
         residual: 0.0,
         iterations: shape.pieces.len() as u32,
-        start: given.map_or_else(|| vec![0.5, 0.5], |uv| uv.to_vec()),
-        last: vec![begin[0], begin[1]],
+        start: seeds[given].map_or_else(|| vec![0.5, 0.5], |uv| uv.to_vec()),
+        last,
         alternatives,
         advice: "to choose another branch, give a magnet near it instead of the surface",
     };
     Ok((shape, found))
 }
 
-/// Data that select a branch of two shapes and the start of a closed one; the same for both cuts of
-/// two surfaces by each other.
-struct BranchReference<T> {
-    /// The shape, 0 or 1, that decides: of two named surfaces the one declared first, unless the other alone is given by
-    /// a magnet.
-    side: usize,
-    /// The magnet, or a point off the usual symmetries of surfaces, so that the nearest point of a
-    /// closed branch is unique as a rule.
-    place: Vec3<T>,
+/// The error of shapes that do not meet.
+fn apart(crossing: &Crossing<'_>, from: [f64; 2], second: &'static str) -> CallError {
+    let x = crossing.first.jet(from[0], from[1], Order::Zero).p;
+    let residual = match crossing.other {
+        Other::Plane(plane) => plane.distance(x).abs(),
+        Other::Level(field) => {
+            let (f, g) = field.value_and_gradient(x);
+            (f * slope_scale(g)).abs()
+        }
+        Other::Surface(s) => {
+            let [p, r] = moldloft_locate::nearest_on_surface(s, x, None).at;
+            s.jet(p, r, Order::Zero).p.distance(x)
+        }
+    };
+    let report = LocateReport {
+        status: LocateStatus::NoSolution,
+        residual,
+        iterations: 0,
+        start: from.into_iter().collect(),
+        last: from.into_iter().collect(),
+        alternatives: Vec::new(),
+    };
+    no_intersection(&report, "surface", second)
 }
 
-impl<T: Real> BranchReference<T> {
-    fn new(onto: &Onto<T>, second: &Second<T>, second_start: Option<[T; 2]>) -> Self {
-        let starts = [onto.start, second_start];
-        let surfaces = [Some(&onto.surface), second.surface()];
-        let keys = surfaces.map(|s| s.and_then(|s| s.key));
-        let earlier = usize::from(matches!(keys, [Some(a), Some(b)] if b < a));
-        let side = if starts[earlier].is_none() && starts[1 - earlier].is_some() {
-            1 - earlier
-        } else {
-            earlier
-        };
-        let [u, v] = starts[side].unwrap_or([0.3, 0.4].map(T::from));
-        let surface = surfaces[side].unwrap_or(&onto.surface);
-        Self { side, place: surface.jet(u, v, Order::Zero).p }
-    }
+/// The error of a closed branch with an end alone.
+fn no_start(field: FieldId) -> CallError {
+    CallError::new("missing-argument", "a closed branch with an end needs a start")
+        .expected("a magnet or ring where it starts")
+        .found("an end only")
+        .in_field(field)
 }
 
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
 fn set_up<T: Real>(
-    first: &SurfaceRef<T>,
-    second: Second<T>,
+    request: &CutRequest<T>,
     crossing: &Crossing<'_>,
     mut branch: Branch,
-    reference: Vec3<T>,
-    (ends, fields): (&[Option<Magnet<T>>; 2], IntersectionFields),
     context: &Context,
 ) -> Result<Cut<T>, CallError> {
+    let (first, second, fields) = (&request.first, &request.second, request.fields);
+    let reference = request.reference();
+    let mut ends = request.ends.each_ref().map(Option::as_ref);
     // Stations of the given ends.
     let mut places = [None, None];
-    for (k, magnet) in ends.iter().enumerate() {
-        let Some(magnet) = magnet else { continue };
-        let uv = magnet.uv.map(|x| x.re());
-        let x = first.jet(T::from(uv[0]), T::from(uv[1]), Order::Zero).p.re();
+    for (k, end) in ends.iter().enumerate() {
+        let Some(end) = end else { continue };
+        let x = end.x.re();
         let at = (0..branch.stations.len().saturating_sub(1))
             .filter_map(|i| {
                 let (a, b) = (&branch.stations[i], &branch.stations[i + 1]);
@@ -424,7 +551,7 @@ fn set_up<T: Real>(
         match station {
             Some(place) => places[k] = Some(place),
             None => {
-                let which = ["start", "end"][k];
+                let (field, which) = fields.ends[k];
                 return Err(CallError::new(
                     "open-end",
                     format!("the {which} is not on the intersection"),
@@ -432,26 +559,26 @@ fn set_up<T: Real>(
                 .expected(format!("a magnet within {:e} of it", context.tolerance))
                 .found("a magnet away from it")
                 .help("make it by IntRing, IntMagnet or IntBead with the same surface or plane")
-                .related(magnet.key, "is the magnet")
-                .in_field(fields.ends[k]));
+                .related(end.key, "is the magnet")
+                .in_field(field));
             }
         }
     }
     let closed = branch.closed();
-    if closed && places[0].is_none() && places[1].is_some() {
-        return Err(CallError::new(
-            "missing-argument",
-            "a closed branch with an end needs a start",
-        )
-        .expected("a magnet or ring where it starts")
-        .found("an end only")
-        .in_field(fields.ends[0]));
+    // The given start is the end of the opposite direction.
+    let start = usize::from(request.swapped);
+    if closed && places[start].is_none() && places[1 - start].is_some() {
+        return Err(no_start(fields.ends[start].0));
+    }
+    if closed && places[0].is_none() {
+        ends.swap(0, 1);
+        places.swap(0, 1);
     }
     let mut reversed = false;
     let whole = closed && places[1].is_none();
     if closed {
         branch.stations.pop();
-        let first_place = match &ends[0] {
+        let first_place = match ends[0] {
             None => nearest_station(crossing, &branch.stations, reference.re()),
             Some(_) => places[0],
         };
@@ -509,15 +636,15 @@ fn set_up<T: Real>(
             return Err(lost("a point where they are tangent").in_field(fields.target));
         }
     }
-    let stops = with_joints(first, &second, crossing, &branch);
+    let stops = with_joints(first, second, crossing, &branch);
     // The ends, with derivatives.
     let at_joint = |q: &Unknowns, (unknown, value): (usize, f64)| {
-        edge_point(first, &second, *q, unknown, value)
+        edge_point(first, second, *q, unknown, value)
     };
     let end_place = |k: usize| -> Option<Vec3<T>> {
         let station = [stops.first(), stops.last()][k]?.station;
-        if let Some(magnet) = &ends[k] {
-            return Some(first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p);
+        if let Some(end) = ends[k] {
+            return Some(end.x);
         }
         if whole {
             return None;
@@ -529,10 +656,8 @@ fn set_up<T: Real>(
     };
     let places = [end_place(0), end_place(1)];
     // A closed branch begins in the plane through its start across its own direction.
-    let shift = ends[0].as_ref().filter(|_| whole).map(|magnet| {
-        let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
-        (x, Vec3::lifted(stops[0].station.tangent))
-    });
+    let shift =
+        ends[0].filter(|_| whole).map(|end| (end.x, Vec3::lifted(stops[0].station.tangent)));
     let failed = || lost("a point where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
@@ -579,7 +704,7 @@ fn set_up<T: Real>(
         piece.begin -= offsets[0];
     }
     let total = sum + offsets[1] - offsets[0];
-    Ok(Cut { trace: Trace::own(), both, pieces, total, size: crossing.size, closed: whole })
+    Ok(Cut { both, pieces, total, size: crossing.size, closed: whole })
 }
 
 /// Stations within this fraction of the distance to the next are moved onto a joint.

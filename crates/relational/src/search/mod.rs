@@ -23,7 +23,7 @@ pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBea
 pub use distances::{distance_from_curve, distance_from_surface, separation};
 pub use geodesic::GeoSnake;
 pub use int_point::IntPoint;
-pub use intersect_snake::{IntCurve, IntSnake};
+pub use intersect_snake::{IntSnake, Intersection};
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;
 pub use project_snake::{ProjCurve, ProjSnake};

@@ -1,8 +1,8 @@
 //! The curves along which a fillet touches its surfaces.
 
 use super::edge_trace;
-use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use crate::alias::AliasCurve;
+use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
 /// The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
@@ -49,29 +49,6 @@ impl<T: Real> Build<T> for ContactSnake<T> {
         let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
         let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");
         let nesting = context.nesting.max(curve.depth);
-        Ok(Value::Curve(CurveRef::snake(ContactCurve { curve, trace }, surface, nesting)))
+        Ok(Value::Curve(CurveRef::snake(AliasCurve { curve, trace }, surface, nesting)))
     }
-}
-
-/// The curve along which a fillet touches, as its edge.
-struct ContactCurve<T: Real> {
-    curve: CurveRef<T>,
-    trace: Trace<T>,
-}
-
-impl<T: Real> Curve<T> for ContactCurve<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        self.curve.jet(t, order)
-    }
-    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        self.curve.grid(ts, out);
-    }
-    fn trace(&self) -> Trace<T> {
-        self.trace.clone()
-    }
-    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
-        self.curve.on_surface(t, order)
-    }
-
-    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }

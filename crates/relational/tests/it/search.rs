@@ -377,7 +377,7 @@ const PIPE: &str = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); A
 
 #[test]
 fn closed_intersections_need_no_magnet_and_run_across_seams() {
-    let text = format!("{PIPE} XPlane x(1.5); IntSnake c(S, x); IntCurve d(S, x);");
+    let text = format!("{PIPE} XPlane x(1.5); IntSnake c(S, x); Intersection d(S, x);");
     let s = scene(&text);
     for name in ["c", "d"] {
         let c = curve(&s, name);
@@ -408,13 +408,38 @@ fn closed_intersections_need_no_magnet_and_run_across_seams() {
         AbsPoint E(2, 2.1, 4.5); AbsPoint F(4, 2, 2); AbsPoint G(0, 4, 0.1); AbsPoint H(2, 4.1, 2);
         AbsPoint I(4, 4, 0); BCurve k({A, B, C}); BCurve l({D, E, F}); BCurve n({G, H, I});
         BLoftSurf S({k, l, n}); AbsPoint N(2, 2.1, 1.9); AbsPoint P(2.1, 2.3, 3.5); TwoPointPlane p(N, P);
-        IntSnake e(S, p); IntCurve f(S, p); AbsPoint J(-1, -1, 1.8); AbsPoint K(5, -1, 2); AbsPoint L(-1, 5, 1.9);
-        AbsPoint M(5, 5, 2.1); Line a(J, K); Line b(L, M); RuledSurf T(a, b); IntSnake o(S, T);";
-    for name in ["e", "f", "o"] {
-        let c = curve(&scene(text), name);
+        IntSnake e(S, p); Intersection f(S, p); AbsPoint J(-1, -1, 1.8); AbsPoint K(5, -1, 2); AbsPoint L(-1, 5, 1.9);
+        AbsPoint M(5, 5, 2.1); Line a(J, K); Line b(L, M); RuledSurf T(a, b); IntSnake o(S, T);
+        IntSnake against(T, S); Intersection x(S, T); IntSnake low(S, x); IntSnake high(T, x);
+        AbsRing r(o, 0.3); AbsRing q(o, 0.7); Intersection near(S, T, start = r, end = q);
+        IntSnake far(T, S, start = r, end = q);";
+    let names = ["e", "f", "o", "against", "x", "low", "high"];
+    let s = scene(text);
+    for name in names {
+        let c = curve(&s, name);
         assert!(c.end(0.0).distance(c.end(1.0)) < 1e-10, "{name} is closed");
     }
-    check_derivatives(text, &["e", "f", "o"], 1e-6);
+    check_derivatives(text, &names, 1e-6);
+    // One curve, whichever surface it is on.
+    let o = curve(&s, "o");
+    for k in 0..=40 {
+        let t = f64::from(k) / 40.0;
+        let [p, d, dd] = o.jet(t, Order::Second);
+        for (name, t, sign) in
+            [("x", t, 1.0), ("low", t, 1.0), ("high", t, 1.0), ("against", 1.0 - t, -1.0)]
+        {
+            let [q, e, ee] = curve(&s, name).jet(t, Order::Second);
+            assert!(p.distance(q) < 1e-12, "{name} {t}: {p:?} {q:?}");
+            assert!(d.distance(e * sign) < 1e-9 && dd.distance(ee) < 1e-7, "{name} {t}");
+        }
+    }
+    // Ends on one surface hold for both; each direction takes its own way between them.
+    let [near, far] = ["near", "far"].map(|name| curve(&s, name));
+    for c in [&near, &far] {
+        assert!(c.end(0.0).distance(o.end(0.3)) < 1e-11 && c.end(1.0).distance(o.end(0.7)) < 1e-11);
+    }
+    assert!(near.end(0.5).distance(o.end(0.5)) < 1e-10);
+    assert!(far.end(0.5).distance(o.end(0.0)) < 1e-10);
 }
 
 #[test]

@@ -114,7 +114,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let curve = p.curve();
             format!("{}, {}", p.bead(&curve), p.bead(&curve))
         }
-        "IntCurve" => {
+        "Intersection" => {
             let (sheet, at) = (p.sheet(), p.number(1.0, 3.0));
             format!("{sheet}, {}", p.object("XPlane", &format!("{at}*w")))
         }

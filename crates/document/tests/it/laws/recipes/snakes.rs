@@ -88,7 +88,8 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         "IntSnake" => {
             let sheet = p.sheet();
-            match p.random.below(2) {
+            let way = p.random.below(4);
+            match way {
                 0 => {
                     let at = p.number(1.0, 3.0);
                     let plane = p.object("XPlane", &format!("{at}*w"));
@@ -104,7 +105,14 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                         p.object("Line", &format!("{c}, {d}")),
                     );
                     let wall = p.object("RuledSurf", &format!("{l}, {m}, visible = 0"));
-                    format!("{sheet}, {wall}")
+                    match way {
+                        1 => format!("{sheet}, {wall}"),
+                        2 => format!("{wall}, {sheet}"),
+                        _ => {
+                            let x = p.object("Intersection", &format!("{sheet}, {wall}"));
+                            format!("{wall}, {x}")
+                        }
+                    }
                 }
             }
         }

@@ -1,0 +1,171 @@
+"""Assemblies whose parts meet along an intersection, of random sizes and attitudes.
+
+Closedness is judged by the faces of the mesh and the closed forms of plane, cone and sphere: a
+vertex on both shapes is on their intersection, where each edge of the mesh belongs to two faces.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import moldloft
+
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
+CASES = 200 if SOAK else 6
+SETTINGS = 40 if SOAK else 6
+
+Distance = Callable[[moldloft.Model, np.ndarray], np.ndarray]
+
+
+def frame(rng: np.random.Generator) -> np.ndarray:
+    """Three random orthogonal unit vectors, as rows."""
+    axes: np.ndarray = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    return axes
+
+
+def place(name: str, *terms: tuple[np.ndarray, str]) -> str:
+    """A point object, the sum of vectors times expressions."""
+    axes = (" + ".join(f"({float(v[k])!r})*({by})" for v, by in terms) for k in range(3))
+    return f"AbsPoint {name}({', '.join(axes)});"
+
+
+def point(model: moldloft.Model, name: str) -> np.ndarray:
+    return np.array([model[name].x, model[name].y, model[name].z])
+
+
+def plane(model: moldloft.Model, places: np.ndarray) -> np.ndarray:
+    a, b, c = (point(model, name) for name in ("W0", "W1", "W2"))
+    normal = np.cross(b - a, c - a)
+    off: np.ndarray = (places - a) @ normal / np.linalg.norm(normal)
+    return off
+
+
+def cone(model: moldloft.Model, places: np.ndarray) -> np.ndarray:
+    p, q, g, h = (point(model, name) for name in ("P", "Q", "G", "H"))
+    along = (q - p) / np.linalg.norm(q - p)
+    t = (places - p) @ along
+    radii = np.linalg.norm(g - p), np.linalg.norm(h - q)
+    wanted = radii[0] + (radii[1] - radii[0]) * t / np.linalg.norm(q - p)
+    off: np.ndarray = np.linalg.norm(places - p - t[:, None] * along, axis=1) - wanted
+    return off
+
+
+def ball(model: moldloft.Model, places: np.ndarray) -> np.ndarray:
+    north, south = (point(model, name) for name in ("N", "S"))
+    middle, radius = (north + south) / 2, np.linalg.norm(north - south) / 2
+    off: np.ndarray = np.linalg.norm(places - middle, axis=1) - radius
+    return off
+
+
+def shaft(rng: np.random.Generator, e: np.ndarray) -> str:
+    """A cone about the third axis through the origin, from -2 to 2, with a radius near 0.4 r."""
+    turn = rng.uniform(0, 2 * np.pi)
+    out = e[0] * np.cos(turn) + e[1] * np.sin(turn)
+    off, taper = (
+        e[0] * rng.uniform(-0.3, 0.3) + e[1] * rng.uniform(-0.3, 0.3),
+        rng.uniform(0.8, 1.25),
+    )
+    return " ".join(
+        (
+            place("P", (e[2], "-2"), (off, "d")),
+            place("Q", (e[2], "2"), (off, "d")),
+            place("G", (e[2], "-2"), (off, "d"), (out, "0.4*r")),
+            place("H", (e[2], "2"), (off, "d"), (out, f"0.4*r*{taper!r}")),
+            "Line axis(P, Q); Line rule(G, H); RevSurf shaft(rule, axis, 0, 2*PI, visible = 0);",
+        )
+    )
+
+
+def pipe_through_plate(rng: np.random.Generator) -> tuple[list[str], str, Distance]:
+    """Also a leg on the deck of a pontoon."""
+    e, size = frame(rng), rng.uniform(1.6, 3)
+    lean = rng.uniform(-0.4, 0.4, 2)
+    a, b = e[0] + e[2] * lean[0], e[1] + e[2] * lean[1]
+    corners = [
+        place(f"W{k}", (a, f"{x * size!r}"), (b, f"{y * size!r}"), (e[2] * x, "0.2*k"))
+        for k, (x, y) in enumerate([(-1, -1), (1, -1), (-1, 1), (1, 1)])
+    ]
+    wall = " ".join(corners) + " Line w(W0, W1); Line v(W2, W3); RuledSurf base(w, v, visible = 0);"
+    return [wall, shaft(rng, e)], "TrimSurf plate(base, {hole}, whole = 1);", plane
+
+
+def strut_on_ball(rng: np.random.Generator) -> tuple[list[str], str, Distance]:
+    """A strut on the round end of a torpedo; its other side is not reached."""
+    e, size = frame(rng), rng.uniform(1.2, 1.6)
+    # The shaft, from -2 to 2, meets the ball about 2 e3 once.
+    tilt = rng.uniform(0, 2 * np.pi)
+    up = e[0] * np.cos(tilt) + e[1] * np.sin(tilt)
+    side = np.cross(up, e[2])
+    body = " ".join(
+        (
+            place("N", (e[2], "2.4"), (up, f"{size!r}*(1 + 0.1*k)")),
+            place("S", (e[2], "2.4"), (up, f"-{size!r}*(1 + 0.1*k)")),
+            place("M", (e[2], "2.4"), (side, f"{size!r}*(1 + 0.1*k)")),
+            "Arc meridian(N, M, S); Line poles(N, S);",
+            "RevSurf base(meridian, poles, 0, 2*PI, visible = 0);",
+        )
+    )
+    return [body, shaft(rng, e)], "TrimSurf plate(base, {hole}, whole = 1);", ball
+
+
+KINDS = (pipe_through_plate, strut_on_ball)
+
+
+def assembly(rng: np.random.Generator) -> tuple[str, Distance]:
+    """The program of an assembly, and the distance from its base."""
+    parts, cut, distance = KINDS[rng.integers(len(KINDS))](rng)
+    sides = ["base", "shaft"][:: 1 if rng.random() < 0.5 else -1]
+    named = [
+        f"Intersection x({sides[0]}, {sides[1]}); IntSnake hole(base, x); IntSnake rim(shaft, x);",
+        "IntSnake hole(base, shaft); IntSnake rim(shaft, base);",
+    ]
+    count = int(rng.integers(8, 30))
+    faces = [cut, f"SubSurf tube({{rim, shaft.u0}}, divisions = {{{count}, 3}});"]
+    text = [
+        "param float r = 1 in [0.7, 1.3];",
+        "param float d = 0 in [-1, 1]; param float k = 0 in [-1, 1];",
+        *(parts[k] for k in rng.permutation(2)),
+        named[rng.integers(2)],
+        *(faces[k] for k in rng.permutation(2)),
+    ]
+    return "\n".join(text), distance
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_parts_meet_along_their_intersection(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    text, distance = assembly(rng)
+    model = moldloft.loads(text)
+    assert not model.has_errors, text
+    first = model.mesh().faces
+    for _ in range(SETTINGS):
+        mesh = model.mesh()
+        # An open body may turn its other side out.
+        assert np.array_equal(np.sort(mesh.faces), np.sort(first)), f"the numbering stays\n{text}"
+        off = np.maximum(abs(distance(model, mesh.vertices)), abs(cone(model, mesh.vertices)))
+        on_both = off < 1e-9
+        edges = Counter(
+            frozenset((int(a), int(b)))
+            for face in mesh.faces
+            for a, b in zip(face, np.roll(face, -1), strict=True)
+            if a != b
+        )
+        seam = [uses for edge, uses in edges.items() if all(on_both[v] for v in edge)]
+        assert len(seam) >= 8, text
+        assert set(seam) == {2}, f"open along the intersection\n{text}"
+        ring = mesh.vertices[on_both]
+        apart = np.linalg.norm(ring[:, None] - ring[None], axis=2) + np.eye(len(ring))
+        assert apart.min() > 1e-6, f"a vertex is there twice\n{text}"
+        assert len(ring) == len(seam), text
+        model.set(
+            {
+                "r": float(rng.uniform(0.7, 1.3)),
+                "d": float(rng.uniform(-1, 1)),
+                "k": float(rng.uniform(-1, 1)),
+            }
+        )
