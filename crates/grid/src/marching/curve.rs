@@ -1,5 +1,6 @@
 //! Marching off a curve: in its plane, or on a surface that the grid stays on (a collar).
 
+use super::crossing::{BoundaryPart, edges_cross, first_crossing, lowered};
 use super::front::{self, Front, MarchStep};
 use super::line::{BlockTridiagonal, Matrix, mirrored, smoothed};
 use super::outcome::{MarchFailure, Marched};
@@ -367,6 +368,29 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         let mut next: Vec<_> = self.support.project(&next).into_iter().map(|(p, _)| p).collect();
         self.keep_planes(r, &mut next);
         next
+    }
+
+    fn crossing(&self, layers: &[Vec<Vec3<T>>]) -> Option<[usize; 2]> {
+        let n = self.wall.len();
+        let count = if self.closed { n } else { n - 1 };
+        let last = layers.len() - 1;
+        let front = lowered(layers);
+        let at =
+            |layer: usize, k: usize| if layer == last { front[k] } else { layers[layer][k].re() };
+        let edge = |[a, b]: [[usize; 2]; 2]| BoundaryPart {
+            corners: [at(a[0], a[1]), at(b[0], b[1]), at(b[0], b[1])],
+            foot: [a[1], b[1], b[1], b[1]],
+        };
+        let along =
+            |layer: usize| (0..count).map(move |k| [[layer, k], [layer, (k + 1) % n]]).map(edge);
+        let ends: &[usize] = if self.closed { &[] } else { &[0, n - 1] };
+        let sides = ends.iter().flat_map(|&k| (0..last).map(move |l| [[l, k], [l + 1, k]]));
+        let parts: Vec<BoundaryPart> = along(last).chain(sides.map(edge)).chain(along(0)).collect();
+        let ups = self.ups(&layers[last]);
+        let found = first_crossing(&parts, parts.len() - count, |a, b| {
+            edges_cross(a, b, ups[a.foot[0]].re())
+        });
+        found.map(|pair| pair.map(|part| parts[part].foot[0]))
     }
 
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst {

@@ -38,6 +38,8 @@ pub(super) trait Front<T: Real> {
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst;
     /// The indices, from 1, of a node or cell.
     fn place(&self, k: usize) -> [usize; 2];
+    /// Two nodes of the wall above which the boundary of these layers crosses itself.
+    fn crossing(&self, layers: &[Vec<Vec3<T>>]) -> Option<[usize; 2]>;
 }
 
 /// The largest step, relative to the shortest edge: beyond it some corners of 45 to 60 degrees
@@ -81,13 +83,47 @@ pub(super) fn march<T: Real>(
             Some(MarchFailure { cause: FailureCause::CornerTooTight { .. }, .. })
         );
         if outcome.failure.is_none() || first_fails {
-            return Ok(outcome);
+            return below_crossing(front, outcome, budget);
         }
         if farthest.as_ref().is_none_or(|best| outcome.layers.len() > best.layers.len()) {
             farthest = Some(outcome);
         }
     }
-    Ok(farthest.expect("the ladder has rungs"))
+    below_crossing(front, farthest.expect("the ladder has rungs"), budget)
+}
+
+/// The layers below the first one that meets another part of the grid.
+fn below_crossing<T: Real>(
+    front: &impl Front<T>,
+    mut outcome: MarchOutcome<T>,
+    budget: &Budget,
+) -> Result<MarchOutcome<T>, GridError> {
+    // Layers above one that crosses cross, too: the first is found by bisection.
+    let (mut free, mut crossing) = (1, outcome.layers.len());
+    let mut nodes = None;
+    if crossing > 1 {
+        nodes = front.crossing(&outcome.layers);
+    }
+    let Some(mut nodes) = nodes else { return Ok(outcome) };
+    while crossing - free > 1 {
+        budget.poll()?;
+        let middle = usize::midpoint(free, crossing);
+        match front.crossing(&outcome.layers[..middle]) {
+            Some(found) => (crossing, nodes) = (middle, found),
+            None => free = middle,
+        }
+    }
+    outcome.layers.truncate(free);
+    let [node, other] = nodes;
+    let cause =
+        FailureCause::LayersMeet { other: front.place(other), wall: front.wall()[other].re() };
+    outcome.failure = Some(MarchFailure {
+        layer: crossing,
+        at: front.place(node),
+        wall: front.wall()[node].re(),
+        cause,
+    });
+    Ok(outcome)
 }
 
 fn attempt<T: Real>(

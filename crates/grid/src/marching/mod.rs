@@ -3,11 +3,13 @@
 //! The first layer is placed on the bisecting normals, so that it has the given height at corners
 //! too; each further layer is made by implicit steps (Steger and Chaussee 1980; Chan and Steger
 //! 1992) whose volumes smooth themselves over a length of the height reached. Invariants: every
-//! cell of a returned grid has positive Jacobians at all its corners; control flow depends on real
+//! cell of a returned grid has positive Jacobians at all its corners, and the grid does not overlap
+//! itself; control flow depends on real
 //! parts only, so derivatives are those of the steps.
 //!
 //! `heights, wall -> first layer -> steps, each tested -> layers, report`
 
+mod crossing;
 mod curve;
 mod front;
 mod line;

@@ -85,6 +85,13 @@ pub enum FailureCause {
     Folded(f64),
     /// Grid lines meet: an edge of the layer has shrunk to nothing.
     LinesMeet,
+    /// The layer crosses that above another part of the wall, or the wall there.
+    LayersMeet {
+        /// The node of that part, from 1; 1 in the second index off curves.
+        other: [usize; 2],
+        /// The point of the wall there.
+        wall: Vec3,
+    },
     /// The layer takes more steps than are made.
     TooManySteps(usize),
     /// The equations have no finite solution.
@@ -122,6 +129,11 @@ impl fmt::Display for MarchFailure {
             FailureCause::LinesMeet => write!(
                 f,
                 "grid lines meet in layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
+            ),
+            FailureCause::LayersMeet { other: [k, l], wall: Vec3 { x: u, y: v, z: w } } => write!(
+                f,
+                "layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4}) meets the grid at [{k},{l}] above \
+                 ({u:.4}, {v:.4}, {w:.4})"
             ),
             FailureCause::TooManySteps(steps) => {
                 write!(f, "layer {layer} is not reached in {steps} steps")

@@ -1,5 +1,6 @@
 //! Marching off a surface.
 
+use super::crossing::{BoundaryPart, first_crossing, lowered, triangles_cross};
 use super::curve::{ACUTE, LEAST_SINE};
 use super::front::{self, Front, MarchStep};
 use super::line::{BlockTridiagonal, Matrix, inverse, mirrored, smoothed, times};
@@ -10,6 +11,7 @@ use crate::{GridError, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use moldloft_parallel::prelude::*;
+use std::collections::HashMap;
 
 /// The layers of a grid marched off a surface, along its normals s_i x s_j: the surface first.
 ///
@@ -478,6 +480,31 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
         next
     }
 
+    fn crossing(&self, layers: &[Vec<Vec3<T>>]) -> Option<[usize; 2]> {
+        let last = layers.len() - 1;
+        let lowered = lowered(layers);
+        let at = |[layer, k]: [usize; 2]| match layer == last {
+            true => lowered[k],
+            false => layers[layer][k].re(),
+        };
+        let unique = self.distinct_nodes();
+        // Triangles of quadrilaterals, without those of no area at poles.
+        let triangles = |quad: [[usize; 2]; 4]| {
+            let (corners, foot) = (quad.map(at), quad.map(|[_, k]| unique[k]));
+            let both = [[0, 1, 2], [0, 2, 3]].map(|of| of.map(|k: usize| corners[k]));
+            both.into_iter()
+                .filter(|[a, b, c]| a != b && b != c && c != a)
+                .map(move |corners| BoundaryPart { corners, foot })
+        };
+        let mut parts: Vec<BoundaryPart> =
+            self.layer_quads(last).into_iter().flat_map(triangles).collect();
+        let front = parts.len();
+        parts.extend(self.layer_quads(0).into_iter().flat_map(triangles));
+        parts.extend(self.side_quads(last).into_iter().flat_map(triangles));
+        let found = first_crossing(&parts, front, triangles_cross);
+        found.map(|pair| pair.map(|part| parts[part].foot[0]))
+    }
+
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst {
         let cells = [0, 1].map(|axis| self.size[axis] - usize::from(!self.closed[axis]));
         let row = |i: usize| {
@@ -499,6 +526,44 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
 }
 
 impl<T: Real> SurfaceFront<T> {
+    /// For each node the first one at the same place of the wall, as at poles and along wakes.
+    fn distinct_nodes(&self) -> Vec<usize> {
+        let mut first = HashMap::new();
+        let key = |p: &Vec3<T>| p.re().to_array().map(|x| (x + 0.0).to_bits());
+        let each = self.wall.iter().enumerate();
+        each.map(|(k, p)| *first.entry(key(p)).or_insert(k)).collect()
+    }
+
+    /// The cells of a layer: layer and node of their corners.
+    fn layer_quads(&self, layer: usize) -> Vec<[[usize; 2]; 4]> {
+        let [m, n] = self.size;
+        let cells = [0, 1].map(|axis| self.size[axis] - usize::from(!self.closed[axis]));
+        let node = |i: usize, j: usize| [layer, i % m * n + j % n];
+        let row = |i: usize| {
+            (0..cells[1])
+                .map(move |j| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)])
+        };
+        (0..cells[0]).flat_map(row).collect()
+    }
+
+    /// The cells of the sides that are not closed, between the wall and a layer.
+    fn side_quads(&self, last: usize) -> Vec<[[usize; 2]; 4]> {
+        let mut quads = Vec::new();
+        for axis in [0, 1].into_iter().filter(|&axis| !self.closed[axis]) {
+            let other = 1 - axis;
+            let count = self.size[other];
+            for line in [0, self.size[axis] - 1] {
+                let node = |layer: usize, k: usize| [layer, self.index(other, k % count, line)];
+                for k in 0..count - usize::from(!self.closed[other]) {
+                    let strip = (0..last)
+                        .map(|l| [node(l, k), node(l, k + 1), node(l + 1, k + 1), node(l + 1, k)]);
+                    quads.extend(strip);
+                }
+            }
+        }
+        quads
+    }
+
     /// The heights of a step: as volumes of the layer to come, smoothed over a length of the height reached.
     fn heights(
         &self,
