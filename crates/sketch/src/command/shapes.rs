@@ -110,10 +110,13 @@ impl SketchSession {
             }
             "SLOT" => {
                 let radius = format!("\"{}/2\"", names[1]);
+                let end = |group: usize, k: usize| format!("END{group}_{k}");
+                let free = |group: &usize| (1..=4).all(|k| !object.has_name(&end(*group, k)));
+                let group = (1..).find(free).unwrap_or(1);
                 for (k, [m, a, b]) in
                     [[p, s, q], [q, p, r], [r, q, s], [s, r, p]].into_iter().enumerate()
                 {
-                    let name = format!("{}_{}", object.fresh_name("END"), k + 1);
+                    let name = end(group, k + 1);
                     outline.text += &format!("ARC {name} CORNER {m} {a} {b} RADIUS {radius}\n");
                 }
             }
