@@ -6,6 +6,7 @@ use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
 use moldloft_io::{StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, HexBlock};
 use moldloft_num::{Real, Vec3};
+use std::collections::HashMap;
 
 /// A block that is written, and the names of its faces.
 #[derive(Clone)]
@@ -181,6 +182,13 @@ pub(crate) fn extruded(
 /// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
 pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
+    if let Some([a, b]) = thrice(blocks, &numbers) {
+        let [a, b] = [a, b].map(|block| &blocks[block].name);
+        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+    }
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -224,11 +232,47 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     Ok(Connected { content, partners, nameless })
 }
 
+/// The first and the third block with a face in common, by the nodes of their points.
+fn thrice(blocks: &[NamedBlock], numbers: &[Vec<usize>]) -> Option<[usize; 2]> {
+    let mut known: HashMap<[usize; 4], Vec<usize>> = HashMap::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let size @ [_, nj, nk] = block.grid.size;
+        for side in GridFace::ALL {
+            let [a, b] = side.others();
+            let node = |p: usize, q: usize| {
+                let mut at = [0; 3];
+                at[side.axis] = if side.last { size[side.axis] - 1 } else { 0 };
+                (at[a], at[b]) = (p, q);
+                numbers[number][(at[0] * nj + at[1]) * nk + at[2]]
+            };
+            for p in 1..size[a] {
+                for q in 1..size[b] {
+                    let mut key = [node(p, q), node(p - 1, q), node(p, q - 1), node(p - 1, q - 1)];
+                    key.sort_unstable();
+                    // Faces of poles have no area.
+                    if key.windows(2).filter(|pair| pair[0] == pair[1]).count() > 1 {
+                        continue;
+                    }
+                    let of = known.entry(key).or_default();
+                    of.push(number);
+                    if let [first, _, third] = of[..] {
+                        return Some([first, third]);
+                    }
+                }
+            }
+        }
+    }
+    None
+}
+
 /// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;
 
 /// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
-fn face_points(blocks: &[NamedBlock], part: &FacePart) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
+pub(super) fn face_points(
+    blocks: &[NamedBlock],
+    part: &FacePart,
+) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
     let (block, face, from, to) = part;
     let axis = GridFace::ALL[*face].axis;
     let [a, b] = [[1, 2], [0, 2], [0, 1]][axis];
@@ -300,59 +344,82 @@ fn laid(
     None
 }
 
+/// Two faces that a movement maps to each other.
+struct PeriodicPair {
+    parts: [FacePart; 2],
+    /// The two axes of each.
+    axes: [[usize; 2]; 2],
+    /// Relation of their indices: exchanged, and reversed.
+    laid: (bool, [bool; 2]),
+}
+
+/// The one movement that maps each of some faces to one of others, and their pairs.
+fn moved_onto(
+    blocks: &[NamedBlock],
+    parts: &[FacePart],
+    others: &[FacePart],
+    tolerance: f64,
+) -> Option<(Periodicity, Vec<PeriodicPair>)> {
+    if parts.len() != others.len() {
+        return None;
+    }
+    let points = |of: &[FacePart]| of.iter().map(|part| face_points(blocks, part)).collect();
+    let (own, theirs): (Vec<_>, Vec<_>) = (points(parts), points(others));
+    let all = |how: Periodicity| {
+        let mut free: Vec<usize> = (0..theirs.len()).collect();
+        let mut pairs = Vec::with_capacity(own.len());
+        for (a, face) in own.iter().enumerate() {
+            let near = free.iter().enumerate().find_map(|(place, &b)| {
+                laid(face, &theirs[b], &how, tolerance).map(|laid| (place, laid))
+            });
+            let (place, laid) = near?;
+            let b = free.remove(place);
+            let axes = [face.1, theirs[b].1];
+            pairs.push(PeriodicPair { parts: [parts[a], others[b]], axes, laid });
+        }
+        Some((how, pairs))
+    };
+    theirs.iter().find_map(|other| candidates(&own[0].0, &other.0).into_iter().find_map(all))
+}
+
 /// The joints of periodic faces, and the partners of their names.
 fn paired(
     blocks: &[NamedBlock],
-    mut periodic: Vec<(FacePart, String)>,
+    periodic: Vec<(FacePart, String)>,
 ) -> Result<(Vec<BlockJoint>, Vec<PeriodicPartner>), Diagnostic> {
     let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
-    let (mut joints, mut partners): (Vec<BlockJoint>, Vec<PeriodicPartner>) =
-        (Vec::new(), Vec::new());
-    while let Some((part, name)) = periodic.pop() {
-        let own = face_points(blocks, &part);
-        let mut found = None;
-        'search: for (k, (other, other_name)) in periodic.iter().enumerate() {
-            if *other_name == name {
-                continue;
-            }
-            let theirs = face_points(blocks, other);
-            for how in candidates(&own.0, &theirs.0) {
-                if let Some(laid) = laid(&own, &theirs, &how, SAME_PERIODIC * size) {
-                    found = Some((k, how, theirs.1, laid));
-                    break 'search;
-                }
-            }
+    let mut groups: Vec<(String, Vec<FacePart>)> = Vec::new();
+    for (part, name) in periodic {
+        match groups.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, parts)) => parts.push(part),
+            None => groups.push((name, vec![part])),
         }
-        let Some((k, how, [p, q], (swapped, against))) = found else {
+    }
+    let (mut joints, mut partners) = (Vec::new(), Vec::new());
+    while !groups.is_empty() {
+        let (name, parts) = groups.remove(0);
+        let found = groups.iter().enumerate().find_map(|(k, (_, others))| {
+            moved_onto(blocks, &parts, others, SAME_PERIODIC * size).map(|found| (k, found))
+        });
+        let Some((k, (how, pairs))) = found else {
             let message = format!("the periodic boundary `{name}` has no partner");
             return Err(Diagnostic::error("cannot-write", message)
                 .expected(
-                    "another periodic boundary with the same points, moved or turned about an axis",
+                    "another periodic boundary with the same points, all moved or turned about an axis alike",
                 )
                 .help("name both: \"k1 = low periodic, kn = high periodic\""));
         };
-        let (other, other_name) = periodic.swap_remove(k);
+        let (other, _) = groups.remove(k);
+        joints.extend(pairs.into_iter().map(|pair| {
+            let ([part, other], [own, theirs]) = (pair.parts, pair.axes);
+            periodic_joint(part, other, (own, theirs), pair.laid, how)
+        }));
         let inverse = match how {
             Periodicity::Translation(d) => Periodicity::Translation(-d),
             Periodicity::Rotation(axis, angle) => Periodicity::Rotation(axis, -angle),
         };
-        for (name, partner, how) in [(&name, &other_name, how), (&other_name, &name, inverse)] {
-            match partners.iter().find(|known| known.name == *name) {
-                Some(known) if known.partner != *partner => {
-                    let message = format!("the periodic boundary `{name}` has two partners");
-                    return Err(Diagnostic::error("cannot-write", message)
-                        .expected("pairs of names, one for each side")
-                        .found(format!("`{}` and `{partner}`", known.partner)));
-                }
-                Some(_) => {}
-                None => partners.push(PeriodicPartner {
-                    name: name.clone(),
-                    partner: partner.clone(),
-                    how,
-                }),
-            }
-        }
-        joints.push(periodic_joint(part, other, (own.1, [p, q]), (swapped, against), how));
+        partners.push(PeriodicPartner { name: name.clone(), partner: other.clone(), how });
+        partners.push(PeriodicPartner { name: other, partner: name, how: inverse });
     }
     Ok((joints, partners))
 }

@@ -45,13 +45,14 @@ pub(super) fn checked(
         return Ok((found, None));
     }
     let layers = match flat {
-        // CGNS has surfaces in space, the others are plane.
-        true if format.keeps_order => return Ok((found, None)),
+        // CGNS has surfaces in space.
+        true if !format.plane => return Ok((found, None)),
         true => extruded(blocks, "sides")?.0,
         false => blocks.to_vec(),
     };
     symmetry(&layers, &mut found);
     let connected = connected(&layers)?;
+    overlaps(&layers, &connected)?;
     nameless(&layers, flat, &connected.nameless, &mut found);
     Ok((found, Some(connected)))
 }
@@ -113,6 +114,30 @@ fn volume(block: &NamedBlock, format: &GridFormat, found: &mut Vec<Diagnostic>) 
                 .help("reverse one of them: b[::-1, , ]"),
         );
     }
+}
+
+/// Refuses blocks on the same side of a common face: they overlap.
+fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnostic> {
+    let hands: Vec<f64> = volumes(blocks).iter().map(VolumeGrid::volume).collect();
+    for (own, other, transform, movement) in &connected.content.joints {
+        let order = transform.map(|axis| axis.unsigned_abs() as usize - 1);
+        let odd = [[0, 2, 1], [1, 0, 2], [2, 1, 0]].contains(&order);
+        let against = transform.iter().filter(|axis| **axis < 0).count();
+        let turned = odd != (against % 2 == 1);
+        // A periodic pair is across the region, or across a hole in it.
+        if movement.is_none() && turned != (hands[own.0] * hands[other.0] < 0.0) {
+            let [a, b] = [own, other].map(|side| {
+                format!("{} of `{}`", GridFace::ALL[side.1].word(), blocks[side.0].name)
+            });
+            return Err(Diagnostic::error(
+                "cannot-write",
+                format!("{a} and {b} are one face of cells on the same side"),
+            )
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+        }
+    }
+    Ok(())
 }
 
 /// The number of cells that are turned over at a corner, and the first of them.
