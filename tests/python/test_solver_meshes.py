@@ -18,7 +18,8 @@ import pytest
 
 import moldloft
 from moldloft import grids
-from test_grid_blocks import cut, same_points
+from test_grid_blocks import FACES as SIDES
+from test_grid_blocks import MAP, cut, same_points
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 FILES = ("points", "faces", "owner", "neighbour", "boundary")
@@ -222,6 +223,48 @@ def test_channels_are_cyclic(dimensions: int, tmp_path: Path) -> None:
         assert "Mesh OK." in report, report
 
 
+PERIODIC_MAP = "return {u + 0.1*v*v, v + 0.1*sin(2*PI*u), w + 0.05*v};"
+
+
+@pytest.mark.parametrize("seed", range(60 if SOAK else 4))
+def test_cut_blocks_are_periodic_along_two_axes(seed: int, tmp_path: Path) -> None:
+    """Sides u = 0 and 1, w = 0 and 1 of cut blocks, named in any order: each pair by its own period."""
+    rng = random.Random(2000 + seed)
+    text, cells, _, _, _ = cut(rng)
+    program = text[: text.index("write_su2")]
+    program = re.sub(r"return \{u \+.*?\};", PERIODIC_MAP, program, count=1)
+    assert PERIODIC_MAP in program and PERIODIC_MAP not in MAP
+    arguments = []
+    for block, spans in re.findall(r"fill\((b\d), ([^)]*)\);", program):
+        *ends, a1, _, a3 = spans.split(", ")
+        entries = []
+        for axis, along in ((0, int(a1)), (2, int(a3))):
+            for side, name in enumerate((("west", "east"), (), ("down", "up"))[axis]):
+                numerator, denominator = ends[2 * axis + side].split("/")
+                if int(numerator) == side * int(denominator):
+                    # The side at which the index begins, or at which it ends.
+                    last = side if along > 0 else 1 - side
+                    entries.append(f"{SIDES[2 * (abs(along) - 1) + last]} = {name} periodic")
+        rng.shuffle(entries)
+        arguments.append(f'{block}, "{", ".join(entries)}"')
+    rng.shuffle(arguments)
+    model = moldloft.loads(f'{program}write_polymesh("constant/polyMesh", {", ".join(arguments)});')
+    mesh = PolyMesh(model.written, "constant/polyMesh")
+    assert len(mesh.check()) == cells
+    for low, high, period in (("west", "east", [1, 0, 0]), ("down", "up", [0, 0, 1])):
+        assert mesh.patches[low]["neighbourPatch"] == high
+        vector = mesh.patches[low]["separationVector"].strip("()").split()
+        np.testing.assert_allclose([float(x) for x in vector], period, atol=1e-12)
+        for a, b in zip(mesh.range_of(low), mesh.range_of(high), strict=True):
+            p, q = mesh.points[mesh.faces[a]], mesh.points[mesh.faces[b]]
+            np.testing.assert_allclose(
+                p + np.array(period), q[[0, *range(len(q) - 1, 0, -1)]], atol=1e-12
+            )
+    report = checked_by_openfoam(model.written, tmp_path)
+    if report is not None:
+        assert "***" not in report, report
+
+
 def test_what_is_no_mesh_is_refused() -> None:
     square = (
         "surface g[3,3]; for (i=1:3) for (j=1:3) g[i,j] = {i, j, 0}; block b = {g, g + {0,0,1}};\n"
@@ -237,6 +280,7 @@ def test_what_is_no_mesh_is_refused() -> None:
         ('write_ugrid("p.ugrid", b, "i1 in j1 jn k1 kn = all symmetry")', "not in a plane"),
         ('write_nmf("p.nmf", b, "i1 = a wall")', "have no name"),
         ('write_nmf("p.nmf", g)', "is a surface"),
+        ('write_su2("p", b, "k1 = low wall", b + {0,0,1}, "i1 = low")', "two types"),
     ]:
         with pytest.raises(moldloft.Error, match=match):
             moldloft.loads(f"{square}{call};")

@@ -189,6 +189,7 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
             .expected("blocks that do not overlap")
             .help("write each block once"));
     }
+    one_type_each(blocks)?;
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -230,6 +231,22 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     let names = blocks.iter().map(|block| block.name.clone()).collect();
     let content = CgnsBlocks { names, joints, boundaries };
     Ok(Connected { content, partners, nameless })
+}
+
+/// Refuses a boundary of two types.
+fn one_type_each(blocks: &[NamedBlock]) -> Result<(), Diagnostic> {
+    let mut known: HashMap<&str, &str> = HashMap::new();
+    for (name, kind) in blocks.iter().flat_map(|block| block.faces.iter().flatten()) {
+        let first = *known.entry(name).or_insert(kind);
+        if first != kind {
+            let message = format!("the boundary `{name}` has two types");
+            return Err(Diagnostic::error("cannot-write", message)
+                .expected("one type for all faces of a name")
+                .found(format!("{first} and {kind}"))
+                .help("without a type a face is a patch: state it behind each name"));
+        }
+    }
+    Ok(())
 }
 
 /// The first and the third block with a face in common, by the nodes of their points.
@@ -344,84 +361,151 @@ fn laid(
     None
 }
 
-/// Two faces that a movement maps to each other.
-struct PeriodicPair {
-    parts: [FacePart; 2],
-    /// The two axes of each.
-    axes: [[usize; 2]; 2],
-    /// Relation of their indices: exchanged, and reversed.
-    laid: (bool, [bool; 2]),
+/// The periodic faces of one name.
+struct PeriodicBoundary {
+    name: String,
+    parts: Vec<FacePart>,
+    /// The points of each, its two axes, and the numbers of points along them.
+    points: Vec<(Vec<Vec3>, [usize; 2], [usize; 2])>,
 }
 
-/// The one movement that maps each of some faces to one of others, and their pairs.
-fn moved_onto(
-    blocks: &[NamedBlock],
-    parts: &[FacePart],
-    others: &[FacePart],
+/// A movement that maps all faces of one boundary to those of another, and their joints.
+struct PeriodicMap {
+    /// The two boundaries.
+    sides: [usize; 2],
+    how: Periodicity,
+    joints: Vec<BlockJoint>,
+}
+
+/// True if the cells of two blocks are on opposite sides of the face at which they are joined, by
+/// the volumes of all blocks, negative of left-handed ones.
+pub(super) fn are_across((own, other, transform, _): &BlockJoint, volumes: &[f64]) -> bool {
+    let order = transform.map(|axis| axis.unsigned_abs() as usize - 1);
+    let odd = [[0, 2, 1], [1, 0, 2], [2, 1, 0]].contains(&order);
+    let against = transform.iter().filter(|axis| **axis < 0).count();
+    let turned = odd != (against % 2 == 1);
+    turned == (volumes[own.0] * volumes[other.0] < 0.0)
+}
+
+/// The movements that map each face of one boundary to one of another, with the cells behind it on
+/// the other side.
+fn maps_between(
+    (own, theirs): (&PeriodicBoundary, &PeriodicBoundary),
+    volumes: &[f64],
     tolerance: f64,
-) -> Option<(Periodicity, Vec<PeriodicPair>)> {
-    if parts.len() != others.len() {
-        return None;
+) -> Vec<(Periodicity, Vec<BlockJoint>)> {
+    if own.parts.len() != theirs.parts.len() {
+        return Vec::new();
     }
-    let points = |of: &[FacePart]| of.iter().map(|part| face_points(blocks, part)).collect();
-    let (own, theirs): (Vec<_>, Vec<_>) = (points(parts), points(others));
-    let all = |how: Periodicity| {
-        let mut free: Vec<usize> = (0..theirs.len()).collect();
-        let mut pairs = Vec::with_capacity(own.len());
-        for (a, face) in own.iter().enumerate() {
-            let near = free.iter().enumerate().find_map(|(place, &b)| {
-                laid(face, &theirs[b], &how, tolerance).map(|laid| (place, laid))
+    let joined = |how: Periodicity| {
+        let mut free: Vec<usize> = (0..theirs.parts.len()).collect();
+        let mut joints = Vec::with_capacity(own.parts.len());
+        for (part, face) in own.parts.iter().zip(&own.points) {
+            let found = free.iter().enumerate().find_map(|(place, &b)| {
+                let other = &theirs.points[b];
+                let laid = laid(face, other, &how, tolerance)?;
+                Some((place, periodic_joint(*part, theirs.parts[b], (face.1, other.1), laid, how)))
             });
-            let (place, laid) = near?;
-            let b = free.remove(place);
-            let axes = [face.1, theirs[b].1];
-            pairs.push(PeriodicPair { parts: [parts[a], others[b]], axes, laid });
+            let (place, joint) = found.filter(|(_, joint)| are_across(joint, volumes))?;
+            free.remove(place);
+            joints.push(joint);
         }
-        Some((how, pairs))
+        Some((how, joints))
     };
-    theirs.iter().find_map(|other| candidates(&own[0].0, &other.0).into_iter().find_map(all))
+    let first = &own.points[0].0;
+    let each = theirs.points.iter().flat_map(|other| candidates(first, &other.0));
+    each.filter_map(joined).collect()
 }
 
-/// The joints of periodic faces, and the partners of their names.
+/// The periodic boundaries, by their names.
+fn periodic_boundaries(
+    blocks: &[NamedBlock],
+    periodic: Vec<(FacePart, String)>,
+) -> Vec<PeriodicBoundary> {
+    let mut all: Vec<PeriodicBoundary> = Vec::new();
+    for (part, name) in periodic {
+        let points = face_points(blocks, &part);
+        match all.iter_mut().find(|own| own.name == name) {
+            Some(own) => {
+                own.parts.push(part);
+                own.points.push(points);
+            }
+            None => {
+                all.push(PeriodicBoundary { name, parts: vec![part], points: vec![points] });
+            }
+        }
+    }
+    all
+}
+
+/// The joints of periodic faces, and the partners of their names. Names with one possible partner
+/// are paired before others, so that the pairs are the only ones in which each name has a partner.
+///
+/// # Errors
+/// A name without a partner; names that can be paired in several ways.
 fn paired(
     blocks: &[NamedBlock],
     periodic: Vec<(FacePart, String)>,
 ) -> Result<(Vec<BlockJoint>, Vec<PeriodicPartner>), Diagnostic> {
-    let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
-    let mut groups: Vec<(String, Vec<FacePart>)> = Vec::new();
-    for (part, name) in periodic {
-        match groups.iter_mut().find(|(own, _)| *own == name) {
-            Some((_, parts)) => parts.push(part),
-            None => groups.push((name, vec![part])),
+    let grids = volumes(blocks);
+    let tolerance = SAME_PERIODIC * grids.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let volumes: Vec<f64> = grids.iter().map(VolumeGrid::volume).collect();
+    let boundaries = periodic_boundaries(blocks, periodic);
+    let mut maps: Vec<PeriodicMap> = Vec::new();
+    for (a, own) in boundaries.iter().enumerate() {
+        for (b, theirs) in boundaries.iter().enumerate().skip(a + 1) {
+            let between = maps_between((own, theirs), &volumes, tolerance);
+            maps.extend(between.into_iter().map(|(how, joints)| PeriodicMap {
+                sides: [a, b],
+                how,
+                joints,
+            }));
         }
     }
     let (mut joints, mut partners) = (Vec::new(), Vec::new());
-    while !groups.is_empty() {
-        let (name, parts) = groups.remove(0);
-        let found = groups.iter().enumerate().find_map(|(k, (_, others))| {
-            moved_onto(blocks, &parts, others, SAME_PERIODIC * size).map(|found| (k, found))
-        });
-        let Some((k, (how, pairs))) = found else {
-            let message = format!("the periodic boundary `{name}` has no partner");
-            return Err(Diagnostic::error("cannot-write", message)
-                .expected(
-                    "another periodic boundary with the same points, all moved or turned about an axis alike",
-                )
-                .help("name both: \"k1 = low periodic, kn = high periodic\""));
+    let mut free: Vec<usize> = (0..boundaries.len()).collect();
+    while !free.is_empty() {
+        let of = |own: usize| maps.iter().filter(move |map| map.sides.contains(&own));
+        if let Some(&alone) = free.iter().find(|&&own| of(own).count() == 0) {
+            return Err(without_partner(&boundaries[alone].name));
+        }
+        let Some(&sure) = free.iter().find(|&&own| of(own).count() == 1) else {
+            let own = free[0];
+            let others = of(own).flat_map(|map| map.sides).filter(|side| *side != own);
+            let others = others.map(|side| format!("`{}`", boundaries[side].name));
+            return Err(with_several(&boundaries[own].name, others.collect()));
         };
-        let (other, _) = groups.remove(k);
-        joints.extend(pairs.into_iter().map(|pair| {
-            let ([part, other], [own, theirs]) = (pair.parts, pair.axes);
-            periodic_joint(part, other, (own, theirs), pair.laid, how)
-        }));
+        let place = maps.iter().position(|map| map.sides.contains(&sure)).expect("one map");
+        let PeriodicMap { sides, how, joints: own } = maps.swap_remove(place);
+        let [name, other] = sides.map(|side| boundaries[side].name.clone());
         let inverse = match how {
             Periodicity::Translation(d) => Periodicity::Translation(-d),
             Periodicity::Rotation(axis, angle) => Periodicity::Rotation(axis, -angle),
         };
         partners.push(PeriodicPartner { name: name.clone(), partner: other.clone(), how });
         partners.push(PeriodicPartner { name: other, partner: name, how: inverse });
+        joints.extend(own);
+        maps.retain(|map| !map.sides.iter().any(|side| sides.contains(side)));
+        free.retain(|side| !sides.contains(side));
     }
     Ok((joints, partners))
+}
+
+fn without_partner(name: &str) -> Diagnostic {
+    Diagnostic::error("cannot-write", format!("the periodic boundary `{name}` has no partner"))
+        .expected(
+            "another periodic boundary with the same points, all moved or turned about an axis \
+             alike, and its cells on the other side",
+        )
+        .help("name both: \"k1 = low periodic, kn = high periodic\"")
+}
+
+fn with_several(name: &str, others: Vec<String>) -> Diagnostic {
+    let message = format!("the partner of the periodic boundary `{name}` is ambiguous");
+    Diagnostic::error("cannot-write", message)
+        .expected("one periodic boundary with the same points, moved or turned about an axis")
+        .found(others.join(", "))
+        .help("give one name to all faces of a side: \"i1 = low periodic\" behind each block")
 }
 
 /// The joint of CGNS that a pair of periodic faces is.

@@ -2,7 +2,7 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    Connected, FacePart, NamedBlock, connected, extruded, volumes,
+    Connected, FacePart, NamedBlock, are_across, connected, extruded, volumes,
 };
 use crate::functions::grid_formats::GridFormat;
 use moldloft_diag::Diagnostic;
@@ -118,15 +118,10 @@ fn volume(block: &NamedBlock, format: &GridFormat, found: &mut Vec<Diagnostic>) 
 
 /// Refuses blocks on the same side of a common face: they overlap.
 fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnostic> {
-    let hands: Vec<f64> = volumes(blocks).iter().map(VolumeGrid::volume).collect();
-    for (own, other, transform, movement) in &connected.content.joints {
-        let order = transform.map(|axis| axis.unsigned_abs() as usize - 1);
-        let odd = [[0, 2, 1], [1, 0, 2], [2, 1, 0]].contains(&order);
-        let against = transform.iter().filter(|axis| **axis < 0).count();
-        let turned = odd != (against % 2 == 1);
-        // A periodic pair is across the region, or across a hole in it.
-        if movement.is_none() && turned != (hands[own.0] * hands[other.0] < 0.0) {
-            let [a, b] = [own, other].map(|side| {
+    let volumes: Vec<f64> = volumes(blocks).iter().map(VolumeGrid::volume).collect();
+    for joint in &connected.content.joints {
+        if !are_across(joint, &volumes) {
+            let [a, b] = [joint.0, joint.1].map(|side| {
                 format!("{} of `{}`", GridFace::ALL[side.1].word(), blocks[side.0].name)
             });
             return Err(Diagnostic::error(
