@@ -52,6 +52,9 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
             FailureCause::CornerTooTight { fits, .. } => with("tight-corner")
                 .expected(format!("a first cell of at most {fits:.3e}"))
                 .help("make the first cell smaller, or the points beside the corner wider"),
+            FailureCause::LayersMeet { .. } => with("folded-grid")
+                .expected("layers that do not cross the grid above another part of the wall")
+                .help("reduce the last height, or take the layers below with stop = \"keep\""),
             _ => with("folded-grid").expected("unfolded cells").help(
                 "reduce the distance, increase the smoothing, even out the spacing of the wall there, or take the layers below with \
                  stop = \"keep\"; layers lie on the side of s_i x s_j: s[, ::-1] marches off the other one",

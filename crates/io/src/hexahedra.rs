@@ -1,4 +1,4 @@
-//! Meshes of hexahedra with named boundaries: SU2, Gmsh 4.1, blockMesh.
+//! Meshes of hexahedra with named boundaries: SU2, Gmsh 4.1.
 
 use crate::WriteError;
 use moldloft_grid::{HexMesh, PoleCell};
@@ -6,13 +6,13 @@ use moldloft_num::{Real, Vec3};
 use std::fmt::Write;
 
 /// The cells, classified at poles.
-fn cells(mesh: &HexMesh, format: &'static str) -> Result<Vec<PoleCell>, WriteError> {
+pub(crate) fn cells(mesh: &HexMesh, format: &'static str) -> Result<Vec<PoleCell>, WriteError> {
     let what = "hexahedra collapsed to other cells than wedges, pyramids and tetrahedra";
     mesh.pole_cells().ok_or(WriteError::CannotHold { format, what })
 }
 
 /// A face of the boundary without the corner that it has twice.
-fn corners(face: &[usize; 4]) -> Vec<usize> {
+pub(crate) fn corners(face: &[usize; 4]) -> Vec<usize> {
     let mut around = face.to_vec();
     around.dedup();
     if around.first() == around.last() {
@@ -22,12 +22,12 @@ fn corners(face: &[usize; 4]) -> Vec<usize> {
 }
 
 /// Numbers in their shortest exact spelling, apart by blanks.
-fn spaced(p: Vec3) -> String {
+pub(crate) fn spaced(p: Vec3) -> String {
     let [x, y, z] = p.to_array().map(|x| x + 0.0);
     format!("{x:?} {y:?} {z:?}")
 }
 
-fn nodes(of: &[usize], first: usize) -> String {
+pub(crate) fn nodes(of: &[usize], first: usize) -> String {
     let all: Vec<String> = of.iter().map(|n| (n + first).to_string()).collect();
     all.join(" ")
 }
@@ -137,7 +137,7 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
 }
 
 /// Maximum distance of points from a plane, relative to their extent, as in blockMesh.
-const PLANE: f64 = 1e-6;
+pub const PLANE: f64 = 1e-6;
 
 /// True for coplanar faces.
 pub fn is_plane(points: &[Vec3], faces: &[[usize; 4]]) -> bool {
@@ -202,61 +202,4 @@ pub struct PeriodicPartner {
     pub partner: String,
     /// The map from the boundary to its partner.
     pub how: Periodicity,
-}
-
-/// A blockMeshDict of OpenFOAM: a block for each cell, so that its points are those of the grid.
-pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
-    let mut out = String::from(
-        "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class dictionary;\n    object blockMeshDict;\n}\n\
-         scale 1;\ndefaultPatch { name defaultFaces; type patch; }\nvertices\n(\n",
-    );
-    for p in &mesh.points {
-        let _ = writeln!(out, "({})", spaced(*p));
-    }
-    out.push_str(");\nblocks\n(\n");
-    for cell in &mesh.cells {
-        let _ = writeln!(out, "hex ({}) (1 1 1) simpleGrading (1 1 1)", nodes(cell, 0));
-    }
-    out.push_str(");\nedges ();\nboundary\n(\n");
-    for patch in &mesh.patches {
-        // The faces that have no name are found by blockMesh itself.
-        if patch.name == "defaultFaces" {
-            continue;
-        }
-        let partner = periodic.iter().find(|own| own.name == patch.name);
-        let kind = match &*patch.kind {
-            "wall" => "wall",
-            "symmetry" if is_plane(&mesh.points, &patch.faces) => "symmetryPlane",
-            "symmetry" => "symmetry",
-            "empty" => "empty",
-            "wedge" => "wedge",
-            "periodic" if partner.is_some() => "cyclic",
-            _ => "patch",
-        };
-        let _ = writeln!(out, "{}\n{{\n    type {kind};", patch.name);
-        if let Some(own) = partner {
-            let _ = writeln!(out, "    neighbourPatch {};", own.partner);
-            let _ = match own.how {
-                Periodicity::Translation(d) => writeln!(
-                    out,
-                    "    transform translational;\n    separationVector ({});",
-                    spaced(d)
-                ),
-                Periodicity::Rotation(axis, _) => {
-                    let unit = ["1 0 0", "0 1 0", "0 0 1"][axis];
-                    writeln!(
-                        out,
-                        "    transform rotational;\n    rotationAxis ({unit});\n    rotationCentre (0 0 0);"
-                    )
-                }
-            };
-        }
-        out.push_str("    faces\n    (\n");
-        for face in &patch.faces {
-            let _ = writeln!(out, "    ({})", nodes(face, 0));
-        }
-        out.push_str("    );\n}\n");
-    }
-    out.push_str(");\nmergePatchPairs ();\n");
-    out.into_bytes()
 }

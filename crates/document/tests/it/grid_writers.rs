@@ -138,6 +138,48 @@ fn periodic_boundaries_belong_together() {
     );
 }
 
+/// Movements that map the points of two sides onto each other, with the cells of both on the same
+/// side of the image, make no pair.
+#[test]
+fn periodic_sides_face_each_other() {
+    let stacked = "surface g[3,3]; for (i=1:3) for (j=1:3) g[i,j] = {i - 1, j - 1, 0};
+                   block a = {g, g + {0,0,1}}, b = a + {0,2,0}; ";
+    // The lower sides are as far apart as the upper ones.
+    let one = written(
+        &format!(
+            "{stacked}write_blockmesh(\"d\", a, \"i1 = low periodic, in = high periodic\", b, \"i1 = low periodic, in = high periodic\");"
+        ),
+        "d",
+    );
+    assert!(one.contains("neighbourPatch high;\n    transform translational;\n    separationVector (2.0 0.0 0.0);"), "{one}");
+    let apart = format!(
+        "{stacked}write_blockmesh(\"d\", a, \"i1 = p periodic, in = q periodic\", b, \"i1 = r periodic, in = s periodic\");"
+    );
+    said(&apart, "cannot-write");
+    let lower =
+        format!("{stacked}write_blockmesh(\"d\", a, \"i1 = p periodic\", b, \"i1 = q periodic\");");
+    said(&lower, "cannot-write");
+    // Its lower sides are turned onto each other about the axes, too.
+    let cube = "surface g[3,3]; for (i=1:3) for (j=1:3) g[i,j] = {i - 1, j - 1, 0}; block a = {g, g + {0,0,1}, g + {0,0,2}};
+                write_blockmesh(\"d\", a, \"i1 = west periodic, j1 = south periodic, k1 = down periodic, in = east periodic, jn = north periodic, kn = up periodic\");";
+    let cube = written(cube, "d");
+    for (name, partner, by) in [
+        ("west", "east", "2.0 0.0 0.0"),
+        ("south", "north", "0.0 2.0 0.0"),
+        ("up", "down", "0.0 0.0 -2.0"),
+    ] {
+        let entry = format!(
+            "{name}\n{{\n    type cyclic;\n    neighbourPatch {partner};\n    transform translational;\n    separationVector ({by});"
+        );
+        assert!(cube.contains(&entry), "{cube}");
+    }
+    // The ends of half a ring are equal up to a shift, which leaves both cells below.
+    let half = "surface g[5,3]; for (i=1:5) for (j=1:3) { g[i,j] = {(j + 1)*cos(PI*(i - 1)/4), (j + 1)*sin(PI*(i - 1)/4), 0}; }
+                write_blockmesh(\"d\", g, \"i1 = low periodic, im = high periodic\");";
+    let half = written(half, "d");
+    assert!(half.contains("transform rotational;\n    rotationAxis (0 0 1);"), "{half}");
+}
+
 #[test]
 fn what_no_solver_takes_is_said() {
     let folded = format!("{GRID}g[2,2] = {{4, 4, 0}}; block b = {{g, g + {{0,0,1}}}}; ");

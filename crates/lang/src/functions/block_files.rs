@@ -6,6 +6,7 @@ use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
 use moldloft_io::{StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, HexBlock};
 use moldloft_num::{Real, Vec3};
+use std::collections::HashMap;
 
 /// A block that is written, and the names of its faces.
 #[derive(Clone)]
@@ -181,6 +182,14 @@ pub(crate) fn extruded(
 /// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
 pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
+    if let Some([a, b]) = thrice(blocks, &numbers) {
+        let [a, b] = [a, b].map(|block| &blocks[block].name);
+        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+    }
+    one_type_each(blocks)?;
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -224,11 +233,63 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     Ok(Connected { content, partners, nameless })
 }
 
+/// Refuses a boundary of two types.
+fn one_type_each(blocks: &[NamedBlock]) -> Result<(), Diagnostic> {
+    let mut known: HashMap<&str, &str> = HashMap::new();
+    for (name, kind) in blocks.iter().flat_map(|block| block.faces.iter().flatten()) {
+        let first = *known.entry(name).or_insert(kind);
+        if first != kind {
+            let message = format!("the boundary `{name}` has two types");
+            return Err(Diagnostic::error("cannot-write", message)
+                .expected("one type for all faces of a name")
+                .found(format!("{first} and {kind}"))
+                .help("without a type a face is a patch: state it behind each name"));
+        }
+    }
+    Ok(())
+}
+
+/// The first and the third block with a face in common, by the nodes of their points.
+fn thrice(blocks: &[NamedBlock], numbers: &[Vec<usize>]) -> Option<[usize; 2]> {
+    let mut known: HashMap<[usize; 4], Vec<usize>> = HashMap::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let size @ [_, nj, nk] = block.grid.size;
+        for side in GridFace::ALL {
+            let [a, b] = side.others();
+            let node = |p: usize, q: usize| {
+                let mut at = [0; 3];
+                at[side.axis] = if side.last { size[side.axis] - 1 } else { 0 };
+                (at[a], at[b]) = (p, q);
+                numbers[number][(at[0] * nj + at[1]) * nk + at[2]]
+            };
+            for p in 1..size[a] {
+                for q in 1..size[b] {
+                    let mut key = [node(p, q), node(p - 1, q), node(p, q - 1), node(p - 1, q - 1)];
+                    key.sort_unstable();
+                    // Faces of poles have no area.
+                    if key.windows(2).filter(|pair| pair[0] == pair[1]).count() > 1 {
+                        continue;
+                    }
+                    let of = known.entry(key).or_default();
+                    of.push(number);
+                    if let [first, _, third] = of[..] {
+                        return Some([first, third]);
+                    }
+                }
+            }
+        }
+    }
+    None
+}
+
 /// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;
 
 /// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
-fn face_points(blocks: &[NamedBlock], part: &FacePart) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
+pub(super) fn face_points(
+    blocks: &[NamedBlock],
+    part: &FacePart,
+) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
     let (block, face, from, to) = part;
     let axis = GridFace::ALL[*face].axis;
     let [a, b] = [[1, 2], [0, 2], [0, 1]][axis];
@@ -300,61 +361,151 @@ fn laid(
     None
 }
 
-/// The joints of periodic faces, and the partners of their names.
-fn paired(
+/// The periodic faces of one name.
+struct PeriodicBoundary {
+    name: String,
+    parts: Vec<FacePart>,
+    /// The points of each, its two axes, and the numbers of points along them.
+    points: Vec<(Vec<Vec3>, [usize; 2], [usize; 2])>,
+}
+
+/// A movement that maps all faces of one boundary to those of another, and their joints.
+struct PeriodicMap {
+    /// The two boundaries.
+    sides: [usize; 2],
+    how: Periodicity,
+    joints: Vec<BlockJoint>,
+}
+
+/// True if the cells of two blocks are on opposite sides of the face at which they are joined, by
+/// the volumes of all blocks, negative of left-handed ones.
+pub(super) fn are_across((own, other, transform, _): &BlockJoint, volumes: &[f64]) -> bool {
+    let order = transform.map(|axis| axis.unsigned_abs() as usize - 1);
+    let odd = [[0, 2, 1], [1, 0, 2], [2, 1, 0]].contains(&order);
+    let against = transform.iter().filter(|axis| **axis < 0).count();
+    let turned = odd != (against % 2 == 1);
+    turned == (volumes[own.0] * volumes[other.0] < 0.0)
+}
+
+/// The movements that map each face of one boundary to one of another, with the cells behind it on
+/// the other side.
+fn maps_between(
+    (own, theirs): (&PeriodicBoundary, &PeriodicBoundary),
+    volumes: &[f64],
+    tolerance: f64,
+) -> Vec<(Periodicity, Vec<BlockJoint>)> {
+    if own.parts.len() != theirs.parts.len() {
+        return Vec::new();
+    }
+    let joined = |how: Periodicity| {
+        let mut free: Vec<usize> = (0..theirs.parts.len()).collect();
+        let mut joints = Vec::with_capacity(own.parts.len());
+        for (part, face) in own.parts.iter().zip(&own.points) {
+            let found = free.iter().enumerate().find_map(|(place, &b)| {
+                let other = &theirs.points[b];
+                let laid = laid(face, other, &how, tolerance)?;
+                Some((place, periodic_joint(*part, theirs.parts[b], (face.1, other.1), laid, how)))
+            });
+            let (place, joint) = found.filter(|(_, joint)| are_across(joint, volumes))?;
+            free.remove(place);
+            joints.push(joint);
+        }
+        Some((how, joints))
+    };
+    let first = &own.points[0].0;
+    let each = theirs.points.iter().flat_map(|other| candidates(first, &other.0));
+    each.filter_map(joined).collect()
+}
+
+/// The periodic boundaries, by their names.
+fn periodic_boundaries(
     blocks: &[NamedBlock],
-    mut periodic: Vec<(FacePart, String)>,
-) -> Result<(Vec<BlockJoint>, Vec<PeriodicPartner>), Diagnostic> {
-    let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
-    let (mut joints, mut partners): (Vec<BlockJoint>, Vec<PeriodicPartner>) =
-        (Vec::new(), Vec::new());
-    while let Some((part, name)) = periodic.pop() {
-        let own = face_points(blocks, &part);
-        let mut found = None;
-        'search: for (k, (other, other_name)) in periodic.iter().enumerate() {
-            if *other_name == name {
-                continue;
+    periodic: Vec<(FacePart, String)>,
+) -> Vec<PeriodicBoundary> {
+    let mut all: Vec<PeriodicBoundary> = Vec::new();
+    for (part, name) in periodic {
+        let points = face_points(blocks, &part);
+        match all.iter_mut().find(|own| own.name == name) {
+            Some(own) => {
+                own.parts.push(part);
+                own.points.push(points);
             }
-            let theirs = face_points(blocks, other);
-            for how in candidates(&own.0, &theirs.0) {
-                if let Some(laid) = laid(&own, &theirs, &how, SAME_PERIODIC * size) {
-                    found = Some((k, how, theirs.1, laid));
-                    break 'search;
-                }
+            None => {
+                all.push(PeriodicBoundary { name, parts: vec![part], points: vec![points] });
             }
         }
-        let Some((k, how, [p, q], (swapped, against))) = found else {
-            let message = format!("the periodic boundary `{name}` has no partner");
-            return Err(Diagnostic::error("cannot-write", message)
-                .expected(
-                    "another periodic boundary with the same points, moved or turned about an axis",
-                )
-                .help("name both: \"k1 = low periodic, kn = high periodic\""));
+    }
+    all
+}
+
+/// The joints of periodic faces, and the partners of their names. Names with one possible partner
+/// are paired before others, so that the pairs are the only ones in which each name has a partner.
+///
+/// # Errors
+/// A name without a partner; names that can be paired in several ways.
+fn paired(
+    blocks: &[NamedBlock],
+    periodic: Vec<(FacePart, String)>,
+) -> Result<(Vec<BlockJoint>, Vec<PeriodicPartner>), Diagnostic> {
+    let grids = volumes(blocks);
+    let tolerance = SAME_PERIODIC * grids.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let volumes: Vec<f64> = grids.iter().map(VolumeGrid::volume).collect();
+    let boundaries = periodic_boundaries(blocks, periodic);
+    let mut maps: Vec<PeriodicMap> = Vec::new();
+    for (a, own) in boundaries.iter().enumerate() {
+        for (b, theirs) in boundaries.iter().enumerate().skip(a + 1) {
+            let between = maps_between((own, theirs), &volumes, tolerance);
+            maps.extend(between.into_iter().map(|(how, joints)| PeriodicMap {
+                sides: [a, b],
+                how,
+                joints,
+            }));
+        }
+    }
+    let (mut joints, mut partners) = (Vec::new(), Vec::new());
+    let mut free: Vec<usize> = (0..boundaries.len()).collect();
+    while !free.is_empty() {
+        let of = |own: usize| maps.iter().filter(move |map| map.sides.contains(&own));
+        if let Some(&alone) = free.iter().find(|&&own| of(own).count() == 0) {
+            return Err(without_partner(&boundaries[alone].name));
+        }
+        let Some(&sure) = free.iter().find(|&&own| of(own).count() == 1) else {
+            let own = free[0];
+            let others = of(own).flat_map(|map| map.sides).filter(|side| *side != own);
+            let others = others.map(|side| format!("`{}`", boundaries[side].name));
+            return Err(with_several(&boundaries[own].name, others.collect()));
         };
-        let (other, other_name) = periodic.swap_remove(k);
+        let place = maps.iter().position(|map| map.sides.contains(&sure)).expect("one map");
+        let PeriodicMap { sides, how, joints: own } = maps.swap_remove(place);
+        let [name, other] = sides.map(|side| boundaries[side].name.clone());
         let inverse = match how {
             Periodicity::Translation(d) => Periodicity::Translation(-d),
             Periodicity::Rotation(axis, angle) => Periodicity::Rotation(axis, -angle),
         };
-        for (name, partner, how) in [(&name, &other_name, how), (&other_name, &name, inverse)] {
-            match partners.iter().find(|known| known.name == *name) {
-                Some(known) if known.partner != *partner => {
-                    let message = format!("the periodic boundary `{name}` has two partners");
-                    return Err(Diagnostic::error("cannot-write", message)
-                        .expected("pairs of names, one for each side")
-                        .found(format!("`{}` and `{partner}`", known.partner)));
-                }
-                Some(_) => {}
-                None => partners.push(PeriodicPartner {
-                    name: name.clone(),
-                    partner: partner.clone(),
-                    how,
-                }),
-            }
-        }
-        joints.push(periodic_joint(part, other, (own.1, [p, q]), (swapped, against), how));
+        partners.push(PeriodicPartner { name: name.clone(), partner: other.clone(), how });
+        partners.push(PeriodicPartner { name: other, partner: name, how: inverse });
+        joints.extend(own);
+        maps.retain(|map| !map.sides.iter().any(|side| sides.contains(side)));
+        free.retain(|side| !sides.contains(side));
     }
     Ok((joints, partners))
+}
+
+fn without_partner(name: &str) -> Diagnostic {
+    Diagnostic::error("cannot-write", format!("the periodic boundary `{name}` has no partner"))
+        .expected(
+            "another periodic boundary with the same points, all moved or turned about an axis \
+             alike, and its cells on the other side",
+        )
+        .help("name both: \"k1 = low periodic, kn = high periodic\"")
+}
+
+fn with_several(name: &str, others: Vec<String>) -> Diagnostic {
+    let message = format!("the partner of the periodic boundary `{name}` is ambiguous");
+    Diagnostic::error("cannot-write", message)
+        .expected("one periodic boundary with the same points, moved or turned about an axis")
+        .found(others.join(", "))
+        .help("give one name to all faces of a side: \"i1 = low periodic\" behind each block")
 }
 
 /// The joint of CGNS that a pair of periodic faces is.

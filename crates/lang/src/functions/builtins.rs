@@ -42,6 +42,7 @@ impl Builtin {
     pub fn words(&self, argument: usize) -> impl Iterator<Item = &'static str> {
         let words: &[&str] = match (self.action, argument) {
             (Action::WriteGrids(format), 1..) if format.joins => &BOUNDARY_KINDS,
+            (Action::Interfaces, 1..) => &BOUNDARY_KINDS,
             (Action::WriteGrids(format), 1) => format.words,
             (Action::Open, 1..) => &["r", "w", "a"],
             _ => &[],
@@ -74,6 +75,7 @@ pub(crate) enum Action {
     RefinedStep,
     Refinement,
     WriteGrids(&'static GridFormat),
+    Interfaces,
     ReadPlot3d,
     BlankingPlot3d,
     CountPlot3d,
@@ -95,7 +97,7 @@ const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
 ];
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 32] = [
+pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "format",
         action: Action::Format,
@@ -358,6 +360,42 @@ pub const BUILTINS: [Builtin; 32] = [
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",
+    },
+    Builtin {
+        name: "write_polymesh",
+        action: Action::WriteGrids(&grid_formats::POLY_MESH),
+        signature: "write_polymesh(folder, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
+        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of a folder; faces of equal name are one patch.",
+        returns: "nothing",
+        help: BLOCKS_AND_FACES,
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_polymesh(\"constant/polyMesh\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",
+    },
+    Builtin {
+        name: "write_ugrid",
+        action: Action::WriteGrids(&grid_formats::UGRID),
+        signature: "write_ugrid(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
+        doc: "Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow.",
+        returns: "nothing",
+        help: BLOCKS_AND_FACES,
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_ugrid(\"b.b8.ugrid\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",
+    },
+    Builtin {
+        name: "write_nmf",
+        action: Action::WriteGrids(&grid_formats::NEUTRAL_MAP),
+        signature: "write_nmf(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
+        doc: "Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name.",
+        returns: "nothing",
+        help: BLOCKS_AND_FACES,
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_nmf(\"b.nmf\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\"); write_p3d(\"b.p3d\", b);",
+    },
+    Builtin {
+        name: "interfaces",
+        action: Action::Interfaces,
+        signature: "interfaces(b1, \"k1 = hull wall\", b2, ...)",
+        doc: "The connections and boundaries of blocks, or of surfaces in one plane, as the writers use them, a line for each; folded and left-handed cells, faces that are not joined and symmetry that is not plane are reported.",
+        returns: "text",
+        help: &[BLOCKS_AND_FACES[1], BLOCKS_AND_FACES[2]],
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; block c = b + {1, 0, 0}; print interfaces(b, \"i1 j1 jn k1 kn = box wall\", c, \"in j1 jn k1 kn = box wall\");",
     },
     Builtin {
         name: "write_csv",

@@ -199,6 +199,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Action::WriteGrids(format) => {
                 self.write_grids(m, (builtin.name, format), &given).map(|()| Value::Unset)
             }
+            Action::Interfaces => self.interfaces(m, builtin.name, &given),
             Action::ReadPlot3d => self.read_p3d(m, &given),
             Action::BlankingPlot3d => self.iblank_p3d(m, &given),
             Action::CountPlot3d => self.count_p3d(m, given[0]),

@@ -2,7 +2,7 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    Connected, FacePart, NamedBlock, connected, extruded, volumes,
+    Connected, FacePart, NamedBlock, are_across, connected, extruded, volumes,
 };
 use crate::functions::grid_formats::GridFormat;
 use moldloft_diag::Diagnostic;
@@ -45,13 +45,14 @@ pub(super) fn checked(
         return Ok((found, None));
     }
     let layers = match flat {
-        // CGNS has surfaces in space, the others are plane.
-        true if format.keeps_order => return Ok((found, None)),
+        // CGNS has surfaces in space.
+        true if !format.plane => return Ok((found, None)),
         true => extruded(blocks, "sides")?.0,
         false => blocks.to_vec(),
     };
     symmetry(&layers, &mut found);
     let connected = connected(&layers)?;
+    overlaps(&layers, &connected)?;
     nameless(&layers, flat, &connected.nameless, &mut found);
     Ok((found, Some(connected)))
 }
@@ -113,6 +114,25 @@ fn volume(block: &NamedBlock, format: &GridFormat, found: &mut Vec<Diagnostic>) 
                 .help("reverse one of them: b[::-1, , ]"),
         );
     }
+}
+
+/// Refuses blocks on the same side of a common face: they overlap.
+fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnostic> {
+    let volumes: Vec<f64> = volumes(blocks).iter().map(VolumeGrid::volume).collect();
+    for joint in &connected.content.joints {
+        if !are_across(joint, &volumes) {
+            let [a, b] = [joint.0, joint.1].map(|side| {
+                format!("{} of `{}`", GridFace::ALL[side.1].word(), blocks[side.0].name)
+            });
+            return Err(Diagnostic::error(
+                "cannot-write",
+                format!("{a} and {b} are one face of cells on the same side"),
+            )
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+        }
+    }
+    Ok(())
 }
 
 /// The number of cells that are turned over at a corner, and the first of them.

@@ -6,13 +6,14 @@
 use crate::functions::block_files::{NamedBlock, face_names};
 use crate::functions::builtins::RowFormat;
 use crate::functions::grid_checks;
-use crate::functions::grid_formats::{EncodedFiles, GridFile, GridFormat};
+use crate::functions::grid_formats::{CONNECTIONS, EncodedFiles, GridFile, GridFormat};
 use crate::functions::grid_values::grid_of;
+use crate::functions::joint_report::joint_report;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;
 use moldloft_budget::Budget;
-use moldloft_diag::Diagnostic;
+use moldloft_diag::{Diagnostic, Span};
 use moldloft_grid::FaceNames;
 use moldloft_io::{StructuredGrid, plot3d, points, section};
 use moldloft_model::Extent;
@@ -121,50 +122,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let path = self.text(m, given[0])?;
         let at_name = m.program[given[0]].span;
-        let mut words: Arc<str> = "".into();
-        let mut words_at = at_name;
-        let mut taken = TakenIn::default();
-        for (k, &arg) in given[1..].iter().enumerate() {
-            let span = m.program[arg].span;
-            let value = self.operand(m, arg)?;
-            self.charge(&value, span)?;
-            let texts = |items: &[Value<T>]| items.iter().all(|v| matches!(v, Value::Text(_)));
-            let done = match &value {
-                Value::Text(text) if format.joins && !taken.blocks.is_empty() => {
-                    taken.name_faces(text)
-                }
-                Value::Text(text) if k == 0 => {
-                    (words, words_at) = (text.clone(), span);
-                    Ok(())
-                }
-                Value::List(items)
-                    if format.joins
-                        && !taken.blocks.is_empty()
-                        && !items.is_empty()
-                        && texts(items) =>
-                {
-                    taken.name_each(items)
-                }
-                Value::Numbers(a) if format.blanking && !taken.blocks.is_empty() => taken.blank(a),
-                value => {
-                    let first = taken.blocks.len();
-                    let written = m.program.slice(span).trim().to_string();
-                    let done = taken.put(value, &written, format);
-                    taken.last = first..taken.blocks.len();
-                    done
-                }
-            };
-            done.map_err(|d| d.or_at(span))?;
-        }
-        let blocks = taken.blocks;
-        if blocks.is_empty() {
-            return Err(Diagnostic::error(
-                "missing-argument",
-                format!("{name} has nothing to write"),
-            )
-            .at(at_name)
-            .expected("a curve or a surface"));
-        }
+        let (blocks, words) = self.taken_grids(m, (name, format), &given[1..], at_name)?;
+        let (words, words_at) = words.unwrap_or(("".into(), at_name));
         let count: usize = blocks.iter().map(|block| block.grid.count()).sum();
         let (file, text) = (path.to_string(), words.to_string());
         let encoded = move |budget: &Budget| {
@@ -194,6 +153,88 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             self.env.files.for_cgns(&path, content).map_err(place)?;
         }
         Ok(())
+    }
+
+    /// The grids given to a function, with the names of their boundaries; and the words before them, with their place.
+    fn taken_grids(
+        &mut self,
+        m: &Module,
+        (name, format): (&str, &'static GridFormat),
+        given: &[ExprId],
+        at: Span,
+    ) -> Result<(Vec<NamedBlock>, Option<(Arc<str>, Span)>), Diagnostic> {
+        let mut words = None;
+        let mut taken = TakenIn::default();
+        for (k, &arg) in given.iter().enumerate() {
+            let span = m.program[arg].span;
+            let value = self.operand(m, arg)?;
+            self.charge(&value, span)?;
+            let texts = |items: &[Value<T>]| items.iter().all(|v| matches!(v, Value::Text(_)));
+            let done = match &value {
+                Value::Text(text) if format.joins && !taken.blocks.is_empty() => {
+                    taken.name_faces(text)
+                }
+                Value::Text(text) if k == 0 => {
+                    words = Some((text.clone(), span));
+                    Ok(())
+                }
+                Value::List(items)
+                    if format.joins
+                        && !taken.blocks.is_empty()
+                        && !items.is_empty()
+                        && texts(items) =>
+                {
+                    taken.name_each(items)
+                }
+                Value::Numbers(a) if format.blanking && !taken.blocks.is_empty() => taken.blank(a),
+                value => {
+                    let first = taken.blocks.len();
+                    let written = m.program.slice(span).trim().to_string();
+                    let done = taken.put(value, &written, format);
+                    taken.last = first..taken.blocks.len();
+                    done
+                }
+            };
+            done.map_err(|d| d.or_at(span))?;
+        }
+        if taken.blocks.is_empty() {
+            return Err(Diagnostic::error(
+                "missing-argument",
+                format!("{name} has nothing to write"),
+            )
+            .at(at)
+            .expected("a curve or a surface"));
+        }
+        Ok((taken.blocks, words))
+    }
+
+    /// `interfaces(b1, "k1 = hull wall", b2)`: connections and boundaries of blocks.
+    pub(crate) fn interfaces(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
+        let at = m.program[given[0]].span;
+        let (blocks, words) = self.taken_grids(m, (name, &CONNECTIONS), given, at)?;
+        if let Some((_, span)) = words {
+            return Err(Diagnostic::error("wrong-type", "a text names the boundaries of no block")
+                .at(span)
+                .expected("a block or a surface before it"));
+        }
+        let count: usize = blocks.iter().map(|block| block.grid.count()).sum();
+        let described = move || -> Result<(Vec<Diagnostic>, String), Diagnostic> {
+            let (found, connected) = grid_checks::checked(&blocks, &CONNECTIONS)?;
+            let flat = blocks.iter().all(|block| block.grid.size[2] == 1);
+            let Some(connected) = connected else {
+                return Err(Diagnostic::error(
+                    "wrong-type",
+                    "these arrays have no common boundaries",
+                )
+                .expected("blocks, or surfaces in one plane, with cells"));
+            };
+            Ok((found, joint_report(&blocks, &connected, flat)))
+        };
+        let (found, text) = self.apart(count, at, described)?.map_err(|d| d.or_at(at))?;
+        for diagnostic in found {
+            self.report(diagnostic.at(at));
+        }
+        Ok(Value::Text(text.into()))
     }
 
     pub(crate) fn bytes_of(

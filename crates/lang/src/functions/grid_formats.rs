@@ -2,12 +2,17 @@
 
 use crate::functions::block_files::{CgnsBlocks, Connected, NamedBlock, extruded, one_mesh, whole};
 use crate::functions::plots::plot;
+use crate::functions::solver_conditions::{conditions, map_entries};
 use crate::run::usage;
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
+use moldloft_grid::HexMesh;
+use moldloft_io::hexahedra::PeriodicPartner;
+use moldloft_io::neutral_map::neutral_map;
 use moldloft_io::plot3d::{self, Laid, Variant};
 use moldloft_io::quadrilaterals::{self, PlaneMesh};
-use moldloft_io::{StructuredGrid, WriteError, hexahedra, points, stl, vtk};
+use moldloft_io::ugrid::{UgridLayout, mapbc, ugrid};
+use moldloft_io::{StructuredGrid, WriteError, hexahedra, openfoam, points, stl, vtk};
 use moldloft_num::Vec3;
 
 /// Content to write, with the words that select variants of the format.
@@ -36,6 +41,8 @@ pub(crate) struct GridFormat {
     pub joins: bool,
     /// True if an farray of whole numbers after a surface is its blanking.
     pub blanking: bool,
+    /// True if surfaces in one plane are a mesh, with their edges as boundaries.
+    pub plane: bool,
     /// True if cells keep the order of the points, right-handed or not.
     pub keeps_order: bool,
     /// True if it checks the budget itself; others are watched from outside.
@@ -49,12 +56,16 @@ pub(crate) struct GridFormat {
 pub(crate) const PLAIN: GridFormat = GridFormat {
     blocks: false,
     joins: false,
+    plane: false,
     blanking: false,
     keeps_order: false,
     watches: false,
     words: &[],
     encode: csv,
 };
+
+/// One mesh of all blocks.
+const JOINED_MESH: GridFormat = GridFormat { blocks: true, joins: true, plane: true, ..PLAIN };
 
 /// `write_p3d`.
 pub(crate) static PLOT3D: GridFormat = GridFormat {
@@ -98,15 +109,27 @@ pub(crate) static CGNS: GridFormat =
     GridFormat { blocks: true, joins: true, keeps_order: true, encode: cgns, ..PLAIN };
 
 /// `write_su2`.
-pub(crate) static SU2: GridFormat = GridFormat { blocks: true, joins: true, encode: su2, ..PLAIN };
+pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
 
 /// `write_gmsh`.
-pub(crate) static GMSH: GridFormat =
-    GridFormat { blocks: true, joins: true, encode: gmsh, ..PLAIN };
+pub(crate) static GMSH: GridFormat = GridFormat { encode: gmsh, ..JOINED_MESH };
 
 /// `write_blockmesh`.
-pub(crate) static BLOCK_MESH: GridFormat =
-    GridFormat { blocks: true, joins: true, encode: block_mesh, ..PLAIN };
+pub(crate) static BLOCK_MESH: GridFormat = GridFormat { encode: block_mesh, ..JOINED_MESH };
+
+/// `write_polymesh`.
+pub(crate) static POLY_MESH: GridFormat = GridFormat { encode: poly_mesh, ..JOINED_MESH };
+
+/// `write_ugrid`.
+pub(crate) static UGRID: GridFormat =
+    GridFormat { plane: false, encode: ugrid_file, ..JOINED_MESH };
+
+/// `write_nmf`.
+pub(crate) static NEUTRAL_MAP: GridFormat =
+    GridFormat { plane: false, keeps_order: true, encode: neutral_map_file, ..JOINED_MESH };
+
+/// `interfaces`, which writes nothing.
+pub(crate) static CONNECTIONS: GridFormat = GridFormat { keeps_order: true, ..JOINED_MESH };
 
 /// `plot`.
 pub(crate) static PICTURE: GridFormat = GridFormat {
@@ -299,22 +322,120 @@ fn gmsh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     Ok(one(file.path, whole(hexahedra::gmsh(&mesh), &mesh, "Gmsh")?))
 }
 
-fn block_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+/// The cosine of the angle between a wedge and the coordinate plane of its axis, above which they are one plane.
+const NO_WEDGE: f64 = 1.0 - 1e-9;
+
+/// Refuses wedges that OpenFOAM refuses: sides that are not plane, or not two that are mirror images about a coordinate
+/// plane.
+fn check_wedges(mesh: &HexMesh) -> Result<(), Diagnostic> {
+    let wrong = |message: String, expected: &str| {
+        Diagnostic::error("cannot-write", message)
+            .expected(expected.to_string())
+            .help("give the sides two names: \"k1 = front wedge, kn = back wedge\"")
+    };
+    let wedges = mesh.patches.iter().filter(|patch| patch.kind == "wedge");
+    let mut normals: Vec<(&str, [f64; 3])> = Vec::new();
+    for patch in wedges {
+        if !hexahedra::is_plane(&mesh.points, &patch.faces) {
+            return Err(wrong(
+                format!("the wedge `{}` is not plane", patch.name),
+                "a plane for each of the two sides of a wedge",
+            ));
+        }
+        let area = patch.faces.iter().fold(Vec3::zero(), |sum, face| {
+            let [a, b, c, d] = face.map(|n| mesh.points[n]);
+            sum + (c - a).cross(d - b)
+        });
+        normals.push((&patch.name, (area / area.norm()).to_array()));
+    }
+    for (name, normal) in &normals {
+        let mirrored = |axis: usize| {
+            (0.5..NO_WEDGE).contains(&normal[axis].abs())
+                && normals.iter().any(|(_, other)| {
+                    (0..3).all(|k| {
+                        let sign = if k == axis { -1.0 } else { 1.0 };
+                        (other[k] - sign * normal[k]).abs() <= hexahedra::PLANE
+                    })
+                })
+        };
+        if !(0..3).any(mirrored) {
+            let message = format!(
+                "the wedge `{name}`, normal ({:.6}, {:.6}, {:.6}), has no mirror image about a coordinate plane",
+                normal[0], normal[1], normal[2]
+            );
+            let expected = "two sides at equal small angles to a plane of constant x, y or z";
+            return Err(wrong(message, expected));
+        }
+    }
+    Ok(())
+}
+
+/// The mesh for OpenFOAM, which has a plane mesh as one layer of cells between two empty sides, and its periodic
+/// boundaries.
+fn foam_mesh(file: GridFile<'_>) -> Result<(HexMesh, Vec<PeriodicPartner>), Diagnostic> {
     option(&file, "")?;
-    // OpenFOAM has a plane mesh as one layer of cells between two empty sides.
     let blocks = match are_flat(&file.blocks)? {
         true => extruded(&file.blocks, FRONT_AND_BACK)?.0,
         false => file.blocks,
     };
     let mesh = one_mesh(&blocks);
-    for patch in mesh.patches.iter().filter(|patch| patch.kind == "wedge") {
-        if !hexahedra::is_plane(&mesh.points, &patch.faces) {
-            let message = format!("the wedge `{}` is not plane", patch.name);
-            return Err(Diagnostic::error("cannot-write", message)
-                .expected("a plane for each of the two sides of a wedge")
-                .help("give the sides two names: \"k1 = front wedge, kn = back wedge\""));
-        }
-    }
+    check_wedges(&mesh)?;
     let partners = file.connected.map(|connected| connected.partners).unwrap_or_default();
-    Ok(one(file.path, hexahedra::block_mesh(&mesh, &partners)))
+    Ok((mesh, partners))
+}
+
+fn block_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let path = file.path;
+    let (mesh, partners) = foam_mesh(file)?;
+    Ok(one(path, openfoam::block_mesh(&mesh, &partners)))
+}
+
+fn poly_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let folder = file.path.trim_end_matches('/');
+    let (mesh, partners) = foam_mesh(file)?;
+    let parts = openfoam::poly_mesh(&mesh, &partners).map_err(cannot)?;
+    let named = |(name, bytes): openfoam::FoamFile| (format!("{folder}/{name}"), bytes);
+    Ok(EncodedFiles { files: parts.into_iter().map(named).collect(), cgns: None })
+}
+
+/// Refuses surfaces in a file of blocks.
+fn blocks_only(file: &GridFile<'_>) -> Result<(), Diagnostic> {
+    if !are_flat(&file.blocks)? {
+        return Ok(());
+    }
+    let message = format!("`{}` is a surface", file.blocks[0].name);
+    Err(Diagnostic::error("cannot-write", message).expected("blocks of cells"))
+}
+
+fn neutral_map_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    blocks_only(&file)?;
+    let sizes: Vec<[usize; 3]> = file.blocks.iter().map(|block| block.grid.size).collect();
+    let Some(connected) = &file.connected else { return Ok(EncodedFiles::default()) };
+    let entries = map_entries(&file.blocks, connected)?;
+    Ok(one(file.path, neutral_map(&sizes, &entries)))
+}
+
+/// Names of UGRID files: their arrangement is part of the ending.
+const UGRID_ENDINGS: [(&str, UgridLayout); 3] = [
+    (".lb8.ugrid", UgridLayout::Stream { big_endian: false }),
+    (".b8.ugrid", UgridLayout::Stream { big_endian: true }),
+    (".ugrid", UgridLayout::Text),
+];
+
+fn ugrid_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
+    blocks_only(&file)?;
+    let ending = UGRID_ENDINGS.iter().find(|(ending, _)| file.path.ends_with(ending));
+    let Some((ending, layout)) = ending else {
+        let message = format!("`{}` is not the name of a UGRID file", file.path);
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("a name that ends in .b8.ugrid, .lb8.ugrid or .ugrid"));
+    };
+    let mesh = one_mesh(&file.blocks);
+    let conditions = conditions(&mesh)?;
+    let grid = whole(ugrid(&mesh, *layout), &mesh, "UGRID")?;
+    let named = format!("{}.mapbc", file.path.trim_end_matches(ending));
+    let files = vec![(file.path.to_string(), grid), (named, mapbc(&conditions))];
+    Ok(EncodedFiles { files, cgns: None })
 }

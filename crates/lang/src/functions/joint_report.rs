@@ -1,0 +1,58 @@
+//! `interfaces`: the connections and boundaries of blocks as text.
+
+use crate::functions::block_files::{Connected, FacePart, NamedBlock};
+use moldloft_grid::GridFace;
+use std::fmt::Write;
+
+/// A line for each connection and each boundary: names, faces and index ranges from 1; behind a connection the axis of the
+/// second block along each one of the first.
+pub(super) fn joint_report(blocks: &[NamedBlock], connected: &Connected, flat: bool) -> String {
+    let axes = if flat { 2 } else { 3 };
+    let part = |(block, face, from, to): &FacePart| {
+        let word = match (flat, GridFace::ALL[*face].word()) {
+            (true, "in") => "im",
+            (_, word) => word,
+        };
+        let range = |k: usize| match from[k] == to[k] {
+            true => (from[k] + 1).to_string(),
+            false => format!("{}:{}", from[k] + 1, to[k] + 1),
+        };
+        let ranges: Vec<String> = (0..axes).map(range).collect();
+        format!("{} {word} [{}]", blocks[*block].name, ranges.join(","))
+    };
+    let mut lines = Vec::new();
+    for (own, other, transform, movement) in &connected.content.joints {
+        let axis = |k: usize| {
+            let name = ["i", "j", "k"][transform[k].unsigned_abs() as usize - 1];
+            if transform[k] < 0 { format!("-{name}") } else { name.to_string() }
+        };
+        let along: Vec<String> = (0..axes).map(axis).collect();
+        let mut line = format!("{} = {}: axes {}", part(own), part(other), along.join(","));
+        if let Some((_, angles, shift)) = movement {
+            let turned = (0..3).find(|k| angles[*k] != 0.0);
+            let _ = match turned {
+                Some(k) => write!(
+                    line,
+                    ", periodic: turned by {} degrees about {}",
+                    angles[k].to_degrees(),
+                    ["x", "y", "z"][k]
+                ),
+                None => {
+                    write!(line, ", periodic: moved by ({}, {}, {})", shift[0], shift[1], shift[2])
+                }
+            };
+        }
+        lines.push(line);
+    }
+    let is_side = |of: &FacePart| flat && of.1 > 3;
+    for (of, name, kind) in &connected.content.boundaries {
+        if is_side(of) {
+            continue;
+        }
+        lines.push(match connected.nameless.contains(of) {
+            true => format!("{}: without a name", part(of)),
+            false => format!("{}: {name} {kind}", part(of)),
+        });
+    }
+    lines.join("\n")
+}
