@@ -67,7 +67,8 @@ FUNCTIONS = (
     ("Searches", "closest project intersect intersections"),
     (
         "Structured grids",
-        "tfi elliptic elliptic_block hyperbolic o_grid c_grid h_grid check_edges folds quality interfaces",
+        "tfi elliptic elliptic_block hyperbolic o_grid c_grid h_grid check_edges folds quality "
+        "interfaces",
     ),
     (
         "Fields",
