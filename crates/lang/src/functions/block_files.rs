@@ -189,7 +189,6 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
             .expected("blocks that do not overlap")
             .help("write each block once"));
     }
-    one_type_each(blocks)?;
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -234,7 +233,7 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
 }
 
 /// Refuses a boundary of two types.
-fn one_type_each(blocks: &[NamedBlock]) -> Result<(), Diagnostic> {
+pub(super) fn one_type_each(blocks: &[NamedBlock]) -> Result<(), Diagnostic> {
     let mut known: HashMap<&str, &str> = HashMap::new();
     for (name, kind) in blocks.iter().flat_map(|block| block.faces.iter().flatten()) {
         let first = *known.entry(name).or_insert(kind);

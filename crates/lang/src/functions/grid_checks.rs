@@ -2,7 +2,7 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    Connected, FacePart, NamedBlock, are_across, connected, extruded, volumes,
+    Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each, volumes,
 };
 use crate::functions::grid_formats::GridFormat;
 use moldloft_diag::Diagnostic;
@@ -40,6 +40,7 @@ pub(super) fn checked(
     if !format.joins || blocks.iter().any(|block| block.grid.size[..2].iter().any(|n| *n < 2)) {
         return Ok((found, None));
     }
+    one_type_each(blocks)?;
     let flat = blocks.iter().all(|block| block.grid.size[2] == 1);
     if !flat && blocks.iter().any(|block| block.grid.size[2] == 1) {
         return Ok((found, None));
