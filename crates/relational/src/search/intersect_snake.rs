@@ -44,7 +44,8 @@ use std::sync::Arc;
                Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0); AbsPoint E(2, -1, -2); \
                AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); \
                RuledSurf T(n, o, visible = 0); Intersection x(S, T); IntSnake a(S, x); IntSnake b(T, x); \
-               SubSurf half({S.u0, a}); SubSurf web({b, T.v1}); AbsBead p(x, 0.5); XPlane y(1); Intersection c(S, y);"
+               EdgeSnake hem(4, S); EdgeSnake rim(3, T); SubSurf half({hem, a}); SubSurf web({b, rim}); \
+               AbsBead p(x, 0.5); XPlane y(1); Intersection c(S, y);"
 )]
 pub struct Intersection<T: Real> {
     /// The surface, or a magnet on it near the intended branch.
@@ -585,7 +586,13 @@ fn set_up<T: Real>(
         if let Some((i, station)) = first_place {
             let count = branch.stations.len();
             branch.stations.rotate_left((i + 1) % count);
-            branch.stations.insert(0, station);
+            // A branch that was followed from its start has stations there.
+            if let [.., before, last] = &branch.stations[..]
+                && is_at(last, &station, before)
+            {
+                branch.stations.pop();
+            }
+            begin_at(&mut branch, station);
         }
         let begin = branch.stations[0];
         branch.stations.push(begin);
@@ -839,15 +846,21 @@ fn cut_after(branch: &mut Branch, station: &TracePoint) {
 fn cut_before(branch: &mut Branch, station: &TracePoint) {
     let at = position(branch, station);
     branch.stations.drain(..=at);
-    let near = branch.stations.first().is_some_and(|s| {
-        let next = branch.stations.get(1).map_or(f64::INFINITY, |n| n.x.distance(s.x));
-        s.x.distance(station.x) < 1e-6 * next
-    });
-    if near {
-        branch.stations[0] = *station;
-    } else {
-        branch.stations.insert(0, *station);
+    begin_at(branch, *station);
+}
+
+/// Puts a station before the others, or in place of the first if it is there.
+fn begin_at(branch: &mut Branch, station: TracePoint) {
+    match &branch.stations[..] {
+        [first, next, ..] if is_at(first, &station, next) => branch.stations[0] = station,
+        [first] if first.x.distance(station.x).is_finite() => branch.stations[0] = station,
+        _ => branch.stations.insert(0, station),
     }
+}
+
+/// True if a station is at another one, for what the next station is away.
+fn is_at(station: &TracePoint, other: &TracePoint, next: &TracePoint) -> bool {
+    station.x.distance(other.x) < 1e-6 * next.x.distance(station.x)
 }
 
 /// Position of the nearest point on the chord between two stations, as a fraction, and its
