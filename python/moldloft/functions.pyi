@@ -5710,6 +5710,120 @@ def write_blockmesh(
         surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh("blockMeshDict", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
     """
     ...
+def write_polymesh(
+    *args: object,
+) -> AnyShape:
+    """Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of a folder; faces of equal name are one patch.
+
+    Called as `write_polymesh(folder, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
+
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block or surface
+        Blocks, or surfaces in one plane; a list counts as its members.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
+
+    Returns
+    -------
+    nothing
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_polymesh("constant/polyMesh", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
+    """
+    ...
+def write_ugrid(
+    *args: object,
+) -> AnyShape:
+    """Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow.
+
+    Called as `write_ugrid(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block or surface
+        Blocks, or surfaces in one plane; a list counts as its members.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
+
+    Returns
+    -------
+    nothing
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_ugrid("b.b8.ugrid", b, "k1 = floor wall, i1 in j1 jn kn = box outflow");
+    """
+    ...
+def write_nmf(
+    *args: object,
+) -> AnyShape:
+    """Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name.
+
+    Called as `write_nmf(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block or surface
+        Blocks, or surfaces in one plane; a list counts as its members.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
+
+    Returns
+    -------
+    nothing
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_nmf("b.nmf", b, "k1 = floor wall, i1 in j1 jn kn = box outflow"); write_p3d("b.p3d", b);
+    """
+    ...
+def interfaces(
+    *args: object,
+) -> AnyShape:
+    """The connections and boundaries of blocks, or of surfaces in one plane, as the writers use them, a line for each; folded and left-handed cells, faces that are not joined and symmetry that is not plane are reported.
+
+    Called as `interfaces(b1, "k1 = hull wall", b2, ...)`.
+
+    Parameters
+    ----------
+    b : list of block or surface
+        Blocks, or surfaces in one plane; a list counts as its members.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
+        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
+        inflow, outflow, periodic, empty, wedge, patch.
+
+    Returns
+    -------
+    text
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; block c = b + {1, 0, 0}; print interfaces(b, "i1 j1 jn k1 kn = box wall", c, "in j1 jn k1 kn = box wall");
+    """
+    ...
 def write_csv(
     *args: object,
 ) -> AnyShape:

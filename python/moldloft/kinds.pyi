@@ -2402,8 +2402,9 @@ def Join(
     from different objects. The result is the first edge.
 
     Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
-    Curves and snakes along edges are accepted too; the directions may be opposite. One of the two may
-    be a part of an edge, such as a `SubCurve` between beads: the whole other edge is on that part.
+    Curves and snakes along edges are accepted too; the directions may be opposite. One edge may be on a part
+    of the other, at equal fractions of both: the part between the beads, rings or ends of the longer edge that
+    the shorter one ends at, or the part that is given, such as a `SubCurve` between beads.
     Patches on the same curves and points join without a declaration. Edges farther apart than the tolerance at
     any point are an error; the vertices are those of the patch declared first.
 
@@ -3092,7 +3093,7 @@ def ProjCurve(
         AbsPoint A(0, 1, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); ProjCurve flat(c, "z=0");
     """
     ...
-def IntCurve(
+def Intersection(
     name: str,
     /,
     surface: _Onto,
@@ -3113,8 +3114,22 @@ def IntCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """The intersection of a surface with a plane, another surface or the zero set of a field, as a
-    curve in space: [`IntSnake`] without its surface.
+    """The intersection of two surfaces, or of a surface with a plane or the zero set of a field: one
+    curve, whichever surface it is used on. Its parameter is the fraction of its length.
+
+    `IntSnake(a, x)` is the intersection `x` as a snake on its surface `a`. The snakes on both surfaces
+    are `x` itself from end to end, so panels on both sides share its vertices.
+
+    A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of the
+    parameters of the surface declared first. Other branches are reported. The direction is n1 x n2, the product of both
+    normals. The curve extends from edge to edge, or from the magnet `start` to the magnet `end`, each on either
+    surface and on the intersection, which keep their identity, so that patches join. A closed branch begins at
+    the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface declared first. Each point
+    is on both shapes to rounding.
+
+    All branches are found that are longer than 2 % of the size and somewhere cross at an angle
+    larger than the shapes turn within that length; of two branches closer than that all along, one
+    may be missed. Shapes that only touch have no intersection.
 
     Parameters
     ----------
@@ -3144,7 +3159,7 @@ def IntCurve(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); XPlane x(2.5); IntCurve c(S, x); AbsBead b(c, 0.5);
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0); AbsPoint E(2, -1, -2); AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); RuledSurf T(n, o, visible = 0); Intersection x(S, T); IntSnake a(S, x); IntSnake b(T, x); EdgeSnake hem(4, S); EdgeSnake rim(3, T); SubSurf half({hem, a}); SubSurf web({b, rim}); AbsBead p(x, 0.5); XPlane y(1); Intersection c(S, y);
     """
     ...
 def LineSnake(
@@ -3909,20 +3924,11 @@ def IntSnake(
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
     """The intersection of a surface with a plane, another surface or the zero set of a field, as a
-    snake on the surface. Its parameter is the fraction of its length.
+    snake on the surface: [`Intersection`] on one of its surfaces.
 
-    A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of its
-    parameters (of the surface declared first). Other branches are reported. The direction of the
-    snake is n1 x n2, the product of both normals. It extends from edge to edge, or from the magnet
-    `start` to the magnet `end`, which must be on the intersection and keep their identity, so that
-    patches join. A closed branch begins at the point nearest to the magnet or, without one, to
-    S(0.3, 0.4) of the surface declared first: the cuts of two surfaces by each other are the same
-    curve. Each point is on both shapes to rounding. At the seam of a closed surface the parameter
-    jumps between 0 and 1.
-
-    All branches are found that are longer than 2 % of the size and somewhere cross at an angle
-    larger than the shapes turn within that length; of two branches closer than that all along, one
-    may be missed. Shapes that only touch have no intersection.
+    `IntSnake(a, x)` is the intersection `x` on its surface `a`. Otherwise the arguments are those of the
+    intersection: `IntSnake(a, b)` and `IntSnake(b, a)` are one curve in opposite directions, which patches on both
+    sides share. At the seam of a closed surface the parameter jumps between 0 and 1.
 
     Parameters
     ----------
@@ -3931,7 +3937,8 @@ def IntSnake(
     surface : surface or magnet
         The surface of the snake, or a magnet on it near the intended branch.
     target : target
-        The plane, the other surface (or a magnet on it), or the field with the zero set.
+        The plane, the other surface (or a magnet on it), the field with the zero set, or an
+        intersection on the surface.
     start : magnet, optional
         Start: a magnet or ring on the intersection. Default: the start of the branch.
     end : magnet, optional
