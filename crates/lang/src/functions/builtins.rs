@@ -364,8 +364,8 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_polymesh",
         action: Action::WriteGrids(&grid_formats::POLY_MESH),
-        signature: "write_polymesh(folder, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
-        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of a folder; faces of equal name are one patch.",
+        signature: "write_polymesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
+        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_polymesh(\"constant/polyMesh\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",
