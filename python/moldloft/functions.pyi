@@ -5713,9 +5713,9 @@ def write_blockmesh(
 def write_polymesh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of a folder; faces of equal name are one patch.
+    """Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch.
 
-    Called as `write_polymesh(folder, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
+    Called as `write_polymesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
 
     Parameters
     ----------
