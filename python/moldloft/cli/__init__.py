@@ -243,9 +243,13 @@ def _command_first(arguments: list[str]) -> list[str]:
     moved: list[str] = []
     while rest and (name := rest[0].partition("=")[0]) in _COMMON:
         words = 1 if "=" in rest[0] else 1 + _COMMON[name]
+        if len(rest) < words:
+            return arguments
         moved += rest[:words]
         rest = rest[words:]
-    if not rest or rest[0].startswith("-"):
+    if not rest:
+        return []
+    if rest[0].startswith("-"):
         return arguments
     return [rest[0], *moved, *rest[1:]]
 
@@ -253,7 +257,7 @@ def _command_first(arguments: list[str]) -> list[str]:
 def _parsed(arguments: list[str]) -> Namespace:
     from moldloft.cli.parser import meant, usage_error
 
-    arguments = _command_first(arguments) if arguments else ["--help"]
+    arguments = _command_first(arguments) or ["--help"]
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
         usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
