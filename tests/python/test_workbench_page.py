@@ -392,7 +392,7 @@ def test_foreign_points_have_their_deviation(bench: Callable[..., Bench], tmp_pa
     (tmp_path / "offsets.csv").write_text(OFFSETS)
     with b.page.expect_file_chooser() as chosen:
         b.page.keyboard.press("Control+K")
-        b.page.keyboard.type("lay a mesh")
+        b.page.keyboard.type("lay a file")
         b.page.keyboard.press("Enter")
     chosen.value.set_files(str(tmp_path / "offsets.csv"))
     # rms of 0, 0.1, 0.2 and the largest.

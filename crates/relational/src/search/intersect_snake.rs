@@ -586,13 +586,17 @@ fn set_up<T: Real>(
         if let Some((i, station)) = first_place {
             let count = branch.stations.len();
             branch.stations.rotate_left((i + 1) % count);
-            // A branch that was followed from its start has stations there.
-            if let [.., before, last] = &branch.stations[..]
-                && is_at(last, &station, before)
-            {
-                branch.stations.pop();
+            if whole {
+                branch.stations.insert(0, station);
+            } else {
+                // A branch that was followed from its start has stations there.
+                if let [.., before, last] = &branch.stations[..]
+                    && is_at(last, &station, before)
+                {
+                    branch.stations.pop();
+                }
+                begin_at(&mut branch, station);
             }
-            begin_at(&mut branch, station);
         }
         let begin = branch.stations[0];
         branch.stations.push(begin);
