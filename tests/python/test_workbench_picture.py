@@ -321,6 +321,7 @@ def test_a_link_holds_the_model(bench: Callable[..., Bench]) -> None:
     b.page.get_by_role("application", name="model").focus()
     b.page.keyboard.press("Control+z")
     b.until(lambda: b.text() == give_up)
+    b.hand("settled()")
     # One that was cut short is an error, and nothing is taken.
     b.page.goto("about:blank")
     b.page.goto(address[:-6])

@@ -218,6 +218,8 @@ export class Making {
       )
       const nearness = (k: Kind) => {
         const [name, word] = [k.name.toLowerCase(), words.join('')]
+        // `Intersection` is a curve, `intersection` an operator of sets.
+        if (k.name === search.value.trim()) return -1
         return !word || name === word ? 0 : name.startsWith(word) ? 1 : name.includes(word) ? 2 : 3
       }
       found.sort((a, b) => nearness(a) - nearness(b) || order(a) - order(b))
