@@ -465,17 +465,8 @@ fn whole_edges_join_parts_of_others() {
                 let report = p.mesh.report();
                 assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
             }
-            d.set(&[("t".into(), 0.35), ("h".into(), 1.0)]).unwrap();
-            let exact = d.jacobian(&["t".into()]).unwrap();
-            let mut at = |t: f64| {
-                d.set(&[("t".into(), t)]).unwrap();
-                panelled(&mut d).mesh.positions().to_vec()
-            };
-            let (low, high) = (at(0.35 - 1e-5), at(0.35 + 1e-5));
-            for (k, d) in exact[0].iter().enumerate() {
-                let difference = (high[k] - low[k]) / 2e-5;
-                assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
-            }
+            d.set(&[("h".into(), 1.0)]).unwrap();
+            vertices_have_their_derivatives(&mut d);
         }
     }
     let apart = strips_at_an_edge(["Line am(O, M);", "Line mb(M, N);"], joins[0], counts[0])
@@ -485,6 +476,21 @@ fn whole_edges_join_parts_of_others() {
     let parts =
         strips_at_an_edge(["Line am(O, M);", "Line mb(M, N);"], "Join j(am0, bm0);", counts[0]);
     assert!(ids(&open(&parts)).contains(&"not-an-edge".to_string()));
+}
+
+/// Derivatives of the mesh by `t` at 0.35 against central differences.
+fn vertices_have_their_derivatives(d: &mut Document) {
+    d.set(&[("t".into(), 0.35)]).unwrap();
+    let exact = d.jacobian(&["t".into()]).unwrap();
+    let mut at = |t: f64| {
+        d.set(&[("t".into(), t)]).unwrap();
+        panelled(d).mesh.positions().to_vec()
+    };
+    let (low, high) = (at(0.35 - 1e-5), at(0.35 + 1e-5));
+    for (k, d) in exact[0].iter().enumerate() {
+        let difference = (high[k] - low[k]) / 2e-5;
+        assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
+    }
 }
 
 /// A patch along the whole of a curved or straight edge, and two beside parts of it that are drawn through
@@ -525,17 +531,7 @@ fn parts_end_at_the_points_that_they_are_drawn_through() {
             let report = p.mesh.report();
             assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
         }
-        d.set(&[("t".into(), 0.35)]).unwrap();
-        let exact = d.jacobian(&["t".into()]).unwrap();
-        let mut at = |t: f64| {
-            d.set(&[("t".into(), t)]).unwrap();
-            panelled(&mut d).mesh.positions().to_vec()
-        };
-        let (low, high) = (at(0.35 - 1e-5), at(0.35 + 1e-5));
-        for (k, d) in exact[0].iter().enumerate() {
-            let difference = (high[k] - low[k]) / 2e-5;
-            assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
-        }
+        vertices_have_their_derivatives(&mut d);
     }
     // A point typed at the place of the bead is another point, at any distance.
     let typed = beside_parts(true, joins[0]).replace(
