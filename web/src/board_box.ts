@@ -3,7 +3,7 @@
 import type { Mark, Page } from './board_paint'
 import { h, shown } from './dom'
 
-/** The slider goes so many decades each way. */
+/** Decades that the slider spans each way. */
 const SPAN = 0.6
 
 export interface BoxActions {

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["failures", "html", "sensitivities"]
 
-#: Cases drawn one by one. Plots of more have the number of cases by cells; parallel coordinates are
-#: of so many, evenly chosen, and the page states the number left out.
+#: Most cases that are drawn one by one. Plots of more show the number of cases by cells; parallel
+#: coordinates show this number, evenly chosen, and the page states the number left out.
 MAX_DRAWN = 2_000
 
 #: Points of all lines of parallel coordinates: many inputs leave room for fewer cases.

@@ -89,8 +89,8 @@ class Guard:
         site = given.get("sec-fetch-site", ["none"])
         # The page of another model of this machine may go to the frame of this one, which tells
         # nothing without a token.
-        goes = reads and scope["path"] == "/" and given.get("sec-fetch-mode") == ["navigate"]
-        sites = ("same-origin", "none", "same-site") if goes else ("same-origin", "none")
+        navigates = reads and scope["path"] == "/" and given.get("sec-fetch-mode") == ["navigate"]
+        sites = ("same-origin", "none", "same-site") if navigates else ("same-origin", "none")
         return (
             len(given.get("host", [])) == 1
             and given["host"][0] in self._hosts
