@@ -121,11 +121,7 @@ def test_tangents_geodesics_projections_and_sections_over_the_seam(case):
     assert spread <= 1e-8 * radius, spread
 
 
-#: A known fault: the section of this ball is followed round it twice, and its length is doubled.
-TWICE = pytest.param(2, marks=pytest.mark.xfail(strict=True, raises=AssertionError))
-
-
-@pytest.mark.parametrize("case", [TWICE if case == 2 else case for case in cases(15, 500)])
+@pytest.mark.parametrize("case", cases(15, 500))
 def test_sections_between_rings_over_the_seam(case):
     random = np.random.default_rng(3000 + case)
     radius = random.uniform(0.5, 3)

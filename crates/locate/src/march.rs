@@ -600,7 +600,11 @@ impl<'a> Crossing<'a> {
                     away.distance(way * share) <= 0.1 * way.norm()
                 };
                 if before < 0.0 && after >= 0.0 && near && last.tangent.dot(start.tangent) > 0.5 {
-                    let same = (0..n).all(|k| (last.q[k] - start.q[k]).abs() < 0.3);
+                    // Near a pole one step spans a large part of the turn.
+                    let same = (0..n).all(|k| {
+                        let spanned = (next.q[k] - last.q[k]).abs();
+                        (last.q[k] - start.q[k]).abs() < f64::max(0.3, spanned)
+                    });
                     if same {
                         if let Some(both) = self.crease(&lines, &last, start.q, sign) {
                             self.extend_over_crease(&mut all, both);

@@ -367,3 +367,26 @@ fn a_second_height_field_cuts_where_the_difference_is_zero() {
         agree(&found, &components(&g, n, &x), &format!("seed {seed}"));
     }
 }
+
+#[test]
+fn a_section_of_a_ball_is_followed_once() {
+    let mut random = Random::new(2_024);
+    let draws = (0..moldloft_testing::rounds(200, 50_000)).map(|_| {
+        let radius = random.between(0.5, 3.0);
+        [radius, random.between(-0.8, 0.8) * radius, random.between(0.0, std::f64::consts::TAU)]
+    });
+    // Sections on which one step beside the pole spans half a turn.
+    let beside_pole = [
+        [2.150046975038919, -0.01907768366801398, 0.35629481855687134],
+        [0.6585412159934696, -0.004000724935373021, 0.5479523794434827],
+    ];
+    for [radius, offset, angle] in beside_pole.into_iter().chain(draws) {
+        let normal = v(angle.cos(), angle.sin(), 0.0);
+        let ball = Sphere { centre: Vec3::zero(), radius };
+        let found = with_plane(&ball, plane(normal * offset, normal));
+        assert_eq!(count(&found), [1, 0, 0], "{radius} {offset} {angle}");
+        let chords = found.branches[0].stations.windows(2).map(|s| s[0].x.distance(s[1].x));
+        let circle = std::f64::consts::TAU * (radius * radius - offset * offset).sqrt();
+        moldloft_testing::close_relative(chords.sum::<f64>(), circle, 0.01);
+    }
+}
