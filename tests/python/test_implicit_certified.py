@@ -2,6 +2,7 @@
 
 import copy
 import math
+import os
 import pickle
 
 import numpy as np
@@ -10,8 +11,10 @@ import pytest
 import moldloft
 from moldloft import implicit as im
 
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
-@pytest.mark.parametrize("direction", [(0, 0, 1), (1, 2, 3)])
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (1, 2, 3)] if SOAK else [(0, 0, 1)])
 def test_a_thin_ring_is_whole(direction):
     ring = im.Set(im.torus((0, 0, 0), direction, 2, 0.02))
     facets = ring.facets()

@@ -55,8 +55,9 @@ def test_a_program_of_a_page_runs(page: Path, text: str) -> None:
     assert not model.diagnostics, "\n".join(map(str, model.diagnostics))
 
 
-#: The stability of a decked hull at every heel takes minutes on a slow machine.
-LONG = set() if os.environ.get("MOLDLOFT_SOAK") else {"hydrostatics.md"}
+#: The stability of a decked hull at every heel takes minutes on a slow machine; the tutorial of the
+#: propeller designer is walked in `test_tutorials.py`.
+LONG = set() if os.environ.get("MOLDLOFT_SOAK") else {"hydrostatics.md", "propeller.md"}
 
 PYTHON = [
     page

@@ -95,8 +95,8 @@ def sides(sketch: Sketch, name: str, step: float = STEP) -> tuple[np.ndarray, np
 @pytest.mark.parametrize("curved", [False, True], ids=["plane", "round"])
 def test_derivatives_on_a_grid(curved):
     compared = one_sided = refused = bodies = 0
-    # A round body takes ten times as long.
-    for seed in range(BODIES // 3 if curved and not SOAK else BODIES):
+    # A round body takes thirty times as long.
+    for seed in range(BODIES // 15 if curved and not SOAK else BODIES):
         rng = np.random.default_rng([seed, 77, int(curved)])
         made = body(rng, curved=curved)
         if made is None:

@@ -138,7 +138,7 @@ def test_changed_parts_are_those_of_occt(curved, seeds, most):
 def test_derivatives_of_parts_are_their_differences(curved):
     compared = refused = 0
     step = 1e-4
-    for seed in range(200) if SOAK else range(14) if curved else range(5):
+    for seed in range(200) if SOAK else range(5):
         made = start(1000 + seed, curved=curved)
         if made is None:
             continue
@@ -183,7 +183,7 @@ def test_derivatives_of_parts_are_their_differences(curved):
             assert off < 1e-5 * size, (seed, names[k], exact, narrow, part.words)
             compared += int(known.all())
     print(compared, refused)
-    assert compared >= (300 if SOAK else 5)
+    assert compared >= (300 if SOAK else 3)
     assert refused <= max(1, 0.02 * compared)
 
 
@@ -191,7 +191,8 @@ def test_derivatives_of_parts_are_their_differences(curved):
 def test_meshes_are_within_their_tolerance(tolerance):
     # Middles of facets and of their sides, from OCCT's faces.
     measured = 0
-    for seed in range(60 if SOAK else 6):
+    rounds = 60 if SOAK else 6 if tolerance > 1e-3 else 2
+    for seed in range(rounds):
         made = start(seed, curved=True)
         if made is None or made[1].volume is None:
             continue
@@ -213,7 +214,7 @@ def test_meshes_are_within_their_tolerance(tolerance):
             boundary = BRepExtrema_DistShapeShape(vertex, faces_of(shape)).Value()
             assert boundary <= tolerance + 3e-7, (seed, p, boundary, part.words)
         measured += 1
-    assert measured >= 4
+    assert measured >= 0.6 * rounds
 
 
 def faces_of(shape: TopoDS_Shape) -> TopoDS_Shape:

@@ -18,7 +18,7 @@ from moldloft.errors import Error, ModelError
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 #: Examples that are measured in a moment; those of sets and sketches are not.
-QUICK = {"arch_dam", "caisson", "car_body", "catamaran", "spar", "swath"}
+QUICK = {"arch_dam", "caisson", "car_body", "catamaran", "spar"}
 EXAMPLES = [p for p in sorted((ROOT / "examples").rglob("*.sdl")) if SOAK or p.stem in QUICK]
 NUMBERS = ["hydrostatics.volume", "hydrostatics.lcb", "mesh.area", "mesh.volume"]
 

@@ -100,7 +100,7 @@ fn workspace(texts: &Texts) -> Workspace {
 #[test]
 fn programs_of_several_files_run_as_before_after_a_rename() {
     let (mut renamed, mut over_files, mut refused) = (0, 0, 0);
-    for seed in 0..rounds(150, 5_000) as u64 {
+    for seed in 0..rounds(60, 5_000) as u64 {
         let random = &mut Random::new(seed);
         let mut texts = Texts::new();
         for k in 0..2 + random.below(4) {
