@@ -129,11 +129,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 ops::is_elementwise(op) && (self.is_whole(left) || self.is_whole(right))
             }
             ExprKind::Chain(items) => {
-                let all: Vec<ExprId> = super::expressions::operands(&m.program[items]).collect();
-                all.into_iter().any(|operand| self.is_whole(operand))
+                super::expressions::operands(&m.program[items]).any(|e| self.is_whole(e))
             }
             ExprKind::List(items) => {
-                items.len() == 3 && m.program[items].to_vec().iter().any(|&e| self.is_whole(e))
+                items.len() == 3 && m.program[items].iter().any(|&e| self.is_whole(e))
             }
             ExprKind::Index { base, subs } => {
                 self.array_type(base).is_some()
@@ -144,7 +143,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             ExprKind::Call { callee, args } => {
                 self.elementary(callee, args).is_some()
-                    && m.program[args].to_vec().iter().any(|arg| self.is_whole(arg.value))
+                    && m.program[args].iter().any(|arg| self.is_whole(arg.value))
             }
             _ => false,
         }
@@ -290,7 +289,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ExprKind::Index { base, subs } => {
                 let (array, ty) = self.array_of(base)?;
                 let mut all = Vec::new();
-                for sub in m.program[subs].to_vec() {
+                for &sub in &m.program[subs] {
                     all.push(self.subscript(stmt, sub)?);
                 }
                 Ok((CodeSection { array, subscripts: Some(all.into()) }, ty, None))
@@ -391,7 +390,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ExprKind::Chain(items) => self.lane_of_chain(stmt, items, kernel),
             ExprKind::List(items) => {
                 let mut rows = Vec::new();
-                for item in m.program[items].to_vec() {
+                for &item in &m.program[items] {
                     let lane = match crate::array::lower::is_operator(&m, item) {
                         true => self.lane(stmt, item, kernel)?,
                         false => self.evaluated(stmt, item, kernel)?,
@@ -407,7 +406,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ExprKind::Call { callee, args } => {
                 let (_, f) = self.elementary(callee, args).ok_or(Unfit::Statement)?;
                 let mut all = Vec::new();
-                for arg in m.program[args].to_vec() {
+                for arg in &m.program[args] {
                     let lane = self.lane(stmt, arg.value, kernel)?;
                     let (_, Loosely::Number(x)) = kernel.loose(lane) else {
                         return Err(Unfit::Statement);
