@@ -17,7 +17,7 @@ fuzz_target!(|text: &str| {
         let _ = moldloft::diag::render(&diagnostic, fused.sources());
     }
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "fuzz.sdl", &text);
-    plain.with_plain_operators();
+    plain.by_reference();
     assert_eq!(fused.printed(), plain.printed());
     assert_eq!(fused.diagnostics().len(), plain.diagnostics().len());
     let _ = fused.eval("c[1]");

@@ -746,17 +746,10 @@ impl Document {
         Ok(self.run())
     }
 
-    /// Runs the program with each operator applied to whole arrays: the reference for tests.
+    /// Runs the program in the interpreter, statement by statement and operator by operator: the reference for tests.
     #[doc(hidden)]
-    pub fn with_plain_operators(&mut self) -> Applied {
-        self.settings.plain_operators = true;
-        self.run()
-    }
-
-    /// Runs the program in the interpreter, without compiled numeric code: the reference for tests.
-    #[doc(hidden)]
-    pub fn without_code(&mut self) -> Applied {
-        self.settings.without_code = true;
+    pub fn by_reference(&mut self) -> Applied {
+        self.settings.reference = true;
         self.run()
     }
 

@@ -15,4 +15,4 @@ mod codegen;
 mod tape;
 mod vm;
 
-pub use tape::{Cell, Code, LONGEST, Origin, Src, Tape};
+pub use tape::{Code, LONGEST, Src, Tape};

@@ -85,45 +85,13 @@ impl<T: Real> NumberSource<T> {
     }
 }
 
-/// A value that a recorded expression finds before its tape is run: the result of one of its entries
-/// (see `array::cache` of the crate `lang`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cell(pub u16);
-
-impl Cell {
-    /// The cell of a value that a recording cannot find again.
-    pub const NONE: Cell = Cell(u16::MAX);
-}
-
-/// Origin of a source or constant of a tape: a component of a cell, or the number itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Origin {
-    /// The entry of the recording.
-    pub cell: Cell,
-    /// The component of its value.
-    pub part: u8,
-}
-
-impl Origin {
-    /// The origin of a constant that does not depend on the values.
-    pub const FIXED: Origin = Origin { cell: Cell(u16::MAX - 1), part: 0 };
-
-    /// A number, or component `part` of a vector or row of vectors.
-    pub fn of(cell: Cell, part: usize) -> Self {
-        Self { cell, part: part as u8 }
-    }
-}
-
 /// See the head of this file.
 #[derive(Debug)]
 pub struct Tape<T: Real> {
     planes: Vec<NumberSource<T>>,
-    /// Origins of the sources and the constants.
-    pub plane_origins: Vec<Origin>,
-    /// The origin of each constant.
-    pub const_origins: Vec<Origin>,
-    /// Cells that were the same array when the tape was made.
-    pub aliases: Vec<[Cell; 2]>,
+    consts: Vec<T>,
+    /// The constants that another run may replace.
+    inputs: Vec<u16>,
     code: Vec<Instr>,
     /// Instructions whose results must be finite, in order, and their numbers of elements.
     checked: Vec<(u16, usize)>,
@@ -138,9 +106,8 @@ impl<T: Real> Default for Tape<T> {
     fn default() -> Self {
         Self {
             planes: Vec::new(),
-            plane_origins: Vec::new(),
-            const_origins: Vec::new(),
-            aliases: Vec::new(),
+            consts: Vec::new(),
+            inputs: Vec::new(),
             code: Vec::new(),
             checked: Vec::new(),
             planner: Planner::default(),
@@ -156,10 +123,8 @@ impl<T: Real> Tape<T> {
     /// Empties it and keeps its memory.
     pub fn clear(&mut self) {
         self.planes.clear();
-        self.program.consts.clear();
-        self.plane_origins.clear();
-        self.const_origins.clear();
-        self.aliases.clear();
+        self.consts.clear();
+        self.inputs.clear();
         self.code.clear();
         self.program.unary.clear();
         self.program.binary.clear();
@@ -168,66 +133,52 @@ impl<T: Real> Tape<T> {
 
     /// True when it should be run before more is added.
     pub fn is_long(&self) -> bool {
-        self.code.len() + self.planes.len() + self.program.consts.len() > LONGEST
+        self.code.len() + self.planes.len() + self.consts.len() > LONGEST
     }
 
-    /// Equal numbers of one origin are one constant.
-    pub fn constant(&mut self, x: T, origin: Origin) -> Src {
-        let mut known = self.program.consts.iter().zip(&self.const_origins);
-        let at = known.rposition(|(c, o)| *o == origin && c.bits_eq(x)).unwrap_or_else(|| {
-            self.program.consts.push(x);
-            self.const_origins.push(origin);
-            self.program.consts.len() - 1
+    /// Equal numbers are one constant.
+    pub fn constant(&mut self, x: T) -> Src {
+        let fixed = |k: &usize| !self.inputs.contains(&(*k as u16));
+        let alike = |k: &usize| self.consts[*k].bits_eq(x) && fixed(k);
+        let at = (0..self.consts.len()).rev().find(alike).unwrap_or_else(|| {
+            self.consts.push(x);
+            self.consts.len() - 1
         });
         Src::Const(at as u16)
     }
 
-    /// Notes that a cell is an array that another cell brought already.
-    fn alias(&mut self, at: usize, cell: Cell) {
-        let first = self.plane_origins[at].cell;
-        if first != cell && !self.aliases.contains(&[first, cell]) {
-            self.aliases.push([first, cell]);
-        }
+    /// A number that is given for each run, by its place among the constants.
+    pub fn input(&mut self) -> u16 {
+        let at = self.consts.len() as u16;
+        self.consts.push(T::zero());
+        self.inputs.push(at);
+        at
+    }
+
+    /// The constants, with zeros for the inputs.
+    pub fn constants(&self) -> &[T] {
+        &self.consts
     }
 
     /// A source of numbers; the same array is one source.
-    pub fn numbers(&mut self, array: &Arc<Array<T>>, cell: Cell) -> Src {
+    pub fn numbers(&mut self, array: &Arc<Array<T>>) -> Src {
         let same =
             |p: &NumberSource<T>| matches!(p, NumberSource::Numbers(a) if Arc::ptr_eq(a, array));
-        if let Some(at) = self.planes.iter().position(same) {
-            self.alias(at, cell);
-            return Src::Plane(at as u16);
-        }
-        self.planes.push(NumberSource::Numbers(array.clone()));
-        self.plane_origins.push(Origin::of(cell, 0));
-        Src::Plane((self.planes.len() - 1) as u16)
+        let at = self.planes.iter().position(same).unwrap_or_else(|| {
+            self.planes.push(NumberSource::Numbers(array.clone()));
+            self.planes.len() - 1
+        });
+        Src::Plane(at as u16)
     }
 
     /// The sources of the three components of a row or grid of vectors.
-    pub fn vectors(&mut self, array: &Arc<Vectors<T>>, cell: Cell) -> [Src; 3] {
+    pub fn vectors(&mut self, array: &Arc<Vectors<T>>) -> [Src; 3] {
         let same = |p: &NumberSource<T>| matches!(p, NumberSource::Component(a, 0) if Arc::ptr_eq(a, array));
-        let at = match self.planes.iter().position(same) {
-            Some(at) => {
-                self.alias(at, cell);
-                at
-            }
-            None => {
-                self.planes.extend((0..3).map(|c| NumberSource::Component(array.clone(), c)));
-                self.plane_origins.extend((0..3).map(|c| Origin::of(cell, c)));
-                self.planes.len() - 3
-            }
-        };
+        let at = self.planes.iter().position(same).unwrap_or_else(|| {
+            self.planes.extend((0..3).map(|c| NumberSource::Component(array.clone(), c)));
+            self.planes.len() - 3
+        });
         [0, 1, 2].map(|c| Src::Plane((at + c) as u16))
-    }
-
-    /// Lets go of the arrays, for a tape that is kept: others are found for each run.
-    pub fn release(&mut self) {
-        self.planes.clear();
-    }
-
-    /// The constants, to be set before a run of a cached tape.
-    pub fn constants_mut(&mut self) -> &mut [T] {
-        &mut self.program.consts
     }
 
     /// The same instruction is recorded once, and so is its check.
@@ -274,55 +225,38 @@ impl<T: Real> Tape<T> {
     }
 
     /// The first failing check, over the whole tape.
-    pub fn first_failure(&self) -> Option<usize> {
-        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
+    pub fn first_failure(&mut self) -> Option<usize> {
         let mut counts: Vec<usize> = self.checked.iter().map(|(_, count)| *count).collect();
         counts.sort_unstable();
         counts.dedup();
-        counts.into_iter().filter_map(|count| self.failure(&rows, count)).min()
+        counts.into_iter().filter_map(|count| self.failure(count)).min()
     }
 
     /// The first failing check, in the order of the instructions, among those with `count`
-    /// elements. Evaluates one instruction at a time, so call it only after a failure.
-    fn failure(&self, planes: &[&Vec<T>], count: usize) -> Option<usize> {
-        let mut first = self.checked.len();
-        // Shorter operands have no value here.
-        let mut results: Vec<Option<T>> = vec![None; self.code.len()];
-        for element in 0..count {
-            let mut check = 0;
-            for (k, instr) in self.code.iter().enumerate() {
-                let [a, b] = instr.of.map(|src| match src {
-                    Src::Plane(p) => planes[p as usize].get(element).copied(),
-                    Src::Const(c) => Some(self.program.consts[c as usize]),
-                    Src::Reg(r) => results[r as usize],
-                });
-                results[k] = a.zip(b).map(|(a, b)| match instr.code {
-                    Code::Add => a + b,
-                    Code::Sub => a - b,
-                    Code::Mul => a * b,
-                    Code::Div => a / b,
-                    Code::Neg => -a,
-                    Code::Abs => a.abs(),
-                    Code::Sqrt => a.sqrt(),
-                    Code::Unary(f) => self.program.unary[f as usize](a),
-                    Code::Binary(f) => self.program.binary[f as usize](a, b),
-                });
-                let Some((at, of)) = self.checked.get(check) else { continue };
-                if *at as usize == k {
-                    if check < first && *of == count && results[k].is_some_and(|x| !x.is_finite()) {
-                        first = check;
-                    }
-                    check += 1;
-                }
+    /// elements. Each is run for itself, so call it only after a failure.
+    fn failure(&mut self, count: usize) -> Option<usize> {
+        let mut out = [vec![T::zero(); count]];
+        (0..self.checked.len()).find(|&check| {
+            let (at, of) = self.checked[check];
+            if of != count {
+                return false;
             }
-        }
-        (first < self.checked.len()).then_some(first)
+            let roots = [Src::Reg(at)];
+            self.planner.plan(&self.code, &roots, |_| false, &mut self.program);
+            self.program.finite = false;
+            let _ = self.execute(&self.rows(), &self.consts, &roots, count, &mut out);
+            out[0].iter().any(|x| !x.is_finite())
+        })
+    }
+
+    fn rows(&self) -> SmallVec<[&Vec<T>; 16]> {
+        self.planes.iter().map(NumberSource::numbers).collect()
     }
 
     /// A whole power, by the same multiplications as [`Real::powi`], a negative one as the reciprocal of the positive one, which must be finite when there is a
     /// shape.
     pub fn powi(&mut self, a: Src, exponent: i32, checked: Option<ArrayShape>) -> Src {
-        let one = self.constant(T::one(), Origin::FIXED);
+        let one = self.constant(T::one());
         // A divisor that is too large has the reciprocal 0.
         let whole = if exponent < 0 { None } else { checked };
         let mut base = a;
@@ -352,6 +286,17 @@ impl<T: Real> Tape<T> {
         shape: ArrayShape,
         outs: &mut [Vec<T>],
     ) -> Result<(), usize> {
+        self.plan(roots, shape);
+        let count = shape.count();
+        let sound = self.execute(&self.rows(), &self.consts, roots, count, outs);
+        match sound {
+            true => Ok(()),
+            false => self.failure(count).map_or(Ok(()), Err),
+        }
+    }
+
+    /// Makes the program that computes the roots, of that shape each.
+    pub fn plan(&mut self, roots: &[Src], shape: ArrayShape) {
         let Self { code, checked, planner, program, .. } = self;
         // Infinite sums and products show in the results, or in the quotients and functions that read them.
         let check = |k: usize| {
@@ -362,32 +307,24 @@ impl<T: Real> Tape<T> {
         };
         planner.plan(code, roots, check, program);
         program.finite = !checked.is_empty();
-        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
-        self.execute(&rows, roots, shape.count(), outs)
     }
 
-    /// Runs a tape that was run before with the same roots and shape, on other rows; a row of `count`
-    /// elements for each root is written.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
+    /// Runs the planned program on these sources and constants; a row of `count` elements for each root is
+    /// written. False when something that must be finite is not.
     pub fn execute(
         &self,
         planes: &[&Vec<T>],
+        consts: &[T],
         roots: &[Src],
         count: usize,
         outs: &mut [Vec<T>],
-    ) -> Result<(), usize> {
-        if !self.program.run(planes, outs, count)
-            && let Some(check) = self.failure(planes, count)
-        {
-            return Err(check);
-        }
+    ) -> bool {
+        let sound = self.program.run(planes, consts, outs, count);
         // Roots that are no result of their own: sources, constants, the same result twice.
         for (k, root) in roots.iter().enumerate() {
             match *root {
                 Src::Plane(p) => outs[k].copy_from_slice(&planes[p as usize][..count]),
-                Src::Const(c) => outs[k].fill(self.program.consts[c as usize]),
+                Src::Const(c) => outs[k].fill(consts[c as usize]),
                 Src::Reg(_) => {
                     if let Some(first) = roots[..k].iter().position(|r| r == root) {
                         let (done, rest) = outs.split_at_mut(k);
@@ -396,11 +333,6 @@ impl<T: Real> Tape<T> {
                 }
             }
         }
-        Ok(())
-    }
-
-    /// True when a run may fail.
-    pub fn is_checked(&self) -> bool {
-        !self.checked.is_empty()
+        sound
     }
 }

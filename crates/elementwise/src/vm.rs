@@ -92,7 +92,6 @@ pub enum VmInstruction {
 pub struct VmProgram<T> {
     /// Operations, and the row of each result.
     pub orders: Vec<(VmInstruction, RowLocation)>,
-    pub consts: Vec<T>,
     pub unary: Vec<fn(T) -> T>,
     pub binary: Vec<fn(T, T) -> T>,
     /// Number of slots used.
@@ -103,21 +102,14 @@ pub struct VmProgram<T> {
 
 impl<T> Default for VmProgram<T> {
     fn default() -> Self {
-        Self {
-            orders: Vec::new(),
-            consts: Vec::new(),
-            unary: Vec::new(),
-            binary: Vec::new(),
-            slots: 0,
-            finite: false,
-        }
+        Self { orders: Vec::new(), unary: Vec::new(), binary: Vec::new(), slots: 0, finite: false }
     }
 }
 
 impl<T: Real> VmProgram<T> {
     /// Carries the orders out for the first `count` elements of the planes and results; planes that are
     /// shorter are not used by the orders. False when something that must be finite is not.
-    pub fn run(&self, planes: &[&Vec<T>], outs: &mut [Vec<T>], count: usize) -> bool {
+    pub fn run(&self, planes: &[&Vec<T>], consts: &[T], outs: &mut [Vec<T>], count: usize) -> bool {
         // The processor does not change, and asking it takes longer than a short row.
         static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
         thread_local! {
@@ -139,15 +131,17 @@ impl<T: Real> VmProgram<T> {
                 let row: Option<&mut Vec<f64>> = row.downcast_mut();
                 row.map(|row| &mut row[..count])
             });
+            let consts = consts.iter().map(|x| x.re()).collect::<SmallVec<[f64; 16]>>();
             let mut memory = MEMORY.take();
-            let rows = Rows { planes: planes.collect(), outs: outs.collect(), count };
+            let rows =
+                Rows { planes: planes.collect(), consts: &consts, outs: outs.collect(), count };
             let sound = ARCH.dispatch(Wide { program, rows, memory: &mut memory });
             MEMORY.set(memory);
             return sound;
         }
         let planes = planes.iter().map(|row| row.get(..count).unwrap_or(&[]));
         let outs = outs.iter_mut().map(|row| &mut row[..count]);
-        let rows = Rows { planes: planes.collect(), outs: outs.collect(), count };
+        let rows = Rows { planes: planes.collect(), consts, outs: outs.collect(), count };
         go(Single(PhantomData), self, rows, &mut Vec::new())
     }
 }
@@ -155,6 +149,7 @@ impl<T: Real> VmProgram<T> {
 /// The rows that a program reads and writes, and their number of elements.
 struct Rows<'a, T> {
     planes: SmallVec<[&'a [T]; 16]>,
+    consts: &'a [T],
     outs: SmallVec<[&'a mut [T]; 3]>,
     count: usize,
 }
@@ -331,7 +326,7 @@ fn go<P: Packs>(
     rows: Rows<'_, P::Number>,
     memory: &mut Vec<P::Number>,
 ) -> bool {
-    let Rows { planes, outs, count } = rows;
+    let Rows { planes, consts: numbers, outs, count } = rows;
     let zero = <P::Number as From<f64>>::from(0.0);
     let block = BLOCK * P::LANES;
     let all = program.slots + outs.len();
@@ -352,7 +347,7 @@ fn go<P: Packs>(
     let packs = P::packs_mut(&mut memory[start..start + needed]);
     let cells = Cell::from_mut(packs.as_chunks_mut::<BLOCK>().0).as_slice_of_cells();
     let mut consts: SmallVec<[P::Pack; 16]> = SmallVec::new();
-    consts.extend(program.consts.iter().map(|x| p.of(*x)));
+    consts.extend(numbers.iter().map(|x| p.of(*x)));
     let mut failed = false;
     let length = blocks * block;
     let whole = count - count % length;

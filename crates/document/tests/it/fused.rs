@@ -1,5 +1,5 @@
-//! Element-wise statements in one pass against operators applied one after the other to whole arrays:
-//! the same bits and the same messages, for plain and dual numbers.
+//! Element-wise statements in one pass, in code and outside of it, against operators applied one after the
+//! other to whole arrays: the same bits and the same messages, for plain and dual numbers.
 
 use crate::common::{Random, reported, rounds};
 use moldloft_document::{Document, NoFiles, registry};
@@ -145,7 +145,7 @@ fn one_pass_changes_no_bit_and_no_message() {
         }
         let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
         let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
-        plain.with_plain_operators();
+        plain.by_reference();
         assert_eq!(reported(&fused), reported(&plain), "round {round}\n{text}");
         for name in ["f", "c", "d", "s", "t", "r0", "r1", "r2", "r3", "r4"] {
             match (fused.eval(name), plain.eval(name)) {
@@ -173,6 +173,60 @@ fn one_pass_changes_no_bit_and_no_message() {
     assert!(compared > 200, "{compared}");
 }
 
+/// Statements on whole arrays in loops and routines are passes of their code: they do what the interpreter does, in as
+/// many steps.
+#[test]
+fn statements_on_arrays_do_the_same_in_code() {
+    let mut random = Random::new(17);
+    let mut sound = 0;
+    for round in 0..rounds(2_000) {
+        let n = *random.pick(&[3, 5, 64, 70]);
+        let mut body = String::new();
+        for k in 0..2 {
+            let kind = *random.pick(&["farray", "curve", "surface", "farray", "curve", "float"]);
+            let depth = 1 + random.below(2);
+            let e = expression(&mut random, depth, kind);
+            let all: &[&str] = match kind {
+                "farray" => &["f", "f", "c.x", "s[1,].z", "g[2:]", "", "c[::-1].y", "s[:,k].x"],
+                "curve" => &["c", "c", "s[2,]", "d[::-1]", "", "s[,k]", "c[k:k+1]", "u"],
+                "surface" => &["s", "t", "t[::-1,]", "s[:,:]", "", "s[1:k,]"],
+                _ => &["f", "x", "c.z", "f[k:]", "g[1:3:k]", "y", "s.x", "t[k,].y"],
+            };
+            let target = *random.pick(all);
+            body += &match target {
+                "" => format!("{kind} r{k} = {e};\n"),
+                target if random.chance(30) => format!("{target} *= 0.5;\n{target} += {e};\n"),
+                target => format!("{target} = {e};\n"),
+            };
+            if random.chance(20) {
+                let more = ["if (k == 2) d = c;\n", "c = d;\n", "g = f;\n", "y += f[k];\n"];
+                body += *random.pick(&more);
+            }
+        }
+        let text = match random.below(3) {
+            0 => format!("curve u;\nfor (k = 1:2) {{\n{body}}}\n"),
+            1 => format!(
+                "subroutine work(returned curve c, farray f, int k) {{ curve u; farray g = f*2;\n{body}}}\n\
+                 work(c, g, 1); work(d, f, 2); for (k = 1:2) work(c, f, k);\n"
+            ),
+            _ => format!(
+                "curve u = c; function float work(int k) {{\n{body}return f[k]; }}\nfor (k = 1:2) y += work(k);\n"
+            ),
+        };
+        let text = (HEAD.to_string() + &text).replace('N', &n.to_string());
+        let what = format!("round {round}");
+        let (_, faults) = crate::scalar_code::alike(&text, 90_000, &what);
+        if faults == 0 {
+            sound += 1;
+            // Also when the steps do not suffice.
+            for most in [90_000, 300 + random.below(900) as u64] {
+                crate::scalar_code::compare(&text, most, &what);
+            }
+        }
+    }
+    assert!(sound > 9, "{sound}");
+}
+
 /// Sources and targets that overlap: the whole right side is known before anything is stored.
 #[test]
 fn targets_may_overlap_their_sources() {
@@ -186,7 +240,7 @@ fn targets_may_overlap_their_sources() {
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
     assert!(!fused.has_errors(), "{:?}", reported(&fused));
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
-    plain.with_plain_operators();
+    plain.by_reference();
     for name in ["a", "b", "c", "s", "q"] {
         assert_eq!(bits(&fused.eval(name).unwrap()), bits(&plain.eval(name).unwrap()), "{name}");
     }
@@ -210,7 +264,7 @@ fn rows_of_all_lengths_are_done_to_the_last_element() {
         let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
         assert!(!fused.has_errors(), "{n}: {:?}", reported(&fused));
         let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
-        plain.with_plain_operators();
+        plain.by_reference();
         for name in ["a", "c", "d"] {
             let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
             assert_eq!(bits(&a), bits(&b), "{n}: {name}");
@@ -231,7 +285,7 @@ fn arrays_filled_in_place_are_no_others() {
                 for (k = 1:5) { e = sqrt(u*(4 - k)); }";
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
-    plain.with_plain_operators();
+    plain.by_reference();
     assert_eq!(reported(&fused), reported(&plain));
     for name in ["b", "c", "d", "e", "u"] {
         let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
@@ -255,7 +309,7 @@ fn long_chains_go_in_parts() {
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
     assert!(!fused.has_errors(), "{:?}", reported(&fused));
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
-    plain.with_plain_operators();
+    plain.by_reference();
     for name in ["b", "e", "f", "g"] {
         assert_eq!(bits(&fused.eval(name).unwrap()), bits(&plain.eval(name).unwrap()));
     }

@@ -24,6 +24,52 @@ fn refused(text: &str, id: &str) {
 
 const GRID: &str = "surface g[3,3]; for (i=1:3) for (j=1:3) g[i,j] = {i, j, 0};\n";
 
+/// Members of records are known by their declarations, wherever the record comes from.
+#[test]
+fn numbers_beside_masks_of_members_give_masks() {
+    let text = "record rib { float chord = 1; farray y[3] = 2; curve x[3]; } record wing { rib ribs[2]; }
+                rib r, many[2]; wing w; int one = 1, none = 0;
+                function rib made(float c) { return rib(c); } subroutine f(returned rib q) { q.y[one or q.y > 3] = 7; }
+                farray a[3]; a[one or r.y > 3] = 1; farray b[3]; b[none and w.ribs[2].y > 1] = 1;
+                farray c = (one or made(2).y > 3), d = (none and many[1].x.x < 1), e = (one or w.ribs[1].y > 3);
+                farray g = (none and rib(3).y > 1); float s = (one and r.chord > 0), t = (none and r.y[1/0] > 0);
+                foreach (q in many) { a += (one or q.y > 5); } f(r);";
+    let one = |e: &str| format!("sum({e})");
+    let wanted = [("a", 9.0), ("b", 0.0), ("c", 3.0), ("d", 0.0), ("e", 3.0), ("g", 0.0)];
+    let mut document = sound(text);
+    for (name, wanted) in wanted {
+        assert_eq!(number(&mut document, &one(name)), wanted, "{name}");
+        assert_eq!(number(&mut document, &format!("len({name})")), 3.0, "{name}");
+    }
+    check(text, &[("s", 1.0), ("t", 0.0), ("sum(r.y)", 21.0)]);
+}
+
+/// `a += b` is `a = a + b`: what is there is read first.
+#[test]
+fn what_is_there_is_read_before_what_is_added() {
+    let text = "float x = 1, y = 1; vector v = {1, 0, 0}; farray a = {1, 2, 3, 4}; curve c[2];
+                function float f(float t) { x += t; y += t; v.x += t; a[1] += t; c[1].x += t; return t; }
+                for (k = 1:2) { x += f(1); v.x += f(1); a[1] += f(1); c[1] += {f(1), 0, 0}; }
+                y += f(1); a += f(1);";
+    let mut twin = [1.0_f64, 1.0, 1.0, 1.0, 0.0];
+    let f = |all: &mut [f64; 5]| all.iter_mut().for_each(|x| *x += 1.0);
+    for _ in 0..2 {
+        for k in [0, 2, 3, 4] {
+            let old = twin[k];
+            f(&mut twin);
+            twin[k] = old + 1.0;
+        }
+    }
+    let y = twin[1];
+    f(&mut twin);
+    twin[1] = y + 1.0;
+    let a = twin[3];
+    f(&mut twin);
+    twin[3] = a + 1.0;
+    let [x, y, v, a, c] = twin;
+    check(text, &[("x", x), ("y", y), ("v.x", v), ("a[1]", a), ("c[1].x", c)]);
+}
+
 #[test]
 fn numbers_beside_masks_give_masks() {
     let arrays = "farray a = {1,2,3,4,5}; int one = 1, none = 0; a[one or a > 3] = 0; farray b = {1,2,3,4,5};

@@ -281,7 +281,7 @@ fn programs_of_the_grammar() {
         sound += usize::from(!fused.has_errors());
         if r.chance(25) {
             let mut plain = Document::from_text(registry(), Box::new(NoFiles), "model.sdl", &text);
-            plain.with_plain_operators();
+            plain.by_reference();
             assert_eq!(reported(&fused), reported(&plain), "round {round}\n{text}");
             assert_eq!(fused.printed(), plain.printed(), "round {round}\n{text}");
             for name in ["x", "v", "w", "a", "b", "c", "d", "s", "t"] {

@@ -257,7 +257,7 @@ fn programs_run_again_alike() {
         assert!(!m.has_errors());
         let second = vectors(&mut m, "body");
         assert!((0..first.len()).all(|k| first.at(k).bits_eq(second.at(k))));
-        m.with_plain_operators();
+        m.by_reference();
         let plain = vectors(&mut m, "body");
         assert!((0..first.len()).all(|k| first.at(k).bits_eq(plain.at(k))));
     }

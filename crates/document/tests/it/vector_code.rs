@@ -296,7 +296,7 @@ fn derivatives_of_vectors_go_through_code() {
         g(c, s); foreach (e in c) v += e*(e . v)/(1 + |e|);";
     let mut coded = opened(text);
     let mut plain = opened(text);
-    plain.without_code();
+    plain.by_reference();
     let by = ["p".to_string()];
     for name in ["s", "v", "c"] {
         let [a, b] = [&mut coded, &mut plain].map(|d| d.derivatives(&[name.into()], &by).unwrap());

@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TapeArray {
     pub shape: ArrayShape,
-    pub(super) what: What,
+    pub what: What,
 }
 
 impl TapeArray {
@@ -21,24 +21,6 @@ impl TapeArray {
             What::Number(a) => SmallVec::from_slice(&[a]),
             What::Vector(v) => SmallVec::from_slice(&v),
         }
-    }
-
-    /// The rows of a value of this kind and shape that nothing else holds.
-    pub fn rows_of<'v, T: Real>(
-        &self,
-        value: &'v mut Value<T>,
-    ) -> Option<SmallVec<[&'v mut Vec<T>; 3]>> {
-        let mut rows = SmallVec::new();
-        match (value, self.what) {
-            (Value::Numbers(a), What::Number(_)) if a.shape == self.shape => {
-                rows.push(&mut Arc::get_mut(a)?.items);
-            }
-            (Value::Vectors(a), What::Vector(_)) if a.shape == self.shape => {
-                rows.extend(&mut Arc::get_mut(a)?.planes);
-            }
-            _ => return None,
-        }
-        Some(rows)
     }
 
     /// The array of the rows of its roots.
@@ -56,7 +38,7 @@ impl TapeArray {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum What {
+pub(crate) enum What {
     Number(Src),
     Vector([Src; 3]),
 }

@@ -5,7 +5,6 @@
 //! text and before any element is computed; parts without arrays are computed at once.
 
 use crate::array::lanes::{Calls, TapeArray, What, not_finite};
-use crate::array::recipe::{Course, ExprKey, LeafKind, Recorder};
 use crate::functions::elementary;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -14,19 +13,18 @@ use crate::value::ops;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, shape_text};
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_elementwise::{Cell, Code, Origin, Src, Tape};
+use moldloft_elementwise::{Code, Src, Tape};
 use moldloft_num::Real;
 use moldloft_registry::{ArrayShape, Implementation, Scalar, Value};
 use moldloft_syntax::sdl::{
     Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, NodeList, Step, Symbol, UnaryOp,
 };
 use smallvec::SmallVec;
-use std::collections::VecDeque;
 
-/// An operand: a value and where a recording finds it again, or rows of a tape.
+/// An operand: a value, or rows of a tape.
 #[derive(Clone, Debug)]
 pub(crate) enum LoweredOperand<T: Real> {
-    Value(Value<T>, Cell),
+    Value(Value<T>),
     Lanes(TapeArray),
 }
 
@@ -35,7 +33,7 @@ type Operated<T> = Result<LoweredOperand<T>, Diagnostic>;
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The value of an expression whose outermost operator is element-wise.
     pub fn arithmetic(&mut self, m: &Module, id: ExprId) -> Result<Value<T>, Diagnostic> {
-        self.worked(m, id, |this, work| this.operated(m, id, work))
+        self.worked(|this, work| this.operated(m, id, work))
     }
 
     /// The value of `target op value`, for `+=` and its like.
@@ -47,62 +45,26 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         value: ExprId,
     ) -> Result<Value<T>, Diagnostic> {
         let spans = [target, value].map(|e| m.program[e].span);
-        let value = self.worked(m, value, |this, work| {
+        let value = self.worked(|this, work| {
+            let old = this.leaf(m, target, true)?;
             let right = this.operated(m, value, work)?;
-            let old = this.leaf(m, target, true, work)?;
             this.combined(m, op, old, right, spans, work).map_err(|d| d.or_at(spans[1]))
         })?;
         self.charge(&value, spans[1])?;
         Ok(value)
     }
 
-    /// The value of an expression, from its cached tape if one fits, else through the tree.
+    /// The value of an expression that `tree` lowers.
     fn worked(
         &mut self,
-        m: &Module,
-        id: ExprId,
         tree: impl Fn(&mut Self, &mut TapeBuilder<T>) -> Operated<T>,
     ) -> Result<Value<T>, Diagnostic> {
-        let key = ExprKey::of(m, id);
-        let (read, record) = match self.by_recipe(m, key) {
-            Course::Done(value) => return value,
-            Course::Tree { read, record } => (read, record),
-        };
-        let mut work = TapeBuilder {
-            tape: self.arrays.tapes.pop().unwrap_or_default(),
-            calls: Vec::new(),
-            ready: read.into(),
-            recorder: record.map(|_| self.recorder()),
-            ieee: self.arrays.ieee,
-        };
-        let operand = tree(self, &mut work);
-        let lanes = match &operand {
-            Ok(LoweredOperand::Lanes(lanes)) => Some(*lanes),
-            // Scalars have no recipe.
-            Ok(LoweredOperand::Value(..)) => {
-                work.give_up();
-                None
-            }
-            Err(_) => None,
-        };
-        let value = match operand {
-            Ok(LoweredOperand::Value(value, _)) => Ok(value),
-            Ok(LoweredOperand::Lanes(lanes)) => {
-                let tape = &mut work.tape;
-                let filled = match tape.is_checked() {
-                    // An operation that can fail must not change the variable.
-                    true => None,
-                    false => self.filled_in_place(m, key, &lanes, |outs| {
-                        tape.run(&lanes.roots(), lanes.shape, outs).is_ok()
-                    }),
-                };
-                filled.map_or_else(|| self.computed(&lanes, &mut work), Ok)
-            }
+        let tape = self.arrays.tapes.pop().unwrap_or_default();
+        let mut work = TapeBuilder { tape, calls: Vec::new(), ieee: self.arrays.ieee };
+        let value = match tree(self, &mut work) {
+            Ok(operand) => self.value_of(operand, &mut work),
             Err(diagnostic) => Err(work.earlier(diagnostic)),
         };
-        if let Some(misfits) = record {
-            self.keep_recipe(key, misfits, lanes.filter(|_| value.is_ok()), &mut work);
-        }
         work.tape.clear();
         self.arrays.tapes.push(work.tape);
         value
@@ -127,31 +89,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// A part of an expression other than an operator; an object is read if `read`.
-    fn leaf(
-        &mut self,
-        m: &Module,
-        id: ExprId,
-        read: bool,
-        work: &mut TapeBuilder<T>,
-    ) -> Operated<T> {
+    fn leaf(&mut self, m: &Module, id: ExprId, read: bool) -> Operated<T> {
         if let ExprKind::Number(literal) = m.program[id].kind {
             let x = T::from(m.program[literal].value);
-            return Ok(LoweredOperand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
+            return Ok(LoweredOperand::Value(Value::Number(x)));
         }
-        // Another expression was read if a name has changed its meaning: that was a name alone, or
-        // a component of one, and reading it has no effect.
-        let (value, object) = match work.ready.pop_front() {
-            Some((read, value)) if read == id => (value?, false),
-            _ => {
-                let value = self.expr(m, id)?;
-                let object = matches!(value, Value::Object(_) | Value::List(_) | Value::Block(_));
-                (if read { self.read(value, m.program[id].span)? } else { value }, object)
-            }
-        };
-        let kind = LeafKind::of(&value).filter(|_| !object);
-        let depth = self.usage.depth;
-        let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
-        Ok(LoweredOperand::Value(value, cell))
+        let value = self.expr(m, id)?;
+        let value = if read { self.read(value, m.program[id].span)? } else { value };
+        Ok(LoweredOperand::Value(value))
     }
 
     fn value_of(
@@ -160,11 +105,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         work: &mut TapeBuilder<T>,
     ) -> Result<Value<T>, Diagnostic> {
         match operand {
-            LoweredOperand::Value(value, _) => Ok(value),
-            LoweredOperand::Lanes(lanes) => {
-                work.give_up();
-                self.computed(&lanes, work)
-            }
+            LoweredOperand::Value(value) => Ok(value),
+            LoweredOperand::Lanes(lanes) => self.computed(&lanes, work),
         }
     }
 
@@ -172,7 +114,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn names_vectors(&self, m: &Module, id: ExprId) -> bool {
         let bound =
             m.program.as_name(id).and_then(|s| self.env.scope.lookup(m.names[s.0 as usize]));
-        let what = bound.map(|bound| &bound.what);
+        let what = match bound.map(|bound| &bound.what) {
+            Some(Binding::Reference(place)) if place.is_whole() => {
+                self.env.scope.root(place).map(|root| &root.what)
+            }
+            what => what,
+        };
         matches!(what, Some(Binding::Variable { value: Value::Vectors(_), .. }))
     }
 
@@ -200,13 +147,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             _ => false,
         };
         if !inner {
-            return self.leaf(m, id, true, work);
+            return self.leaf(m, id, true);
         }
         if !self.deeper(expr.span) {
             return Err(silent());
         }
-        let depth = self.usage.depth;
-        work.noting(|r| r.at_depth(depth));
         let operand = self.operator(m, expr.kind, expr.span, work);
         self.usage.depth -= 1;
         operand.map_err(|d| d.or_at(expr.span))
@@ -225,18 +170,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let operand = self.operated(m, inner, work)?;
                 let lanes = match &operand {
                     LoweredOperand::Lanes(lanes) => Some(*lanes),
-                    LoweredOperand::Value(value, cell) => {
-                        work.lanes(value, *cell, !self.arrays.plain_operators)
-                    }
+                    LoweredOperand::Value(value) => work.lanes(value, !self.arrays.plain_operators),
                 };
                 Ok(match (lanes, operand) {
-                    (None, LoweredOperand::Value(value, cell)) => {
-                        let cell = work.noted(|r| r.magnitude(cell));
+                    (None, LoweredOperand::Value(value)) => {
                         let value = ops::magnitude(&value)?;
                         if !self.arrays.ieee && !value.is_finite() {
                             return Err(not_finite("||").at(span));
                         }
-                        LoweredOperand::Value(value, cell)
+                        LoweredOperand::Value(value)
                     }
                     (None, lanes) => lanes,
                     (Some(lanes), _) => LoweredOperand::Lanes(work.magnitude(lanes, span)),
@@ -261,35 +203,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     LoweredOperand::Lanes(TapeArray { shape, what: What::Vector(v) }) => {
                         Ok(LoweredOperand::Lanes(TapeArray { shape, what: What::Number(v[c]) }))
                     }
-                    LoweredOperand::Value(value @ Value::Vectors(_), cell)
-                        if !self.arrays.plain_operators =>
+                    LoweredOperand::Value(value @ Value::Vectors(_))
+                        if !self.arrays.plain_operators && !work.tape.is_long() =>
                     {
-                        match work.lanes(&value, cell, true) {
-                            Some(TapeArray { shape, what: What::Vector(v) }) => {
-                                Ok(LoweredOperand::Lanes(TapeArray {
-                                    shape,
-                                    what: What::Number(v[c]),
-                                }))
-                            }
-                            _ => {
-                                work.give_up();
-                                let component = variables::component(&value, c);
-                                let value = component.ok_or_else(silent)?;
-                                Ok(LoweredOperand::Value(value, Cell::NONE))
-                            }
-                        }
+                        let Some(TapeArray { shape, what: What::Vector(v) }) =
+                            work.lanes(&value, true)
+                        else {
+                            return Err(silent());
+                        };
+                        Ok(LoweredOperand::Lanes(TapeArray { shape, what: What::Number(v[c]) }))
                     }
                     other => {
-                        let cell = match &other {
-                            LoweredOperand::Value(_, cell) => *cell,
-                            LoweredOperand::Lanes(_) => Cell::NONE,
-                        };
                         let value = self.value_of(other, work)?;
                         match variables::component(&value, c) {
-                            Some(component) => {
-                                let cell = work.noted(|r| r.component(cell, c));
-                                Ok(LoweredOperand::Value(component, cell))
-                            }
+                            Some(component) => Ok(LoweredOperand::Value(component)),
                             None => {
                                 let found = value.called();
                                 Err(Diagnostic::error(
@@ -304,9 +231,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Call { callee, args } => {
                 let (name, function) = self.elementary(m, callee, args).expect("checked above");
-                if let Some(symbol) = m.program.as_name(callee) {
-                    work.noting(|r| r.called(symbol));
-                }
                 let args: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
                 self.elementwise(m, name, function, &args, span, work)
             }
@@ -325,16 +249,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let lanes = match &operand {
             LoweredOperand::Lanes(lanes) => Some(*lanes),
-            LoweredOperand::Value(value, cell) => {
-                work.lanes(value, *cell, !self.arrays.plain_operators)
-            }
+            LoweredOperand::Value(value) => work.lanes(value, !self.arrays.plain_operators),
         };
         Ok(match (lanes, operand) {
             (Some(lanes), _) => LoweredOperand::Lanes(work.mapped(lanes, Code::Neg)),
-            (None, LoweredOperand::Value(value, cell)) => {
-                let cell = work.noted(|r| r.negated(cell));
-                LoweredOperand::Value(ops::negated(&value)?, cell)
-            }
+            (None, LoweredOperand::Value(value)) => LoweredOperand::Value(ops::negated(&value)?),
             (None, lanes) => lanes,
         })
     }
@@ -350,7 +269,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         for item in &m.program[items] {
             if let ChainItem::Operand(expr) = item {
                 let operand = self.operated(m, *expr, work)?;
-                sets |= matches!(&operand, LoweredOperand::Value(value, _) if ops::is_set(value));
+                sets |= matches!(&operand, LoweredOperand::Value(value) if ops::is_set(value));
                 operands.push(Some((*expr, operand)));
             }
         }
@@ -371,7 +290,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         (UnaryOp::Not, operand) => {
                             let value = self.value_of(operand, work)?;
                             let value = ops::unary(op, &value).map_err(|d| d.or_at(span))?;
-                            LoweredOperand::Value(value, Cell::NONE)
+                            LoweredOperand::Value(value)
                         }
                         (op, operand) => {
                             self.signed(op, operand, work).map_err(|d| d.or_at(span))?
@@ -406,7 +325,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let array = items.len() == 3 && is_operator(m, item);
             values.push(match array {
                 true => self.operated(m, item, work)?,
-                false => self.leaf(m, item, false, work)?,
+                false => self.leaf(m, item, false)?,
             });
         }
         if values.len() == 3 && !self.arrays.plain_operators && !work.tape.is_long() {
@@ -414,7 +333,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .iter()
                 .filter_map(|value| match value {
                     LoweredOperand::Lanes(lanes) => Some(*lanes),
-                    LoweredOperand::Value(value, cell) => work.lanes(value, *cell, true),
+                    LoweredOperand::Value(value) => work.lanes(value, true),
                 })
                 .collect();
             if let [
@@ -431,17 +350,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }));
             }
         }
-        let cells: Vec<Cell> = values.iter().map(LoweredOperand::cell).collect();
         let mut all = Vec::with_capacity(values.len());
         for value in values {
             all.push(self.value_of(value, work)?);
         }
-        let cell = match cells[..] {
-            [a, b, c] => work.noted(|r| r.braces([a, b, c])),
-            _ => Cell::NONE,
-        };
         let spans: Vec<Span> = m.program[items].iter().map(|&e| m.program[e].span).collect();
-        ops::braces(all.clone()).map(|value| LoweredOperand::Value(value, cell)).map_err(|d| {
+        ops::braces(all.clone()).map(LoweredOperand::Value).map_err(|d| {
             let shapes: Vec<String> = all.iter().map(shape_text).collect();
             let first = shapes.iter().position(|s| *s != shapes[0]).unwrap_or(0);
             self.differing(m, d, [spans[0], spans[first]], [&shapes[0], &shapes[first]])
@@ -460,7 +374,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     ) -> Operated<T> {
         let arrays = [&a, &b].map(|o| match o {
             LoweredOperand::Lanes(_) => true,
-            LoweredOperand::Value(value, _) => {
+            LoweredOperand::Value(value) => {
                 matches!(value, Value::Numbers(_) | Value::Vectors(_))
             }
         });
@@ -481,15 +395,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
             }
         }
-        let cells = [a.cell(), b.cell()];
         let (a, b) = (self.value_of(a, work)?, self.value_of(b, work)?);
-        let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
         let value = ops::binary(op, &a, &b)
             .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))?;
         if !self.arrays.ieee && !value.is_finite() {
             return Err(not_finite(op.spelling()).at(spans[0].to(spans[1])));
         }
-        Ok(LoweredOperand::Value(value, cell))
+        Ok(LoweredOperand::Value(value))
     }
 
     /// A fault of shapes with both expressions, their shapes, and where these were declared.
@@ -620,8 +532,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }));
             }
         }
-        let cells: Vec<Cell> = operands.iter().map(LoweredOperand::cell).collect();
-        let cell = work.noted(|r| r.function(name, function, &cells));
         let mut values = Vec::with_capacity(2);
         for operand in operands {
             values.push(self.value_of(operand, work)?);
@@ -642,7 +552,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.arrays.ieee && !value.is_finite() {
             return Err(not_finite(name).at(span));
         }
-        Ok(LoweredOperand::Value(value, cell))
+        Ok(LoweredOperand::Value(value))
     }
 }
 
@@ -651,7 +561,7 @@ fn axis(word: &str) -> Option<usize> {
 }
 
 /// True when the outermost part of an expression is an operator, so that it is not an object.
-fn is_operator(m: &Module, id: ExprId) -> bool {
+pub(crate) fn is_operator(m: &Module, id: ExprId) -> bool {
     match m.program[m.program.bare(id)].kind {
         ExprKind::Chain(_) | ExprKind::Magnitude(_) | ExprKind::Unary { .. } => true,
         ExprKind::Binary { op, .. } => ops::is_elementwise(op),
@@ -661,26 +571,24 @@ fn is_operator(m: &Module, id: ExprId) -> bool {
 }
 
 /// An operand that a tape can take: its shape, if it is an array, and its numbers.
-type Loose<T> = (Option<ArrayShape>, Loosely<T>);
+pub(crate) type Loose<T> = (Option<ArrayShape>, Loosely<T>);
 
 #[derive(Clone, Copy)]
-enum Loosely<T> {
+pub(crate) enum Loosely<T> {
     Number(TapeNumber<T>),
     Vector([TapeNumber<T>; 3]),
 }
 
 /// A number of an operand; constants enter the tape when they are used.
 #[derive(Clone, Copy)]
-enum TapeNumber<T> {
+pub(crate) enum TapeNumber<T> {
     Src(Src),
-    Const(T, Origin),
+    Const(T),
 }
 
 /// The components of a vector as constants.
-fn constants<T: Real>(v: moldloft_num::Vec3<T>, cell: Cell) -> Loosely<T> {
-    let [x, y, z] = v.to_array();
-    let of = |x, part| TapeNumber::Const(x, Origin::of(cell, part));
-    Loosely::Vector([of(x, 0), of(y, 1), of(z, 2)])
+fn constants<T: Real>(v: moldloft_num::Vec3<T>) -> Loosely<T> {
+    Loosely::Vector(v.to_array().map(TapeNumber::Const))
 }
 
 /// True when the operator takes such kinds, whatever their shapes.
@@ -710,29 +618,11 @@ fn described<T>(operand: Loose<T>) -> String {
 pub(crate) struct TapeBuilder<T: Real> {
     pub tape: Tape<T>,
     pub calls: Calls,
-    /// Leaves that were read already, the next first.
-    ready: VecDeque<(ExprId, Result<Value<T>, Diagnostic>)>,
-    /// Recorder of a recipe.
-    pub recorder: Option<Recorder<T>>,
     /// True to let infinite results and NaN pass.
-    ieee: bool,
-}
-
-impl<T: Real> LoweredOperand<T> {
-    fn cell(&self) -> Cell {
-        match self {
-            LoweredOperand::Value(_, cell) => *cell,
-            LoweredOperand::Lanes(_) => Cell::NONE,
-        }
-    }
+    pub ieee: bool,
 }
 
 impl<T: Real> TapeBuilder<T> {
-    /// Notes something that has a value, while that is wanted.
-    fn noted(&mut self, note: impl FnOnce(&mut Recorder<T>) -> Cell) -> Cell {
-        self.recorder.as_mut().map_or(Cell::NONE, note)
-    }
-
     /// The shape of results that must be finite.
     fn checked(&self, shape: ArrayShape) -> Option<ArrayShape> {
         Some(shape).filter(|_| !self.ieee)
@@ -743,17 +633,6 @@ impl<T: Real> TapeBuilder<T> {
         while self.calls.len() < self.tape.checks() {
             self.calls.push((span, name));
         }
-    }
-
-    fn noting(&mut self, note: impl FnOnce(&mut Recorder<T>)) {
-        if let Some(recorder) = &mut self.recorder {
-            note(recorder);
-        }
-    }
-
-    /// There will be no recipe.
-    fn give_up(&mut self) {
-        self.noting(|r| r.given_up = true);
     }
 
     /// The fault of a check that comes before another fault in the order of the text.
@@ -771,16 +650,16 @@ impl<T: Real> TapeBuilder<T> {
     }
 
     /// An array as rows of the tape.
-    fn lanes(&mut self, value: &Value<T>, cell: Cell, wanted: bool) -> Option<TapeArray> {
+    fn lanes(&mut self, value: &Value<T>, wanted: bool) -> Option<TapeArray> {
         if !wanted || self.tape.is_long() {
             return None;
         }
         Some(match value {
             Value::Numbers(a) => {
-                TapeArray { shape: a.shape, what: What::Number(self.tape.numbers(a, cell)) }
+                TapeArray { shape: a.shape, what: What::Number(self.tape.numbers(a)) }
             }
             Value::Vectors(a) => {
-                TapeArray { shape: a.shape, what: What::Vector(self.tape.vectors(a, cell)) }
+                TapeArray { shape: a.shape, what: What::Vector(self.tape.vectors(a)) }
             }
             _ => return None,
         })
@@ -789,16 +668,12 @@ impl<T: Real> TapeBuilder<T> {
     fn operand(&mut self, operand: &LoweredOperand<T>) -> Option<Loose<T>> {
         let lanes = match operand {
             LoweredOperand::Lanes(lanes) => *lanes,
-            LoweredOperand::Value(Value::Number(x), cell) => {
-                return Some((None, Loosely::Number(TapeNumber::Const(*x, Origin::of(*cell, 0)))));
+            LoweredOperand::Value(Value::Number(x)) => {
+                return Some((None, Loosely::Number(TapeNumber::Const(*x))));
             }
-            LoweredOperand::Value(Value::Vector(v), cell) => {
-                return Some((None, constants(*v, *cell)));
-            }
-            LoweredOperand::Value(Value::Point(p), cell) => {
-                return Some((None, constants(p.xyz, *cell)));
-            }
-            LoweredOperand::Value(value, cell) => self.lanes(value, *cell, true)?,
+            LoweredOperand::Value(Value::Vector(v)) => return Some((None, constants(*v))),
+            LoweredOperand::Value(Value::Point(p)) => return Some((None, constants(p.xyz))),
+            LoweredOperand::Value(value) => self.lanes(value, true)?,
         };
         Some((
             Some(lanes.shape),
@@ -809,14 +684,14 @@ impl<T: Real> TapeBuilder<T> {
         ))
     }
 
-    fn src(&mut self, number: &TapeNumber<T>) -> Src {
+    pub fn src(&mut self, number: &TapeNumber<T>) -> Src {
         match number {
             TapeNumber::Src(src) => *src,
-            TapeNumber::Const(x, origin) => self.tape.constant(*x, *origin),
+            TapeNumber::Const(x) => self.tape.constant(*x),
         }
     }
 
-    fn mapped(&mut self, lanes: TapeArray, code: Code) -> TapeArray {
+    pub fn mapped(&mut self, lanes: TapeArray, code: Code) -> TapeArray {
         let what = match lanes.what {
             What::Number(a) => What::Number(self.tape.op1(code, a)),
             What::Vector(v) => What::Vector(v.map(|a| self.tape.op1(code, a))),
@@ -824,7 +699,7 @@ impl<T: Real> TapeBuilder<T> {
         TapeArray { what, ..lanes }
     }
 
-    fn magnitude(&mut self, lanes: TapeArray, span: Span) -> TapeArray {
+    pub fn magnitude(&mut self, lanes: TapeArray, span: Span) -> TapeArray {
         let what = match lanes.what {
             What::Number(a) => What::Number(self.tape.op1(Code::Abs, a)),
             What::Vector(v) => {
@@ -845,7 +720,13 @@ impl<T: Real> TapeBuilder<T> {
 
     /// `a op b` where at least one is an array and the shapes agree; `None` where the operator is
     /// not defined.
-    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>, span: Span) -> Option<TapeArray> {
+    pub fn binary(
+        &mut self,
+        op: BinaryOp,
+        a: Loose<T>,
+        b: Loose<T>,
+        span: Span,
+    ) -> Option<TapeArray> {
         use Loosely::{Number, Vector};
         let shape = a.0.or(b.0)?;
         let checked = self.checked(shape);
@@ -895,11 +776,8 @@ impl<T: Real> TapeBuilder<T> {
             }
             (BinaryOp::Caret, Number(x), Number(y)) => {
                 let whole = match y {
-                    self::TapeNumber::Const(k, origin) => {
-                        self.noting(|r| r.exponent(origin, k));
-                        ops::whole_power(k)
-                    }
-                    self::TapeNumber::Src(_) => None,
+                    TapeNumber::Const(k) => ops::whole_power(k),
+                    TapeNumber::Src(_) => None,
                 };
                 let x = self.src(&x);
                 What::Number(match whole {

@@ -1,10 +1,8 @@
-//! State that a run keeps for array expressions: memory, tapes, recipes.
+//! State that a run keeps for array expressions: memory and tapes.
 
-use crate::array::recipe::{ExprKey, Slots};
 use moldloft_elementwise::Tape;
 use moldloft_num::Real;
 use moldloft_registry::Value;
-use moldloft_syntax::sdl::ExprId;
 use std::sync::Arc;
 
 /// The memory of array expressions.
@@ -13,10 +11,6 @@ pub(crate) struct ArrayMachine<T: Real> {
     /// Tapes that are not in use.
     pub tapes: Vec<Tape<T>>,
     pub spare: Spare<T>,
-    /// Recipes of expressions that are executed repeatedly.
-    pub recipes: Slots<T>,
-    /// The expression that is assigned to a whole variable, and its target.
-    pub assigning: Option<(ExprKey, ExprId)>,
     /// True to apply operators one after the other.
     pub plain_operators: bool,
     /// True to let infinite results and NaN pass.
@@ -25,14 +19,7 @@ pub(crate) struct ArrayMachine<T: Real> {
 
 impl<T: Real> Default for ArrayMachine<T> {
     fn default() -> Self {
-        Self {
-            tapes: Vec::new(),
-            spare: Spare::default(),
-            recipes: Slots::default(),
-            assigning: None,
-            plain_operators: false,
-            ieee: false,
-        }
+        Self { tapes: Vec::new(), spare: Spare::default(), plain_operators: false, ieee: false }
     }
 }
 
@@ -79,7 +66,8 @@ impl<T: Real> Spare<T> {
         }
     }
 
-    fn keep(&mut self, row: Vec<T>) {
+    /// Keeps a row.
+    pub fn keep(&mut self, row: Vec<T>) {
         if self.rows.len() >= MOST_SPARE {
             self.rows.remove(0);
         }

@@ -1,8 +1,5 @@
-//! Array expressions as tapes of the machine in `moldloft-elementwise`: lowering, and recipes for
-//! repeated execution.
+//! Array expressions as tapes of the machine in `moldloft-elementwise`.
 
-mod cache;
 pub(crate) mod lanes;
-mod lower;
+pub(crate) mod lower;
 pub(crate) mod machine;
-pub(crate) mod recipe;

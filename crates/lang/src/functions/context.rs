@@ -168,14 +168,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Ok(Value::Number(T::from(f64::from(u8::from(set)))))
             }
             Action::Ieee => {
-                let on = match given.first() {
+                self.arrays.ieee = match given.first() {
                     Some(&arg) => self.number(m, arg)?.re() != 0.0,
                     None => true,
                 };
-                if std::mem::replace(&mut self.arrays.ieee, on) != on {
-                    // Tapes depend on whether results are checked.
-                    self.arrays.recipes.clear();
-                }
                 Ok(Value::Unset)
             }
             Action::CheckEdges => self.check_edges(m, given[0]).map(|()| Value::Unset),

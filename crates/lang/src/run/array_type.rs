@@ -3,14 +3,16 @@
 //! `and` and `or` of numbers evaluate their right operand only if needed; beside an array they give a mask, whatever
 //! the number is. So it must be known without evaluating the operand.
 
+use crate::run::declared_lists::declared_list;
 use crate::run::interpreter::Interpreter;
 use crate::run::parts;
+use crate::run::records::members;
 use crate::source::module::Module;
-use crate::source::scope::Binding;
+use crate::source::scope::{Binding, RecordAt};
 use crate::value::ops;
 use crate::value::variables;
 use moldloft_registry::{Class, Scalar, Value};
-use moldloft_syntax::sdl::{ExprId, ExprKind, ItemType, NodeList, Subscript, Type};
+use moldloft_syntax::sdl::{ExprId, ExprKind, ItemType, NodeList, Subscript, Symbol, Type};
 
 /// Number of indices of an expression's value: 0 for a single value.
 type Rank = usize;
@@ -51,19 +53,23 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Binary { left, right, .. } => greatest(&[left, right]),
             ExprKind::Chain(_) => greatest(&parts::of_expression(m, id)),
             ExprKind::Index { base, subs } => self.rank_of_section(m, base, subs),
-            ExprKind::Member { base, name, or_dot } => match m.program.name(name) {
-                "x" | "y" | "z" => self.rank(m, base),
-                "d1" | "d2" | "d3" => 0,
-                _ if or_dot => {
-                    let bound = self.env.scope.lookup(m.names[name.0 as usize]);
-                    let other = match bound.map(|bound| &bound.what) {
-                        Some(Binding::Variable { ty, value, .. }) => rank_of(*ty, value),
-                        _ => 0,
-                    };
-                    self.rank(m, base).max(other)
+            ExprKind::Member { base, name, or_dot } => {
+                let word = m.program.name(name);
+                match (self.rank_of_member(m, base, word), word) {
+                    (Some(rank), _) => rank,
+                    (None, "x" | "y" | "z") => self.rank(m, base),
+                    (None, "d1" | "d2" | "d3") => 0,
+                    _ if or_dot => {
+                        let bound = self.env.scope.lookup(m.names[name.0 as usize]);
+                        let other = match bound.map(|bound| &bound.what) {
+                            Some(Binding::Variable { ty, value, .. }) => rank_of(*ty, value),
+                            _ => 0,
+                        };
+                        self.rank(m, base).max(other)
+                    }
+                    _ => 0,
                 }
-                _ => 0,
-            },
+            }
             ExprKind::Call { callee, args } => {
                 let args: Vec<ExprId> = m.program[args].iter().map(|arg| arg.value).collect();
                 let Some(symbol) = m.program.as_name(callee) else { return greatest(&args) };
@@ -85,6 +91,63 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     None => greatest(&args),
                 }
             }
+        }
+    }
+
+    /// Rank of a record's member, by its declaration.
+    fn rank_of_member(&self, m: &Module, base: ExprId, word: &str) -> Option<Rank> {
+        let at = self.record_given(m, base)?;
+        let of = self.modules.get(at.module);
+        let member =
+            members(of, at).into_iter().find(|x| of.program.name(x.item.name.symbol) == word)?;
+        Some(match declared_list(of, member.ty.0, &member.item) {
+            Some(_) => 1 + rank_of_type(member.ty.0),
+            None => rank_of_type(member.ty.0).max(member.item.dims.len()),
+        })
+    }
+
+    /// The record that an expression gives, or a list of it.
+    fn record_given(&self, m: &Module, id: ExprId) -> Option<RecordAt> {
+        let name = |symbol: Symbol| m.names[symbol.0 as usize];
+        match m.program[id].kind {
+            ExprKind::Paren(inner) | ExprKind::Index { base: inner, .. } => {
+                self.record_given(m, inner)
+            }
+            ExprKind::Name(symbol) => {
+                let value = self.peek(self.env.scope.lookup(name(symbol))?)?;
+                let record = match &value {
+                    Value::Record(record) => record,
+                    Value::List(items) => match items.first()? {
+                        Value::Record(record) => record,
+                        _ => return None,
+                    },
+                    _ => return None,
+                };
+                let all = &self.env.scope.records;
+                all.iter()
+                    .find(|(of, _)| **self.modules.text(**of) == *record.of)
+                    .map(|(_, at)| *at)
+            }
+            ExprKind::Member { base, name, .. } => {
+                let at = self.record_given(m, base)?;
+                let of = self.modules.get(at.module);
+                let word = m.program.name(name);
+                let member = members(of, at)
+                    .into_iter()
+                    .find(|x| of.program.name(x.item.name.symbol) == word)?;
+                self.record_type(of, member.ty.0)
+            }
+            ExprKind::Call { callee, .. } => {
+                let name = name(m.program.as_name(callee)?);
+                match self.routine_named(name) {
+                    Some(at) => {
+                        let of = self.modules.get(at.module);
+                        self.record_type(of, of.program[at.routine].result?.0)
+                    }
+                    None => self.env.scope.records.get(&name).copied(),
+                }
+            }
+            _ => None,
         }
     }
 

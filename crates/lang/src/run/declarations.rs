@@ -8,7 +8,7 @@ use crate::value::initialised::Known;
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::Scalar;
-use moldloft_syntax::sdl::{Declarator, ExprId, Ident, NodeList, StmtId, Type};
+use moldloft_syntax::sdl::{Declarator, ExprId, Ident, NodeList, StmtId, Type, foreign_word};
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     pub(super) fn declare(
@@ -112,7 +112,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     fn unknown_type(&self, word: &str) -> Diagnostic {
-        Diagnostic::error("unknown-type", format!("unknown type `{word}`"))
+        let diagnostic = Diagnostic::error("unknown-type", format!("unknown type `{word}`"));
+        if let Some(hint) = foreign_word(word) {
+            return diagnostic.help(hint);
+        }
+        diagnostic
             .suggest(word, moldloft_syntax::sdl::declaring_words())
             .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }

@@ -16,7 +16,9 @@ use moldloft_registry::{
     bind_arguments, many,
 };
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, NodeList, Subscript, Symbol, UnaryOp};
+use moldloft_syntax::sdl::{
+    Arg, BinaryOp, ExprId, ExprKind, NodeList, Subscript, Symbol, UnaryOp, foreign_word,
+};
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -271,13 +273,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         match crate::run::forward_reference::declared_later(m, symbol, span) {
             Some(later) => later.explain(m, diagnostic),
-            None => match crate::source::library::defining(text) {
-                Some(hint) => diagnostic.help(hint),
-                None => match self.nearest_name(text) {
-                    Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                    None => diagnostic,
-                },
-            },
+            None => diagnostic.maybe_help(self.meant(text)),
         }
     }
 
@@ -662,13 +658,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {
         let text = m.program.name(symbol);
         let diagnostic = Diagnostic::error("unknown-name", format!("unknown function `{text}`"));
-        if let Some(hint) = crate::source::library::defining(text) {
-            return diagnostic.help(hint);
-        }
-        match self.nearest_name(text) {
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None => diagnostic,
-        }
+        diagnostic.maybe_help(self.meant(text))
+    }
+
+    /// What a word without meaning may stand for: a name of a library, another language's word, a name misspelled.
+    fn meant(&self, text: &str) -> Option<String> {
+        let near = || self.nearest_name(text).map(|near| format!("did you mean `{near}`?"));
+        crate::source::library::defining(text)
+            .or_else(|| foreign_word(text).map(str::to_string))
+            .or_else(near)
     }
 
     /// A shape called with parameters: its point or points there.

@@ -1,7 +1,6 @@
 //! Runs a program: statements.
 
 use crate::array::machine::ArrayMachine;
-use crate::array::recipe::ExprKey;
 use crate::functions::builtins::BUILTINS;
 use crate::run::compiled::kept::ScalarCode;
 use crate::run::read_log::ReadLog;
@@ -67,11 +66,9 @@ pub struct Inputs<'a, T: Scalar> {
 pub struct Settings {
     /// Number of halvings of `refined` intervals.
     pub refine: u32,
-    /// True to apply operators one after the other, whole arrays at a time: the reference that
-    /// fused passes are tested against.
-    pub plain_operators: bool,
-    /// True to execute every statement by the interpreter: the reference that code is tested against.
-    pub without_code: bool,
+    /// True for the reference that code is tested against: statements one by one, operators one after the
+    /// other, whole arrays at a time.
+    pub reference: bool,
     /// As many steps instead of those that the limits allow, those of code counted in full, for tests.
     pub most_steps: Option<u64>,
 }
@@ -131,6 +128,12 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub(super) code: ScalarCode<T>,
 }
 
+/// Steps of an array of `n` elements. Arrays count for the time they take: a statement on a number takes as
+/// long as an operator on some sixty elements.
+pub(super) fn of_array(n: usize) -> usize {
+    3 + n / 64
+}
+
 pub(crate) fn silent() -> Diagnostic {
     Diagnostic::error(SILENT, "")
 }
@@ -144,7 +147,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         inputs: Inputs<'a, T>,
     ) -> Self {
         env.scope.enter(modules.name_count());
-        let plain_operators = inputs.settings.plain_operators;
+        let plain_operators = inputs.settings.reference;
         let mut limits = moldloft_budget::limits();
         limits.steps = inputs.settings.most_steps.unwrap_or(limits.steps);
         Self {
@@ -261,9 +264,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the run must stop; that was reported.
     pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
-        // Arrays count for the time they take: a statement on a number takes as long as an operator on some
-        // sixty elements. Lists are read item by item; memory has a limit of its own.
-        let of_array = |n: usize| 3 + n / 64;
+        // Lists are read item by item; memory has a limit of its own.
         self.usage.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
@@ -282,11 +283,6 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return Err(silent());
         }
         Ok(())
-    }
-
-    /// True when the elements of another value will not stop the run.
-    pub fn has_room(&self, count: usize) -> bool {
-        self.usage.cost() + count as u64 <= self.limits.steps
     }
 
     /// Charges a call of a function that takes longer than a statement.
@@ -762,7 +758,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Ok(())
     }
 
-    fn assign(
+    pub(super) fn assign(
         &mut self,
         m: &Module,
         target: ExprId,
@@ -774,10 +770,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 if self.names_list(m, target) {
                     self.list_operand(m, value)?
                 } else {
-                    self.arrays.assigning = Some((ExprKey::of(m, value), target));
-                    let right = self.expr(m, value);
-                    self.arrays.assigning = None;
-                    self.read(right?, m.program[value].span)?
+                    self.operand(m, value)?
                 }
             }
             AssignOp::With(op) => self.updated(m, target, op, value)?,

@@ -15,14 +15,14 @@ use moldloft_syntax::sdl::{
 };
 use std::sync::Arc;
 
-struct DeclaredMember {
+pub(super) struct DeclaredMember {
     stmt: StmtId,
-    ty: (Type, Span),
-    item: Declarator,
+    pub ty: (Type, Span),
+    pub item: Declarator,
 }
 
 /// The members of a record, in order.
-fn members(of: &Module, at: RecordAt) -> Vec<DeclaredMember> {
+pub(super) fn members(of: &Module, at: RecordAt) -> Vec<DeclaredMember> {
     let StmtKind::Record { members, .. } = of.program[at.stmt].kind else { return Vec::new() };
     let mut all = Vec::new();
     for &stmt in &of.program[members] {

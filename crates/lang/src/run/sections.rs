@@ -254,7 +254,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
             None => Ok((default, Span::UNKNOWN)),
         };
-        let inside = |(x, span): (f64, Span)| position(x, extent, span).map(|k| k as i64);
+        let inside = |(x, span): (f64, Span)| position(x, extent, span);
         let (from, to, step) = match sub {
             Subscript::Whole => return Ok(Selected::Regular(Selection::whole(extent))),
             Subscript::At(expr) => {
@@ -285,14 +285,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 (inside(from)?, inside(to)?, step)
             }
         };
-        if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
-            return Err(Diagnostic::error("empty-range", "empty range")
+        Selection::range(from, to, step).map(Selected::Regular).ok_or_else(|| {
+            Diagnostic::error("empty-range", "empty range")
                 .expected("lo:hi with lo <= hi, or a negative step")
-                .found(format!("{}:{}:{step}", from + 1, to + 1)));
-        }
-        let count = ((to - from) as f64 / step).floor() as usize + 1;
-        let step = if count == 1 { 1 } else { step as isize };
-        Ok(Selected::Regular(Selection { start: from as usize, step, count, keeps: true }))
+                .found(format!("{}:{}:{step}", from + 1, to + 1))
+        })
     }
 
     /// The variable, section and component that a returned argument names.

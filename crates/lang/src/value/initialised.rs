@@ -61,11 +61,20 @@ impl Known {
     /// Notes that the section (the whole when `None`) was given a value; `value` is the variable's
     /// new value.
     pub fn give<T: Real>(&mut self, section: Option<ArraySection>, value: &Value<T>) {
-        let shape = match value {
-            Value::Numbers(a) => a.shape,
-            Value::Vectors(a) => a.shape,
-            _ => return,
-        };
+        match value {
+            Value::Numbers(a) => self.give_section(section, a.shape, None),
+            Value::Vectors(a) => self.give_section(section, a.shape, Some(&|k| a.at(k).re())),
+            _ => {}
+        }
+    }
+
+    /// The same for an array of a shape, with the vector at a position in memory.
+    pub fn give_section(
+        &mut self,
+        section: Option<ArraySection>,
+        shape: ArrayShape,
+        vector: Option<&dyn Fn(usize) -> Vec3>,
+    ) {
         match section {
             None => self.missing = None,
             Some(section) => {
@@ -83,8 +92,8 @@ impl Known {
                 }
             }
         }
-        if let (Value::Vectors(a), ArrayShape::Grid(m, n)) = (value, shape) {
-            let point = |i: usize, j: usize| a.at(i * n + j).re();
+        if let (Some(vector), ArrayShape::Grid(m, n)) = (vector, shape) {
+            let point = |i: usize, j: usize| vector(i * n + j);
             match section {
                 Some(ArraySection::Grid(a, b)) => self.give_edges([m, n], a, b, point),
                 _ => self.edges = None,

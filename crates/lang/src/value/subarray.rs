@@ -31,6 +31,17 @@ impl Selection {
         Self { start: position, step: 1, count: 1, keeps: false }
     }
 
+    /// The positions from one to another, both counted from 0; `None` when there is none.
+    pub fn range(from: usize, to: usize, step: f64) -> Option<Self> {
+        let length = to as f64 - from as f64;
+        if step.fract() != 0.0 || step == 0.0 || length * step < 0.0 {
+            return None;
+        }
+        let count = (length / step).floor() as usize + 1;
+        let step = if count == 1 { 1 } else { step as isize };
+        Some(Self { start: from, step, count, keeps: true })
+    }
+
     /// Position `k`.
     pub fn position(self, k: usize) -> usize {
         (self.start as isize + self.step * k as isize) as usize

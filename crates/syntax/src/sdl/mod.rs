@@ -32,6 +32,6 @@ pub use format::format;
 pub use grouping::{Grouping, Step};
 pub use interner::Symbol;
 pub use outline::{Fold, OpenCall, call_around, folds, text_around};
-pub use parser::{MAX_DIAGNOSTICS, MAX_HEIGHT, MAX_NESTING, parse, parse_expr};
+pub use parser::{MAX_DIAGNOSTICS, MAX_HEIGHT, MAX_NESTING, foreign_word, parse, parse_expr};
 pub use program::Program;
 pub use token::{declaring_words, is_contextual, keywords};

@@ -219,6 +219,10 @@ fn habits_of_other_languages_are_explained() {
         ("if x > 1 { y = 2; }", "parentheses"),
         ("def f(x) { return x; }", "function float f"),
         ("if (x) {} elif (y) {}", "else if"),
+        ("farray q = [1, 2, 3];", "in braces"),
+        ("for (i in a) { x = 1; }", "foreach (x in list)"),
+        ("foreach x in a { y = 1; }", "foreach (x in list)"),
+        ("switch (x) { y = 1; }", "else if"),
     ] {
         let (_, faults) = sdl::parse(text, FileId(0));
         let said = format!("{faults:?}");

@@ -78,7 +78,18 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     }
                     this.emit(ScalarOp::Declare { variable, origin }).map(drop)
                 }
-                (Poisonable::Array(_), 0 | 3..) => Err(Unfit::Statement),
+                (Poisonable::Array(array), 0) => {
+                    let value = item.value.ok_or(Unfit::Statement)?;
+                    let before = this.here()?;
+                    sure = false;
+                    this.declared_array(id, (array, origin), ty, value)?;
+                    let end = this.here()?;
+                    let code = &mut this.units[unit];
+                    code.inner.push((before, end, CodeNote::Declaration(id, number)));
+                    code.unfixed.push(origin);
+                    Ok(())
+                }
+                (Poisonable::Array(_), 3..) => Err(Unfit::Statement),
                 (Poisonable::Array(array), count) => {
                     let fits = match ty {
                         Type::Curve => count == 1,
@@ -119,6 +130,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         op: AssignOp,
         value: ExprId,
     ) -> Result<(), Unfit> {
+        if self.is_whole(target) {
+            return self.assigned_array(id, target, op, value);
+        }
         if self.assigned_vector(id, target, op, value)? {
             return Ok(());
         }
@@ -148,8 +162,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                         from
                     }
                     AssignOp::With(op) => {
-                        let b = self.value(id, value, None)?;
                         let a = self.name(symbol, spans[0])?;
+                        let a = self.kept(a, self.calls(value))?;
+                        let b = self.value(id, value, None)?;
                         let to = want.unwrap_or_else(|| self.scratch());
                         self.arithmetic(op, to, a, b, spans[0].to(spans[1]))?;
                         to
@@ -179,19 +194,15 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 let a = match op {
                     AssignOp::Set => self.value(id, value, None)?,
                     AssignOp::With(op) => {
-                        let b = self.value(id, value, None)?;
                         let a = self.element(id, target, base, subs)?;
+                        let b = self.value(id, value, None)?;
                         let to = self.scratch();
                         self.arithmetic(op, to, a, b, spans[0].to(spans[1]))?;
                         to
                     }
                 };
                 let (array, _, places) = self.places(id, base, subs, CodeNote::Target(target))?;
-                let op = match places[..] {
-                    [i] => ScalarOp::Store { array, i, a },
-                    [i, j] => ScalarOp::Store2 { array, i, j, a },
-                    _ => return Err(Unfit::Statement),
-                };
+                let op = ScalarOp::Store { array, i: places[0], j: places[1], a };
                 self.noted(op, CodeNote::Target(target)).map(drop)
             }
             _ => Err(Unfit::Statement),

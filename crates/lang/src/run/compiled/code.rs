@@ -3,8 +3,10 @@
 use crate::functions::elementary::Elementary;
 use crate::source::module::{Module, Name, RoutineAt};
 use moldloft_diag::Span;
+use moldloft_elementwise::{Src, Tape};
 use moldloft_num::Real;
 use moldloft_syntax::sdl::{ExprId, StmtId, Symbol, Type};
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// Order relation of a condition.
@@ -156,23 +158,14 @@ pub(super) enum ScalarOp {
         b: u16,
         to: u16,
     },
+    /// An element of a row, or of a grid when there is a second subscript.
     Load {
-        to: u16,
-        array: u16,
-        i: u16,
-    },
-    Load2 {
         to: u16,
         array: u16,
         i: u16,
         j: u16,
     },
     Store {
-        array: u16,
-        i: u16,
-        a: u16,
-    },
-    Store2 {
         array: u16,
         i: u16,
         j: u16,
@@ -183,19 +176,9 @@ pub(super) enum ScalarOp {
         to: u16,
         array: u16,
         i: u16,
-    },
-    LoadVector2 {
-        to: u16,
-        array: u16,
-        i: u16,
         j: u16,
     },
     StoreVector {
-        array: u16,
-        i: u16,
-        a: u16,
-    },
-    StoreVector2 {
         array: u16,
         i: u16,
         j: u16,
@@ -203,12 +186,6 @@ pub(super) enum ScalarOp {
     },
     /// One component of an element.
     StorePart {
-        array: u16,
-        i: u16,
-        a: u16,
-        part: u8,
-    },
-    StorePart2 {
         array: u16,
         i: u16,
         j: u16,
@@ -346,9 +323,13 @@ pub(super) enum ScalarOp {
         to: u16,
         site: u16,
     },
+    /// An element-wise statement.
+    Kernel {
+        kernel: u16,
+    },
 }
 
-/// For turns without a number, and for a dimension that is not there.
+/// For turns without a number, and for a subscript or a dimension that is not there.
 pub(super) const NO_LABEL: u16 = u16::MAX;
 
 #[derive(Clone, Debug)]
@@ -434,6 +415,8 @@ pub(super) enum CodeNote {
     Expression(ExprId),
     /// The same for the target of an assignment.
     Target(ExprId),
+    /// The interpreter executes the assignment, which may be no fault.
+    Assignment(StmtId),
     /// An int does not hold the value.
     Convert(Span),
     /// The interpreter declares the variable of the statement, which gives the error.
@@ -463,6 +446,45 @@ pub(super) enum Poisonable {
     Array(u16),
 }
 
+/// Subscript of a section, by the registers of its numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CodeSubscript {
+    Whole,
+    At(u16),
+    /// From, to, step.
+    Range([Option<u16>; 3]),
+}
+
+/// An array, or a section of it.
+#[derive(Clone, Debug)]
+pub(super) struct CodeSection {
+    pub array: u16,
+    pub subscripts: Option<Box<[CodeSubscript]>>,
+}
+
+/// The array that a statement writes to.
+#[derive(Clone, Debug)]
+pub(super) enum KernelTarget {
+    /// All of it, or one component of its vectors.
+    Section(CodeSection, Option<u8>),
+    /// It is declared with the value's shape.
+    Declared { array: u16, origin: u16 },
+}
+
+/// An element-wise statement.
+pub(super) struct ArrayKernel<T: Real> {
+    pub tape: Tape<T>,
+    pub leaves: Vec<CodeSection>,
+    /// The leaf of each source, and the component of its vectors.
+    pub planes: Vec<(u16, u8)>,
+    /// Constants, and the registers that they are read from.
+    pub inputs: Vec<(u16, u16)>,
+    pub roots: SmallVec<[Src; 3]>,
+    /// Expressions whose values count as steps.
+    pub charges: Vec<Span>,
+    pub target: KernelTarget,
+}
+
 /// The code of a loop, of a routine, or nothing but the variables of the file.
 pub(super) struct CodeUnit<T: Real> {
     pub module: usize,
@@ -478,6 +500,7 @@ pub(super) struct CodeUnit<T: Real> {
     /// Registers at the start of a call: constants.
     pub template: Vec<T>,
     pub sites: Vec<CodeSite>,
+    pub kernels: Vec<ArrayKernel<T>>,
     pub notes: Vec<(u16, CodeNote)>,
     pub ranges: Vec<CodeRange>,
     /// Code of subscripts and dimensions, with the expression to evaluate again after a fault in
@@ -485,6 +508,8 @@ pub(super) struct CodeUnit<T: Real> {
     pub inner: Vec<(u16, u16, CodeNote)>,
     /// Positions of declarations, with types.
     pub origins: Vec<(Span, Type)>,
+    /// Those of arrays that take any shape.
+    pub unfixed: Vec<u16>,
     /// The statements, each with its module: a unit may contain inlined code of other routines.
     pub statements: Vec<(usize, StmtId)>,
     /// The marks of the variables when a call begins.
@@ -508,10 +533,12 @@ impl<T: Real> CodeUnit<T> {
             references: Vec::new(),
             template: Vec::new(),
             sites: Vec::new(),
+            kernels: Vec::new(),
             notes: Vec::new(),
             ranges: Vec::new(),
             inner: Vec::new(),
             origins: Vec::new(),
+            unfixed: Vec::new(),
             statements: Vec::new(),
             marks: Vec::new(),
         }

@@ -459,7 +459,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let code = &self.units[unit];
         let before = (code.notes.len(), code.ranges.len(), code.sites.len(), code.statements.len());
         let inner = code.inner.len();
-        let origins = code.origins.len();
+        let (origins, kernels) = (code.origins.len(), code.kernels.len());
         let sure = (self.progress[unit].variables.clone(), self.progress[unit].arrays.clone());
         let counts = (self.progress[unit].compiled, self.progress[unit].left);
         let outcome = self.range(start, span, span, None, |this| {
@@ -483,6 +483,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 code.sites.truncate(before.2);
                 code.statements.truncate(before.3);
                 code.origins.truncate(origins);
+                code.kernels.truncate(kernels);
                 code.inner.truncate(inner);
                 let done = &mut self.progress[unit];
                 // Names met for the first time keep their state.

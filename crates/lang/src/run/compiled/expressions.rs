@@ -269,21 +269,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(array)
     }
 
-    /// An array, its type, and the registers of its subscripts.
+    /// An array, its type, and the registers of its one or two subscripts.
     pub fn places(
         &mut self,
         stmt: StmtId,
         base: ExprId,
         subs: NodeList<Subscript>,
         note: CodeNote,
-    ) -> Result<(u16, Type, Vec<u16>), Unfit> {
+    ) -> Result<(u16, Type, [u16; 2]), Unfit> {
         let m = self.units[self.unit].m.clone();
         let (array, ty) = self.array_of(base)?;
         let start = self.here()?;
-        let mut places = Vec::new();
-        for sub in &m.program[subs] {
+        let mut places = [NO_LABEL; 2];
+        if !(1..=2).contains(&subs.len()) {
+            return Err(Unfit::Statement);
+        }
+        for (place, sub) in places.iter_mut().zip(&m.program[subs]) {
             let Subscript::At(at) = *sub else { return Err(Unfit::Statement) };
-            places.push(self.value(stmt, at, None)?);
+            *place = self.value(stmt, at, None)?;
         }
         let end = self.here()?;
         self.units[self.unit].inner.push((start, end, note));
@@ -308,11 +311,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             return Err(Unfit::Statement);
         }
         let to = self.scratch();
-        let op = match places[..] {
-            [i] => ScalarOp::Load { to, array, i },
-            [i, j] => ScalarOp::Load2 { to, array, i, j },
-            _ => return Err(Unfit::Statement),
-        };
+        let op = ScalarOp::Load { to, array, i: places[0], j: places[1] };
         self.noted(op, note)?;
         Ok(to)
     }

@@ -23,7 +23,7 @@ use moldloft_syntax::sdl::{StmtKind, Type};
 const STEPS_BETWEEN_LOOKS: u64 = 256;
 
 /// Continuation after an operation outside the registers.
-enum CodeOutcome<T: Scalar> {
+pub(super) enum CodeOutcome<T: Scalar> {
     Next,
     Return(Option<Value<T>>),
     Stop,
@@ -50,6 +50,7 @@ enum Departure<T> {
         to: u16,
         site: u16,
     },
+    Kernel(u16),
 }
 
 /// Zero-based index of a subscript, rounded as in the interpreter.
@@ -58,6 +59,16 @@ fn place(x: f64, count: usize) -> Option<usize> {
     // No array has more elements than an i32 counts.
     let at = x as i32;
     (f64::from(at) == x && at >= 1 && at as usize <= count).then(|| at as usize - 1)
+}
+
+/// Position in memory of an element; `None` when the array has no such.
+#[inline(always)]
+fn element(shape: ArrayShape, i: f64, j: Option<f64>) -> Option<usize> {
+    match (shape, j) {
+        (ArrayShape::Row(n), None) => place(i, n),
+        (ArrayShape::Grid(m, n), Some(j)) => Some(place(i, m)? * n + place(j, n)?),
+        _ => None,
+    }
 }
 
 /// True when an int does not hold it.
@@ -112,6 +123,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Departure::Condition { to, site } => {
                     self.interpreted_condition(region, machine, to, site)
                 }
+                Departure::Kernel(kernel) => match self.pass(region, machine, kernel) {
+                    Some(outcome) => outcome,
+                    None => self.fault(region, machine),
+                },
             };
             let rest = most.saturating_sub(self.usage.cost());
             look_at = self.usage.steps + 1 + rest.min(STEPS_BETWEEN_LOOKS);
@@ -181,6 +196,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             () => {
                 leave!(Departure::Fault)
             };
+        }
+        macro_rules! element {
+            ($array:expr, $i:expr, $j:expr) => {{
+                let j = if $j == NO_LABEL { None } else { Some(at!($j).re()) };
+                let i = at!($i).re();
+                let array = array!($array);
+                let Some(k) = element(array.shape, i, j) else { fault!() };
+                (array, k)
+            }};
         }
         macro_rules! finite {
             ($to:expr, $x:expr) => {{
@@ -317,78 +341,26 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         pc = to as usize;
                     }
                 }
-                ScalarOp::Load { to, array, i } => {
-                    let i = at!(i).re();
-                    let array = array!(array);
-                    let ArrayShape::Row(n) = array.shape else { fault!() };
-                    let Some(k) = place(i, n) else { fault!() };
+                ScalarOp::Load { to, array, i, j } => {
+                    let (array, k) = element!(array, i, j);
                     at!(to) = array.read()[k];
                 }
-                ScalarOp::Load2 { to, array, i, j } => {
-                    let (i, j) = (at!(i).re(), at!(j).re());
-                    let array = array!(array);
-                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
-                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
-                    at!(to) = array.read()[i * n + j];
-                }
-                ScalarOp::Store { array, i, a } => {
-                    let (i, x) = (at!(i).re(), at!(a));
-                    let array = array!(array);
-                    let ArrayShape::Row(n) = array.shape else { fault!() };
-                    let Some(k) = place(i, n) else { fault!() };
-                    array.write()[k] = x;
+                ScalarOp::Store { array, i, j, a } => {
+                    let (array, k) = element!(array, i, j);
+                    array.write()[k] = at!(a);
                     array.known.give_at(k);
                 }
-                ScalarOp::Store2 { array, i, j, a } => {
-                    let (i, j, x) = (at!(i).re(), at!(j).re(), at!(a));
-                    let array = array!(array);
-                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
-                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
-                    array.write()[i * n + j] = x;
-                    array.known.give_at(i * n + j);
-                }
-                ScalarOp::LoadVector { to, array, i } => {
-                    let i = at!(i).re();
-                    let array = array!(array);
-                    let ArrayShape::Row(n) = array.shape else { fault!() };
-                    let Some(k) = place(i, n) else { fault!() };
+                ScalarOp::LoadVector { to, array, i, j } => {
+                    let (array, k) = element!(array, i, j);
                     three!(to).copy_from_slice(&array.vector(k));
                 }
-                ScalarOp::LoadVector2 { to, array, i, j } => {
-                    let (i, j) = (at!(i).re(), at!(j).re());
-                    let array = array!(array);
-                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
-                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
-                    three!(to).copy_from_slice(&array.vector(i * n + j));
+                ScalarOp::StoreVector { array, i, j, a } => {
+                    let (array, k) = element!(array, i, j);
+                    array.put_vector(k, [at!(a), at!(a + 1), at!(a + 2)], None);
                 }
-                ScalarOp::StoreVector { array, i, a } => {
-                    let (i, v) = (at!(i).re(), [at!(a), at!(a + 1), at!(a + 2)]);
-                    let array = array!(array);
-                    let ArrayShape::Row(n) = array.shape else { fault!() };
-                    let Some(k) = place(i, n) else { fault!() };
-                    array.put_vector(k, v, None);
-                }
-                ScalarOp::StoreVector2 { array, i, j, a } => {
-                    let (i, j) = (at!(i).re(), at!(j).re());
-                    let v = [at!(a), at!(a + 1), at!(a + 2)];
-                    let array = array!(array);
-                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
-                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
-                    array.put_vector(i * n + j, v, None);
-                }
-                ScalarOp::StorePart { array, i, a, part } => {
-                    let (i, x) = (at!(i).re(), at!(a));
-                    let array = array!(array);
-                    let ArrayShape::Row(n) = array.shape else { fault!() };
-                    let Some(k) = place(i, n) else { fault!() };
-                    array.put_vector(k, [x; 3], Some(part));
-                }
-                ScalarOp::StorePart2 { array, i, j, a, part } => {
-                    let (i, j, x) = (at!(i).re(), at!(j).re(), at!(a));
-                    let array = array!(array);
-                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
-                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
-                    array.put_vector(i * n + j, [x; 3], Some(part));
+                ScalarOp::StorePart { array, i, j, a, part } => {
+                    let (array, k) = element!(array, i, j);
+                    array.put_vector(k, [at!(a); 3], Some(part));
                 }
                 ScalarOp::Extent { to, array, k } => {
                     let array = array!(array);
@@ -564,6 +536,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 ScalarOp::End => leave!(Departure::End),
                 ScalarOp::Interpret { site } => leave!(Departure::Interpret { site }),
                 ScalarOp::Condition { to, site } => leave!(Departure::Condition { to, site }),
+                ScalarOp::Kernel { kernel } => leave!(Departure::Kernel(kernel)),
             }
         }
     }
@@ -660,7 +633,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn in_module<R>(
+    pub(super) fn in_module<R>(
         &mut self,
         region: &CodeRegion<T>,
         machine: &RegisterMachine<T>,
@@ -798,6 +771,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let op = code.code[machine.pc];
         let range = code.range(machine.pc);
         let diagnostic = match (code.note(machine.pc), op) {
+            (Some(CodeNote::Assignment(stmt)), _) => {
+                let StmtKind::Assign { target, op, value } = code.m.program[stmt].kind else {
+                    unreachable!("an assignment was noted")
+                };
+                match self.interpreted(region, machine, &[], |this| {
+                    this.assign(&code.m, target, op, value)
+                }) {
+                    Ok(()) => {
+                        machine.pc = range.end as usize;
+                        return CodeOutcome::Next;
+                    }
+                    Err(diagnostic) => diagnostic,
+                }
+            }
             (Some(CodeNote::Finite(name, span)), _) => not_finite(name).at(span),
             (Some(CodeNote::Expression(expr)), _) => {
                 self.again(region, machine, |this| this.operand(&code.m, expr).map(drop))

@@ -1,10 +1,10 @@
-//! Compiled code for numeric loops and routines: a sequence of operations on registers.
+//! Compiled code for loops and routines on numbers and arrays: a sequence of operations on registers.
 //!
 //! `loop or routine -> code -> registers`
 //!
 //! A loop, or the body of a routine, is compiled when it is met, together with the routines that it
-//! calls. Names become registers; a statement that is not numeric (whole arrays, texts, objects,
-//! files) is one operation of the code: the variables are handed to the interpreter, it executes
+//! calls. Names become registers, element-wise statements on whole arrays passes over the elements; a
+//! statement that is neither (texts, lists, objects, files) is one operation of the code: the variables are handed to the interpreter, it executes
 //! the statement, and they are taken back. The same happens for most faults, so that the
 //! interpreter reports them. Code counts steps as the interpreter does, and checks its limits and
 //! cancellation every few hundred steps.
@@ -19,8 +19,10 @@ mod compile;
 mod expressions;
 mod inlined;
 pub(crate) mod kept;
+mod kernels;
 mod machine;
 mod names;
+mod passes;
 mod registers;
 mod vectors;
 mod walks;
@@ -51,7 +53,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     fn by_code(&mut self, m: &Module, start: RegionStart) -> Option<Flow<T>> {
-        if self.inputs.settings.without_code
+        if self.inputs.settings.reference
             || self.run.extent() == Extent::Edit
             || !self.env.scope.given.is_empty()
             || !std::ptr::eq(&**self.modules.get(self.current), m)

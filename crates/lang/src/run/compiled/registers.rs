@@ -118,7 +118,7 @@ impl<T: Real> ArrayRegister<T> {
     }
 
     #[cold]
-    fn own(&mut self) {
+    pub(super) fn own(&mut self) {
         self.items = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
             ArrayItems::Shared(array) => ArrayItems::Owned(Arc::unwrap_or_clone(array).items),
             ArrayItems::SharedVectors(array) => {
@@ -419,8 +419,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 continue;
             };
             let (span, ty) = code.origins[origin];
-            // An argument takes any shape, a declared array its own.
-            let fixed = !code.formals.contains(&Some(Poisonable::Array(k as u16)));
+            // An argument takes any shape, and so does an array declared without dimensions.
+            let fixed = !code.formals.contains(&Some(Poisonable::Array(k as u16)))
+                && !code.unfixed.contains(&(origin as u16));
             let what = match failed {
                 true => Binding::Poisoned,
                 false => Binding::Variable { ty, value, fixed, known },

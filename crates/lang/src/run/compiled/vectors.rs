@@ -23,7 +23,7 @@ pub(super) enum CodeValue {
 }
 
 /// The component that a member's name means.
-fn component(word: &str) -> Option<u16> {
+pub(super) fn component(word: &str) -> Option<u16> {
     ["x", "y", "z"].iter().position(|c| *c == word).map(|c| c as u16)
 }
 
@@ -159,11 +159,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     return Err(Unfit::Statement);
                 }
                 let to = self.scratch_vector();
-                let op = match places[..] {
-                    [i] => ScalarOp::LoadVector { to, array, i },
-                    [i, j] => ScalarOp::LoadVector2 { to, array, i, j },
-                    _ => return Err(Unfit::Statement),
-                };
+                let op = ScalarOp::LoadVector { to, array, i: places[0], j: places[1] };
                 self.noted(op, note)?;
                 Ok(to)
             }
@@ -214,7 +210,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     /// True when a name may mean vectors: then a dot before it may be a product, which is left to the interpreter.
-    fn may_be_vector(&mut self, name: Symbol) -> bool {
+    pub fn may_be_vector(&mut self, name: Symbol) -> bool {
         match self.meaning(name) {
             Ok(Meaning::Constant(_)) => false,
             Ok(
@@ -262,7 +258,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(to)
     }
 
-    fn negated_vector(&mut self, a: u16) -> Result<u16, Unfit> {
+    pub fn negated_vector(&mut self, a: u16) -> Result<u16, Unfit> {
         let to = self.scratch_vector();
         for c in 0..3 {
             self.emit(ScalarOp::Negate { to: to + c, a: a + c })?;
@@ -271,7 +267,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     /// `a op b`, one of them a vector.
-    fn combined(
+    pub fn combined(
         &mut self,
         op: BinaryOp,
         a: CodeValue,
@@ -459,11 +455,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 let CodeValue::Vector(a) = from else { return Err(Unfit::Statement) };
                 let note = CodeNote::Target(target);
                 let (array, _, places) = self.places(id, base, subs, note)?;
-                let op = match places[..] {
-                    [i] => ScalarOp::StoreVector { array, i, a },
-                    [i, j] => ScalarOp::StoreVector2 { array, i, j, a },
-                    _ => return Err(Unfit::Statement),
-                };
+                let op = ScalarOp::StoreVector { array, i: places[0], j: places[1], a };
                 self.noted(op, note)?;
             }
             ExprKind::Member { base, name, or_dot } => {
@@ -520,11 +512,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     return Err(Unfit::Statement);
                 }
                 let part = part as u8;
-                let op = match places[..] {
-                    [i] => ScalarOp::StorePart { array, i, a, part },
-                    [i, j] => ScalarOp::StorePart2 { array, i, j, a, part },
-                    _ => return Err(Unfit::Statement),
-                };
+                let op = ScalarOp::StorePart { array, i: places[0], j: places[1], a, part };
                 self.noted(op, note).map(drop)
             }
             _ => Err(Unfit::Statement),
@@ -541,8 +529,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         spans: [Span; 2],
     ) -> Result<CodeValue, Unfit> {
         let AssignOp::With(op) = op else { return self.operand(id, value) };
-        let b = self.operand(id, value)?;
         let a = self.operand(id, target)?;
+        let a = self.kept_value(a, self.calls(value))?;
+        let b = self.operand(id, value)?;
         self.combined(op, a, b, spans[0].to(spans[1]))
     }
 

@@ -377,6 +377,12 @@ impl Parser {
         if before.is_some_and(|t| matches!(t.kind, Kind::If | Kind::While | Kind::For)) {
             return Some("conditions and loops have parentheses: `if (x > 0)`, `for (i = 1:n)`");
         }
+        if before.is_some_and(|t| t.kind == Kind::Foreach) {
+            return foreign_word("in");
+        }
+        if token.kind == Kind::LBracket {
+            return Some("a row is written in braces: `farray a = {1, 2, 3, 4};`");
+        }
         // The nearest such word before it on its line.
         let line = self.tokens[..=self.at.min(self.tokens.len() - 1)].iter().rev();
         line.scan(true, |goes_on, token| {
@@ -459,15 +465,25 @@ impl Parser {
 }
 
 /// The equivalent of another language's word.
-fn foreign_word(word: &str) -> Option<&'static str> {
+pub fn foreign_word(word: &str) -> Option<&'static str> {
     Some(match word {
         "def" | "fn" | "func" => {
             "a function is declared with its types: `function float f(float x) { return x; }`"
         }
         "elif" | "elseif" | "elsif" => "a further condition is `else if (condition)`",
-        "var" | "let" | "const" | "double" => {
+        "var" | "let" | "const" | "auto" | "double" | "real" | "bool" | "boolean" => {
             "a variable is declared with its type: `float x = 1;`"
         }
+        "true" | "True" | "false" | "False" => {
+            "a condition is a number: 1, or 0 if it does not hold"
+        }
+        "null" | "None" | "nil" => "a variable without a value is only declared: `farray a;`",
+        "in" => "a loop through a list is `foreach (x in list)`",
+        "switch" | "case" => "further conditions are `else if (x == 2)`",
+        "zeros" | "ones" => "`farray a[n];` is a row of zeros, `farray a[n] = 1;` one of ones",
+        "linspace" | "arange" => "`uniform(a, b, n)` is a row of n numbers from a to b",
+        "pow" => "a power is written `a^b`",
+        "printf" | "println" | "disp" => "values are shown by `print a, b;`",
         "import" | "include" | "from" | "#include" => "a file is loaded by `load \"file.sdl\"`",
         "struct" | "class" | "typedef" => "members belong together in `record name { float x; }`",
         _ => return None,
