@@ -137,7 +137,7 @@ impl Document {
         for row in &INSERTED_FILES {
             add(row.name, CompletionKind::Kind, row.signature.into());
         }
-        for builtin in &BUILTINS {
+        for builtin in BUILTINS {
             add(builtin.name, CompletionKind::Function, builtin.signature.into());
         }
         for keyword in moldloft_syntax::sdl::keywords() {

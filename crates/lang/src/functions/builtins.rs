@@ -97,7 +97,7 @@ const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
 ];
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 36] = [
+pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "format",
         action: Action::Format,
