@@ -149,8 +149,9 @@ bits: ## rewrites tests/bits.txt after a change of results
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
 
-changes: ## applies each patch of tests/changes to this clean tree, builds it, checks all faces of the addition
+changes: ## additions of tests/changes and changed arguments of 50 rows, each in one build of this clean tree, by all faces
 	@$(PYTHON) tools/changes.py
+	@$(PYTHON) tools/renames.py
 
 fuzz: $(VENV)/.with-tests ## coverage-guided fuzzing, SECONDS (600) for each target; needs a C++ compiler
 	@$(BIN)/python tools/fuzz.py --seconds $(or $(SECONDS),600)

@@ -1,7 +1,8 @@
-"""Applies patches of `tests/changes` to a clean tree, builds it, checks all faces of the addition.
+"""Applies patches of `tests/changes` to a clean tree, builds it, checks all faces of the additions.
 
-    python tools/changes.py                     all patches
+    python tools/changes.py                     all patches, in one build
     python tools/changes.py kind command        some
+    python tools/changes.py --apart             a build for each
 
 Each patch is a real addition: its module, a test of all faces (model, Python, command, help) and
 the lines that name the module elsewhere, at most `FILES` files and `LINES` lines. Before the first
@@ -78,22 +79,25 @@ def run(*words: str) -> None:
     subprocess.run(words, cwd=ROOT, check=True)
 
 
-def check(change: Change) -> None:
+def check(changes: list[Change]) -> None:
     """Applies, builds, tests, generates; leaves the tree as it was."""
-    run("git", "apply", "--index", str(change.path))
+    modules = [name for change in changes for name in change.modules]
     try:
+        for change in changes:
+            run("git", "apply", "--index", str(change.path))
         run("make", "setup")
-        tests = [name for name in change.modules if name.startswith("tests/python/")]
+        tests = [name for name in modules if name.startswith("tests/python/")]
         if tests:
             run(".venv/bin/python", "-m", "pytest", "--quiet", *tests)
-        if any(name.startswith("web/") for name in change.modules):
+        if any(name.startswith("web/") for name in modules):
             run("npm", "--prefix", "web", "run", "--silent", "check")
-        if change.generated:
+        if any(change.generated for change in changes):
             run("make", "reference")
-        for name in change.generated:
-            content = (ROOT / name).read_bytes()
-            if name.endswith((".md", ".pyi")) and change.word.encode() not in content:
-                raise SystemExit(f"{change.path.name}: {name} does not contain {change.word}")
+        for change in changes:
+            for name in change.generated:
+                content = (ROOT / name).read_bytes()
+                if name.endswith((".md", ".pyi")) and change.word.encode() not in content:
+                    raise SystemExit(f"{change.path.name}: {name} does not contain {change.word}")
     finally:
         run("git", "reset", "--quiet", "--hard")
         run("git", "clean", "--quiet", "--force", "docs/kinds", "tests/python", "python", "web/src")
@@ -103,7 +107,9 @@ def main() -> int:
     """Checks the named patches."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("names", nargs="*", help="names of patches; all by default")
-    names = parser.parse_args().names
+    parser.add_argument("--apart", action="store_true", help="a build for each patch")
+    options = parser.parse_args()
+    names = options.names
     status = subprocess.run(
         ["git", "status", "--porcelain"], cwd=ROOT, check=True, capture_output=True, text=True
     )
@@ -113,12 +119,14 @@ def main() -> int:
     known = {change.path.stem: change for change in changes()}
     if missing := set(names) - set(known):
         parser.error(f"expected one of {', '.join(known)}, found {', '.join(sorted(missing))}")
-    for name in names or known:
-        if faults := known[name].faults:
-            print(f"{name}: {'; '.join(faults)}")
+    chosen = [known[name] for name in names or known]
+    for change in chosen:
+        if faults := change.faults:
+            print(f"{change.path.stem}: {'; '.join(faults)}")
             return 1
-        check(known[name])
-        print(f"{name}: right by all faces")
+    for group in [[change] for change in chosen] if options.apart else [chosen]:
+        check(group)
+        print(f"{', '.join(change.path.stem for change in group)}: right by all faces")
     return 0
 
 

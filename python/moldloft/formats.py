@@ -190,7 +190,7 @@ def formats() -> dict[str, Format]:
 
 
 def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
-    """The row of a format, by name or alias.
+    """The row of a format, by name, alias or an extension that no other has.
 
     Parameters
     ----------
@@ -214,7 +214,10 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     for row in rows:
         if wanted == row.name or wanted in row.aliases:
             return row
-    ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
+    of_suffix = [row for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
+    if len(of_suffix) == 1:
+        return of_suffix[0]
+    ends = [f"`{row.name}`" for row in of_suffix]
     if ends:
         files = f"the extension `.{wanted}` belongs to several formats"
         raise FormatError(f"{files}; expected a longer extension: {' or '.join(ends)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import keyword
 import textwrap
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -24,6 +25,7 @@ __all__ = [
     "guides",
     "meaning",
     "page",
+    "python_name",
     "reference",
     "search",
     "signature",
@@ -64,36 +66,7 @@ def attributes() -> list[dict[str, Any]]:
     >>> [field["name"] for field in attributes()][:3]
     ['colour', 'visible', 'layer']
     """
-    return [
-        {
-            "name": name,
-            "class": class_,
-            "many": name == "tags",
-            "required": False,
-            "default": None,
-            "help": text,
-        }
-        for name, class_, text in _ATTRIBUTES
-    ]
-
-
-#: As `crates/registry/src/attributes.rs` declares them; a test compares the names.
-_ATTRIBUTES = (
-    ("colour", "integer", "Colour index, 0 to 255."),
-    ("visible", "integer", "Shown when positive, hidden when 0 or negative."),
-    ("layer", "integer", "Layer, 0 to 255."),
-    (
-        "divisions",
-        "integer",
-        "Panels along the curve, or of each parameter; 0: as neighbours have.",
-    ),
-    ("subdivisions", "integer", "Steps in each division, or in u and in v."),
-    ("size", "number", "Aimed length of panels, or along u and along v."),
-    ("spacing", "value", "uniform, cosine, start, end, or the growth from panel to panel."),
-    ("tags", "text", "Roles of the patch: wetted, lid, waterline, symmetry or user-defined names."),
-    ("orientation", "integer", "1 reverses the normals of a surface's panels."),
-    ("attributes", "text", "Attributes of a model file, kept as they are."),
-)
+    return _core.attributes()
 
 
 @cache
@@ -156,37 +129,58 @@ def page(row: dict[str, Any]) -> str:
     row
         A row of :func:`reference`.
     """
+    parameters = []
+    if row["is_kind"]:
+        parameters.append(("name : str", "The name of the object."))
+    for field in row["fields"]:
+        class_ = f"list of {field['class']}" if field["many"] else str(field["class"])
+        optional = "" if field["required"] else ", optional"
+        parameters.append((f"{field['name']} : {class_}{optional}", meaning(field)))
+    if row["is_kind"]:
+        names = ", ".join(field["name"] for field in attributes())
+        parameters.append(("**attributes", f"By name, of every kind: {names}."))
+    return docstring(row, parameters, str(row["class"]))
+
+
+def docstring(row: dict[str, Any], parameters: Sequence[tuple[str, str]], result: str) -> str:
+    """A numpydoc text: documentation and example of a row, parameters with their meanings, result.
+
+    Parameters
+    ----------
+    row
+        A row of :func:`reference`.
+    parameters
+        The head of each parameter, and its meaning.
+    result
+        Type of the result.
+    """
     lines = [str(row["doc"]).strip()]
-    fields = row["fields"]
-    if row["is_kind"] or fields:
+    if parameters:
         lines += ["", "Parameters", "----------"]
-        if row["is_kind"]:
-            lines += ["name : str", "    The name of the object."]
-        for field in fields:
-            class_ = f"list of {field['class']}" if field["many"] else str(field["class"])
-            optional = "" if field["required"] else ", optional"
-            lines.append(f"{field['name']} : {class_}{optional}")
-            lines += textwrap.wrap(
-                meaning(field), 92, initial_indent="    ", subsequent_indent="    "
-            )
-        if row["is_kind"]:
-            names = ", ".join(field["name"] for field in attributes())
-            lines += ["**attributes"]
-            lines += textwrap.wrap(
-                f"By name, of every kind: {names}.",
-                92,
-                initial_indent="    ",
-                subsequent_indent="    ",
-            )
-    lines += ["", "Returns", "-------", str(row["class"])]
+    for head, text in parameters:
+        lines.append(head)
+        lines += textwrap.wrap(text, 92, initial_indent="    ", subsequent_indent="    ")
+    lines += ["", "Returns", "-------", result]
     if row["example"]:
         lines += ["", "Notes", "-----", "In the language::", ""]
         lines += [f"    {line}".rstrip() for line in str(row["example"]).strip().splitlines()]
     return "\n".join(lines) + "\n"
 
 
-#: Functions whose last argument, a list, may be given item by item.
-SPREAD = frozenset({"list", "points", "join", "stack"})
+def python_name(name: str) -> str:
+    """The name of an argument in Python: words of Python end in an underscore.
+
+    Parameters
+    ----------
+    name
+        Its name in the language.
+
+    Examples
+    --------
+    >>> python_name("lambda"), python_name("radius")
+    ('lambda_', 'radius')
+    """
+    return f"{name}_" if keyword.iskeyword(name) else name
 
 
 def signature(row: dict[str, Any]) -> inspect.Signature:
@@ -211,8 +205,8 @@ def signature(row: dict[str, Any]) -> inspect.Signature:
         optional = optional or not field["required"]
         default = parameter.empty if field["required"] else field["default"]
         kind = parameter.KEYWORD_ONLY if optional and field["required"] else None
-        name = field["name"] + ("_" if keyword.iskeyword(field["name"]) else "")
-        if field["many"] and row["name"] in SPREAD:
+        name = python_name(field["name"])
+        if field["variadic"]:
             found.append(parameter(name, parameter.VAR_POSITIONAL))
         elif kind is not None:
             by_name.append(parameter(name, kind, default=default))
@@ -221,7 +215,7 @@ def signature(row: dict[str, Any]) -> inspect.Signature:
     if row["is_kind"]:
         own = {field["name"] for field in fields}
         by_name += [
-            parameter(field["name"], parameter.KEYWORD_ONLY, default=None)
+            parameter(field["name"], parameter.KEYWORD_ONLY, default=field["default"])
             for field in attributes()
             if field["name"] not in own
         ]

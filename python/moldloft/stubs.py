@@ -1,19 +1,21 @@
-"""The types of kinds and functions, written from the registry: ``kinds.pyi`` and ``functions.pyi``.
+"""The types of kinds and functions, written from the registry.
 
-``python -m moldloft.stubs`` writes both beside this file (``make reference`` runs it). They give
-type checkers the arguments of each kind and function, and editors its documentation.
+``python -m moldloft.stubs`` writes ``kinds.pyi``, ``functions.pyi`` and ``implicit/rows.pyi``
+beside this file (``make reference`` runs it). They give type checkers the arguments of each kind
+and function, and editors its documentation.
 """
 
 from __future__ import annotations
 
+import inspect
 import keyword
 import textwrap
 from pathlib import Path
 from typing import Any
 
-from moldloft.language import SPREAD, attributes, page, reference
+from moldloft.language import attributes, page, python_name, reference
 
-__all__ = ["functions_stub", "kinds_stub"]
+__all__ = ["functions_stub", "kinds_stub", "solids_stub"]
 
 _HEAD = '''# Made by `make reference` from the declarations in `crates/`; not edited by hand.
 """{title}"""
@@ -90,6 +92,7 @@ _ARGUMENTS = {
     "magnet": "_Magnet",
     "ring": "_Ring",
     "curve": "_Curve",
+    "line": "_Curve",
     "snake": "_Snake",
     "surface": "_Surface",
     "solid": "_Solid",
@@ -170,11 +173,8 @@ def _parameters(row: dict[str, Any]) -> list[str]:
         lines += ["name: str", "/"]
     left_out = starred = False
     for field in fields:
-        name, type_ = field["name"], _type(field)
-        if keyword.iskeyword(name):
-            # It can be given by place, or in a dictionary; `**` is not checked.
-            name += "_"
-        if field["many"] and row["name"] in SPREAD:
+        name, type_ = python_name(field["name"]), _type(field)
+        if field["variadic"]:
             item = _ARGUMENTS[field["class"]]
             lines.append(f"*{name}: {item} | {type_}" if item != "object" else f"*{name}: object")
             starred = True
@@ -205,11 +205,14 @@ def _function(row: dict[str, Any]) -> str:
     lines = [f"def {row['name']}("]
     lines += [f"    {parameter}," for parameter in parameters]
     lines = [*lines, f") -> {made}:"] if parameters else [f"{lines[0]}) -> {made}:"]
-    doc = page(row).rstrip().replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+    return "\n".join([*lines, _body(page(row))])
+
+
+def _body(text: str) -> str:
+    doc = text.rstrip().replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
     if doc.endswith('"'):
         doc += " "
-    lines += [textwrap.indent(f'"""{doc}\n"""', "    ", lambda line: bool(line.strip())), "    ..."]
-    return "\n".join(lines)
+    return textwrap.indent(f'"""{doc}\n"""\n...', "    ", lambda line: bool(line.strip()))
 
 
 def _stub(title: str, rows: list[dict[str, Any]]) -> str:
@@ -231,10 +234,48 @@ def functions_stub() -> str:
     return _stub("Functions of the language, for models that are written in Python.", rows)
 
 
+_SOLIDS_HEAD = '''# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+"""Functions of fields and sets, made from the rows of the language."""
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from moldloft.implicit.fields import Field
+from moldloft.implicit.sets import Set
+
+Triple: TypeAlias = Sequence[float]
+
+'''
+
+
+def solids_stub() -> str:
+    """The text of ``implicit/rows.pyi``."""
+    from moldloft.implicit import rows
+
+    parts = [f"__all__ = {rows.__all__!r}"]
+    for name in rows.__all__:
+        function = getattr(rows, name)
+        signature = inspect.signature(function)
+        lines = [f"def {name}("]
+        for parameter in signature.parameters.values():
+            star = "*" if parameter.kind is parameter.VAR_POSITIONAL else ""
+            left_out = "" if parameter.default is parameter.empty else " = ..."
+            lines.append(f"    {star}{parameter.name}: {parameter.annotation}{left_out},")
+        end = f") -> {signature.return_annotation}:"
+        lines = [*lines, end] if signature.parameters else [lines[0] + end]
+        parts.append("\n".join([*lines, _body(function.__doc__)]))
+    return _SOLIDS_HEAD + "\n".join(parts) + "\n"
+
+
 def main() -> None:
-    """Writes both files beside this one."""
+    """Writes the files beside this one."""
     folder = Path(__file__).parent
-    for name, text in (("kinds", kinds_stub()), ("functions", functions_stub())):
+    texts = {
+        "kinds": kinds_stub(),
+        "functions": functions_stub(),
+        "implicit/rows": solids_stub(),
+    }
+    for name, text in texts.items():
         (folder / f"{name}.pyi").write_text(text, encoding="utf-8")
 
 

@@ -1,6 +1,7 @@
 """An addition costs its module and few lines: the patches of `tests/changes` apply and are small.
 
-`make changes` builds each and checks it by all its faces.
+`make changes` builds them and checks each by all its faces, and the same for changed arguments of
+rows (`tools/renames.py`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = runpy.run_path(str(ROOT / "tools" / "changes.py"))
 CHANGES: list[Any] = TOOL["changes"]()
+RENAMES = runpy.run_path(str(ROOT / "tools" / "renames.py"))
 
 
 def test_every_sort_of_addition_has_a_patch() -> None:
@@ -50,3 +52,13 @@ def test_excesses_are_found(tmp_path: Path) -> None:
     path.write_text("Word: x\nGenerated: -\n" + "".join(map(part.format, "abc")))
     change = TOOL["Change"].read(path)
     assert change.touched == {"a": 2, "b": 2, "c": 2} and len(change.faults) == 2
+
+
+def test_arguments_of_fifty_rows_can_be_changed() -> None:
+    changes, files = RENAMES["draw_changes"](41, 50)
+    assert len({change.row for change in changes}) == 50
+    named = [change for change in changes if isinstance(change.to, str)]
+    assert 10 < len(named) < 40
+    text = "".join(files.values())
+    for change in named:
+        assert f"    {change.to}: " in text, change

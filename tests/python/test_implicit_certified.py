@@ -127,7 +127,7 @@ def test_sets_are_kept(tmp_path):
 
 def test_fillets_between_sets():
     plate, post = im.cuboid((-3, -3, -1), (3, 3, 0)), im.cuboid((-1, -1, -0.5), (1, 1, 2))
-    joined = im.fillet(plate, post, 0.5)
+    joined = plate.filleted(post, 0.5)
     exact = 36 + 8 + 4 * 2 * 0.25 * (1 - math.pi / 4)
     assert joined.mass().volume == pytest.approx(exact, abs=1e-4)
     with pytest.raises(moldloft.Error, match="no edge"):

@@ -146,6 +146,7 @@ def test_pyright_finds_each_mistake_and_no_other(tmp_path: Path) -> None:
 def test_the_stubs_are_those_of_the_registry() -> None:
     assert (HERE / "kinds.pyi").read_text(encoding="utf-8") == stubs.kinds_stub()
     assert (HERE / "functions.pyi").read_text(encoding="utf-8") == stubs.functions_stub()
+    assert (HERE / "implicit" / "rows.pyi").read_text(encoding="utf-8") == stubs.solids_stub()
 
 
 def test_every_kind_and_function_has_a_page_and_a_signature() -> None:

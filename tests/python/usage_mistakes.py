@@ -272,8 +272,8 @@ def python_calls() -> list[tuple[Callable[..., Any], dict[str, Any], dict[str, s
         (im.plane, {"normal": z, "point": o}, {"normal": "row", "point": "row"}),
         (
             im.torus,
-            {"centre": o, "direction": z, "major": 2.0, "minor": 0.5},
-            {"centre": "row", "major": "number", "minor": "number"},
+            {"point": o, "direction": z, "major": 2.0, "minor": 0.5},
+            {"point": "row", "major": "number", "minor": "number"},
         ),
         (im.cuboid, {"low": o, "high": (1, 1, 1)}, {"low": "row", "high": "row"}),
         (im.segment, {"start": o, "end": z}, {"start": "row", "end": "row"}),

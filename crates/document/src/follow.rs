@@ -99,68 +99,22 @@ pub fn follow(
     start: &[f64],
     how: FollowSearch<'_>,
 ) -> Result<Followed, String> {
-    let n = followers.len();
-    let sizes: Vec<f64> = followers.iter().map(FollowingNumber::size).collect();
+    let mut search = ScaledSearch::new(followers, how);
     let mut x = start.to_vec();
     let mut left = conditions.at(&x)?;
-    let mut reach: Vec<f64> = Vec::new();
     let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
     let mut refused = None;
     let (mut steps, mut lessening) = (0, 0);
     while steps < how.steps {
         let slopes = conditions.slopes()?;
-        if reach.is_empty() {
-            reach = slopes
-                .iter()
-                .map(|row| row.iter().zip(&sizes).map(|(d, s)| (d * s).abs()).sum::<f64>())
-                .collect();
-            if how.alike {
-                let largest = reach.iter().copied().fold(0.0, f64::max);
-                reach.fill(largest);
-            }
-        }
-        // A condition on which no number has an effect is left out: its scale would be infinite.
-        let scale = |i: usize| {
-            if reach[i] > 0.0 { CONDITION * how.importance[i] / reach[i] } else { 0.0 }
-        };
-        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(left.len() + n);
-        let mut aims: Vec<f64> = Vec::with_capacity(left.len() + n);
-        for (i, row) in slopes.iter().enumerate() {
-            rows.push(row.iter().zip(&sizes).map(|(d, s)| d * s * scale(i)).collect());
-            aims.push(-left[i] * scale(i));
-        }
-        for (j, follower) in followers.iter().enumerate() {
-            let mut row = vec![0.0; n];
-            row[j] = follower.weight;
-            rows.push(row);
-            aims.push(-follower.weight * (x[j] - follower.home) / sizes[j]);
-        }
-        let bounds: Vec<(f64, f64)> = followers
-            .iter()
-            .zip(&x)
-            .zip(&sizes)
-            .map(|((f, x), s)| match f.range {
-                Some((low, high)) => ((low - x) / s, (high - x) / s),
-                None => (f64::NEG_INFINITY, f64::INFINITY),
-            })
-            .collect();
+        search.measure(&slopes);
+        let (rows, aims) = search.system(&slopes, &left, &x);
+        let bounds = search.bounds(&x);
         let Some(step) = bounded_least_squares(&rows, &aims, &bounds) else { break };
         let length = step.iter().fold(0.0f64, |m, d| m.max(d.abs()));
-        let missed = |left: &[f64]| {
-            let share = |(l, r): (&f64, &f64)| if *r > 0.0 { (l / r) * (l / r) } else { 0.0 };
-            left.iter().zip(&reach).map(share).sum::<f64>().sqrt()
-        };
-        let changed = |x: &[f64]| {
-            let one = |((f, x), s): ((&FollowingNumber, &f64), &f64)| f.weight * (x - f.home) / s;
-            followers.iter().zip(x).zip(&sizes).map(one).map(|y| y * y).sum::<f64>()
-        };
-        let merit = |left: &[f64], x: &[f64]| {
-            let one = |(i, l): (usize, &f64)| (l * scale(i)) * (l * scale(i));
-            left.iter().enumerate().map(one).sum::<f64>() + changed(x)
-        };
-        let met = missed(&left) <= MET || left.iter().all(|l| l.abs() <= how.enough);
+        let met = search.missed(&left) <= MET || left.iter().all(|l| l.abs() <= how.enough);
         if met {
-            let worth = changed(&x);
+            let worth = search.changed(&x);
             if best.as_ref().is_none_or(|(w, ..)| worth < *w) {
                 best = Some((worth, x.clone(), left.clone()));
             }
@@ -172,33 +126,14 @@ pub fn follow(
         if length <= SMALL_STEP {
             break;
         }
-        let now = merit(&left, &x);
+        let now = search.merit(&left, &x);
         let hoped = now - rest(&rows, &aims, &step).iter().map(|r| r * r).sum::<f64>();
-        let mut share = 1.0;
-        let mut accepted = None;
-        for _ in 0..HALVINGS {
-            let next: Vec<f64> = (0..n)
-                .map(|j| {
-                    let next = x[j] + share * step[j] * sizes[j];
-                    followers[j].range.map_or(next, |(low, high)| next.clamp(low, high))
-                })
-                .collect();
-            match conditions.at(&next) {
-                // A step along the conditions may violate them by its square; the next step
-                // corrects this.
-                Ok(found)
-                    if found.iter().all(|c| c.is_finite())
-                        && (merit(&found, &next) <= now - 0.1 * share * hoped
-                            || (met && missed(&found) < 0.1)) =>
-                {
-                    accepted = Some((next, found));
-                    break;
-                }
-                Ok(_) => {}
-                Err(why) => refused = Some(why),
-            }
-            share *= 0.5;
-        }
+        // A step along the conditions may violate them by its square; the next step corrects this.
+        let good = |share: f64, found: &[f64], next: &[f64]| {
+            search.merit(found, next) <= now - 0.1 * share * hoped
+                || (met && search.missed(found) < 0.1)
+        };
+        let accepted = search.accepted(conditions, &x, &step, &good, &mut refused);
         let Some((next, found)) = accepted else { break };
         (x, left) = (next, found);
         steps += 1;
@@ -209,7 +144,116 @@ pub fn follow(
         (x, left) = (met, there);
     }
     conditions.at(&x)?;
-    Ok(Followed { x, left, steps, reach, refused })
+    Ok(Followed { x, left, steps, reach: search.reach, refused })
+}
+
+/// A search in numbers scaled by their sizes, of conditions scaled by their reach.
+struct ScaledSearch<'a> {
+    followers: &'a [FollowingNumber],
+    how: FollowSearch<'a>,
+    sizes: Vec<f64>,
+    /// Effect of the numbers on each condition over their ranges, at the start.
+    reach: Vec<f64>,
+}
+
+impl<'a> ScaledSearch<'a> {
+    fn new(followers: &'a [FollowingNumber], how: FollowSearch<'a>) -> Self {
+        let sizes = followers.iter().map(FollowingNumber::size).collect();
+        Self { followers, how, sizes, reach: Vec::new() }
+    }
+
+    /// Takes the reach from the first slopes.
+    fn measure(&mut self, slopes: &[Vec<f64>]) {
+        if !self.reach.is_empty() {
+            return;
+        }
+        let effect = |row: &Vec<f64>| row.iter().zip(&self.sizes).map(|(d, s)| (d * s).abs()).sum();
+        self.reach = slopes.iter().map(effect).collect();
+        if self.how.alike {
+            let largest = self.reach.iter().copied().fold(0.0, f64::max);
+            self.reach.fill(largest);
+        }
+    }
+
+    /// The scale of a condition: 0 where no number has an effect, or it would be infinite.
+    fn scale(&self, i: usize) -> f64 {
+        let reach = self.reach[i];
+        if reach > 0.0 { CONDITION * self.how.importance[i] / reach } else { 0.0 }
+    }
+
+    /// The linear system of a step: conditions, then the changes of the numbers.
+    fn system(&self, slopes: &[Vec<f64>], left: &[f64], x: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let n = self.followers.len();
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(left.len() + n);
+        let mut aims: Vec<f64> = Vec::with_capacity(left.len() + n);
+        for (i, row) in slopes.iter().enumerate() {
+            let scale = self.scale(i);
+            rows.push(row.iter().zip(&self.sizes).map(|(d, s)| d * s * scale).collect());
+            aims.push(-left[i] * scale);
+        }
+        for (j, follower) in self.followers.iter().enumerate() {
+            let mut row = vec![0.0; n];
+            row[j] = follower.weight;
+            rows.push(row);
+            aims.push(-follower.weight * (x[j] - follower.home) / self.sizes[j]);
+        }
+        (rows, aims)
+    }
+
+    /// The bounds of a step from `x`.
+    fn bounds(&self, x: &[f64]) -> Vec<(f64, f64)> {
+        let one = |((f, x), s): ((&FollowingNumber, &f64), &f64)| match f.range {
+            Some((low, high)) => ((low - x) / s, (high - x) / s),
+            None => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        self.followers.iter().zip(x).zip(&self.sizes).map(one).collect()
+    }
+
+    /// Residuals relative to the reach of their conditions.
+    fn missed(&self, left: &[f64]) -> f64 {
+        let share = |(l, r): (&f64, &f64)| if *r > 0.0 { (l / r) * (l / r) } else { 0.0 };
+        left.iter().zip(&self.reach).map(share).sum::<f64>().sqrt()
+    }
+
+    /// The squared change from home.
+    fn changed(&self, x: &[f64]) -> f64 {
+        let one = |((f, x), s): ((&FollowingNumber, &f64), &f64)| f.weight * (x - f.home) / s;
+        self.followers.iter().zip(x).zip(&self.sizes).map(one).map(|y| y * y).sum::<f64>()
+    }
+
+    /// The function that is minimised.
+    fn merit(&self, left: &[f64], x: &[f64]) -> f64 {
+        let one = |(i, l): (usize, &f64)| (l * self.scale(i)) * (l * self.scale(i));
+        left.iter().enumerate().map(one).sum::<f64>() + self.changed(x)
+    }
+
+    /// The first good point of a step that is halved, with its residuals.
+    fn accepted(
+        &self,
+        conditions: &mut dyn Conditions,
+        x: &[f64],
+        step: &[f64],
+        good: &dyn Fn(f64, &[f64], &[f64]) -> bool,
+        refused: &mut Option<String>,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            let moved = |j: usize| {
+                let next = x[j] + share * step[j] * self.sizes[j];
+                self.followers[j].range.map_or(next, |(low, high)| next.clamp(low, high))
+            };
+            let next: Vec<f64> = (0..x.len()).map(moved).collect();
+            match conditions.at(&next) {
+                Ok(found) if found.iter().all(|c| c.is_finite()) && good(share, &found, &next) => {
+                    return Some((next, found));
+                }
+                Ok(_) => {}
+                Err(why) => *refused = Some(why),
+            }
+            share *= 0.5;
+        }
+        None
+    }
 }
 
 /// The x that minimises |a x - b| within bounds; `None` for values that are not finite.

@@ -69,7 +69,7 @@ mod _core {
         read_plot3d, read_points, write_grids, write_plot3d,
     };
     #[pymodule_export]
-    use crate::implicit::{PyFacets, PyField, PySet};
+    use crate::implicit::{PyFacets, PyField, PySet, call_row};
     #[pymodule_export]
     use crate::language_server::{language_engine, language_server};
     #[pymodule_export]
@@ -81,7 +81,7 @@ mod _core {
     #[pymodule_export]
     use crate::nurbs::{brep, length_unit, nurbs, nurbs_points};
     #[pymodule_export]
-    use crate::reference::{keywords, libraries, reference, statements};
+    use crate::reference::{attributes, keywords, libraries, reference, statements};
     #[pymodule_export]
     use crate::search::{intersect, intersect_plane, nearest};
     #[pymodule_export]

@@ -12,6 +12,12 @@ pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     rows.chain(moldloft::lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
 }
 
+/// The named arguments that every kind takes besides its own.
+#[pyfunction]
+pub fn attributes(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    moldloft::rows::ATTRIBUTES.iter().map(|field| argument(py, field)).collect()
+}
+
 /// Name and text of each library that comes with the program.
 #[pyfunction]
 pub fn libraries() -> Vec<(&'static str, &'static str)> {
@@ -49,8 +55,8 @@ fn describe_builtin<'py>(
     dict.set_item("class", builtin.returns)?;
     dict.set_item("is_kind", false)?;
     dict.set_item("summary", builtin.doc)?;
-    dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature))?;
-    dict.set_item("signature", builtin.signature)?;
+    dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature()))?;
+    dict.set_item("signature", builtin.signature())?;
     let fields: PyResult<Vec<_>> = builtin
         .help
         .iter()
@@ -64,6 +70,7 @@ fn describe_builtin<'py>(
                 dict.set_item(key, py.None())?;
             }
             dict.set_item("help", help)?;
+            dict.set_item("variadic", class.ends_with('…'))?;
             Ok(dict)
         })
         .collect();
@@ -101,5 +108,6 @@ fn argument<'py>(py: Python<'py>, field: &FieldSpec) -> PyResult<Bound<'py, PyDi
     dict.set_item("min", field.min)?;
     dict.set_item("max", field.max)?;
     dict.set_item("help", field.help)?;
+    dict.set_item("variadic", field.variadic)?;
     Ok(dict)
 }

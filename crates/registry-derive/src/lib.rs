@@ -69,173 +69,28 @@ struct FieldOptions {
 fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
     let options = kind_options(input)?;
     let ident = &input.ident;
-    let Data::Struct(data) = &input.data else {
-        return Err(syn::Error::new_spanned(ident, "a kind is a struct"));
-    };
-    let Fields::Named(fields) = &data.fields else {
-        return Err(syn::Error::new_spanned(ident, "a kind has named fields"));
-    };
-    let doc = doc_text(&input.attrs);
-    if doc.is_empty() {
-        return Err(syn::Error::new_spanned(ident, "a kind needs a doc comment"));
-    }
-    let class = options
-        .class
-        .ok_or_else(|| syn::Error::new_spanned(ident, "a kind needs `class = ...`"))?;
-    let example = options
-        .example
-        .ok_or_else(|| syn::Error::new_spanned(ident, "a kind needs `example = ...`"))?;
-    let columns = match &options.columns {
-        Some(columns) => quote!(Some(#columns)),
-        None => quote!(None),
-    };
-    let name = match options.name {
-        Some(name) => quote!(#name),
-        None => {
-            let text = LitStr::new(&ident.to_string(), ident.span());
-            quote!(#text)
-        }
-    };
-    let sweep = match &options.sweep {
-        Some(fields) => quote!(Some([#(Self::#fields),*])),
-        None => quote!(None),
-    };
-    let role = match &options.role {
-        Some(role) => quote!(::moldloft_registry::Role::#role),
-        None => quote!(::moldloft_registry::Role::Plain),
-    };
-    let is_kind = !options.function;
-    let cheap = options.cheap;
-    let has_own = fields.named.iter().any(|f| f.ident.as_ref().is_some_and(|i| i == "relabel"));
+    let fields = named_fields(input)?;
+    let missing = |what: &str| syn::Error::new_spanned(ident, format!("a kind needs {what}"));
+    let class = options.class.as_ref().ok_or_else(|| missing("`class = ...`"))?;
+    let mut arguments = Arguments::of(fields)?;
+    let check = arguments.check();
+    let has_own = arguments.constants.iter().any(|name| name == "RELABEL");
     let relabelled =
-        is_kind && !has_own && takes_relabel(&class, &options.columns, options.relabel);
-
-    let mut infos = Vec::new();
-    let mut reads = Vec::new();
-    let mut constants = Vec::new();
-    // Fields whose count or range may only be known when an object was evaluated.
-    let mut checks: Vec<usize> = Vec::new();
-    // A kind without arguments says by a `PhantomData` which scalar it is of.
-    let (markers, arguments): (Vec<_>, Vec<_>) =
-        fields.named.iter().partition(|field| is_marker(&field.ty));
-    for (k, field) in arguments.into_iter().enumerate() {
-        let field_ident = field.ident.as_ref().expect("named fields have names");
-        let ty = &field.ty;
-        let help = doc_text(&field.attrs);
-        if help.is_empty() {
-            return Err(syn::Error::new_spanned(field_ident, "a field needs a doc comment"));
-        }
-        let o = field_options(&field.attrs)?;
-        let text = LitStr::new(&field_ident.unraw().to_string(), field_ident.span());
-        let optional = quote!(<#ty as ::moldloft_registry::FromValue<S>>::OPTIONAL);
-        let default = match &o.default {
-            Some(default) => quote!(Some(#default)),
-            None => quote!(if #optional {
-                Some(::moldloft_registry::DefaultValue::Unset)
-            } else {
-                None
-            }),
-        };
-        let bound = |e: &Option<Expr>| match e {
-            Some(e) => quote!(Some((#e) as f64)),
-            None => quote!(None),
-        };
-        let (min, max) = (bound(&o.min), bound(&o.max));
-        let min_items = o.min_items.as_ref().map_or(quote!(0), |e| quote!(#e));
-        let variadic = o.variadic;
-        let unit = if o.angle { quote!(Angle) } else { quote!(None) };
-        if o.min.is_some() || o.max.is_some() || min_items.to_string() != "0" {
-            checks.push(k);
-        }
-        infos.push(quote!(::moldloft_registry::FieldSpec {
-            name: #text,
-            help: #help,
-            class: <#ty as ::moldloft_registry::FromValue<S>>::CLASS,
-            many: <#ty as ::moldloft_registry::FromValue<S>>::MANY,
-            default: #default,
-            unit: ::moldloft_registry::Unit::#unit,
-            min: #min,
-            max: #max,
-            min_items: #min_items,
-            variadic: #variadic,
-        }));
-        reads.push(quote!(
-            #field_ident: <#ty as ::moldloft_registry::FromValue<T>>::from_value(&args[#k])
-                .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(#k)))?
-        ));
-        constants.push(constant(field_ident));
-    }
-    reads.extend(markers.iter().map(|field| {
-        let field_ident = &field.ident;
-        quote!(#field_ident: ::core::marker::PhantomData)
-    }));
-    // The table entry is filled for one scalar; classes do not depend on it.
-    let infos: Vec<Tokens> = infos
-        .into_iter()
-        .map(|info| quote!({ type T = f64; type S = f64; let _ = ::core::marker::PhantomData::<(T, S)>; #info }))
-        .collect();
-
-    let check = if checks.is_empty() {
-        quote!()
-    } else {
-        let fields: Vec<&Tokens> = checks.iter().map(|&k| &infos[k]).collect();
+        !options.function && !has_own && takes_relabel(class, &options.columns, options.relabel);
+    let finish = if relabelled {
+        arguments.constants.push(syn::Ident::new("RELABEL", ident.span()));
+        let last = arguments.infos.len();
         quote!(
-            for (at, field) in [#((#checks, #fields)),*] {
-                ::moldloft_registry::check_evaluated(&field, &args[at])
-                    .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(at)))?;
-            }
-        )
-    };
-    let count = infos.len();
-    let (extra, finish) = if relabelled {
-        let extra = quote!(, ::moldloft_registry::export::RELABEL_FIELD);
-        let finish = quote!(
             let value = ::moldloft_registry::Build::build(this, &context)?;
-            ::moldloft_registry::relabelled(value, &args[#count])
+            ::moldloft_registry::relabelled(value, &args[#last])
                 .map_err(|fault| fault.in_field(Self::RELABEL))
-        );
-        constants.push(syn::Ident::new("RELABEL", ident.span()));
-        (extra, finish)
-    } else {
-        (quote!(), quote!(::moldloft_registry::Build::build(this, &context)))
-    };
-
-    let wrap = if options.shape {
-        let make = match quote!(#class).to_string().as_str() {
-            "Curve" => quote!(::moldloft_registry::Value::Curve(
-                ::moldloft_registry::CurveRef::new(self, context.nesting)
-            )),
-            "Surface" => quote!(::moldloft_registry::Value::Surface(
-                ::moldloft_registry::SurfaceRef::new(self, context.nesting)
-            )),
-            "Solid" => quote!(::moldloft_registry::Value::Solid(
-                ::moldloft_registry::SolidRef::new(self, context.nesting)
-            )),
-            _ => {
-                let message = "`shape` is for Curve, Surface and Solid";
-                return Err(syn::Error::new_spanned(&class, message));
-            }
-        };
-        quote!(
-            impl<T: ::moldloft_registry::export::Real> ::moldloft_registry::Build<T> for #ident<T> {
-                fn build(
-                    self,
-                    context: &::moldloft_registry::Context,
-                ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::CallError> {
-                    Ok(#make)
-                }
-            }
         )
     } else {
-        quote!()
+        quote!(::moldloft_registry::Build::build(this, &context))
     };
-
-    let rev = match options.forward {
-        true => quote!(None),
-        false => quote!(::moldloft_registry::taped!(
-            #ident::<::moldloft_registry::export::Rev>::call
-        )),
-    };
+    let row = row(input, &options, &arguments.infos, relabelled)?;
+    let wrap = if options.shape { shape_build(ident, class)? } else { quote!() };
+    let Arguments { reads, constants, .. } = &arguments;
     let positions = 0..constants.len();
     let (generics, parameters, conditions) = input.generics.split_for_impl();
     Ok(quote!(
@@ -261,27 +116,213 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
 
         impl ::moldloft_registry::export::StaticRow for #ident<f64> {
             fn row() -> ::moldloft_registry::Row {
-                ::moldloft_registry::Row {
-                    name: #name.into(),
-                    doc: #doc.into(),
-                    class: ::moldloft_registry::Class::#class,
-                    fields: ::std::vec![#(#infos),* #extra].into(),
-                    kind: #is_kind,
-                    columns: #columns,
-                    example: #example.into(),
-                    sweep: #sweep,
-                    cheap: #cheap,
-                    role: #role,
-                    body: ::moldloft_registry::Implementation::Native {
-                        plain: #ident::<f64>::call,
-                        dual: #ident::<::moldloft_registry::export::Dual4>::call,
-                        rev: #rev,
-                    },
-                }
+                #row
             }
         }
 
         #wrap
+    ))
+}
+
+fn named_fields(input: &DeriveInput) -> syn::Result<&syn::FieldsNamed> {
+    let Data::Struct(data) = &input.data else {
+        return Err(syn::Error::new_spanned(&input.ident, "a kind is a struct"));
+    };
+    match &data.fields {
+        Fields::Named(fields) => Ok(fields),
+        _ => Err(syn::Error::new_spanned(&input.ident, "a kind has named fields")),
+    }
+}
+
+/// The fields of a kind as arguments.
+#[derive(Default)]
+struct Arguments {
+    /// The entry of each in the row.
+    infos: Vec<Tokens>,
+    /// The fields of the struct, read from values.
+    reads: Vec<Tokens>,
+    /// The constants that name them in faults.
+    constants: Vec<syn::Ident>,
+    /// Those whose count or range may only be known when an object was evaluated.
+    checks: Vec<usize>,
+}
+
+impl Arguments {
+    fn of(fields: &syn::FieldsNamed) -> syn::Result<Self> {
+        let mut all = Self::default();
+        // A kind without arguments says by a `PhantomData` which scalar it is of.
+        let (markers, arguments): (Vec<_>, Vec<_>) =
+            fields.named.iter().partition(|field| is_marker(&field.ty));
+        for (k, field) in arguments.into_iter().enumerate() {
+            let ident = field.ident.as_ref().expect("named fields have names");
+            let ty = &field.ty;
+            let options = field_options(&field.attrs)?;
+            if options.min.is_some() || options.max.is_some() || options.min_items.is_some() {
+                all.checks.push(k);
+            }
+            all.infos.push(field_info(field, ident, &options)?);
+            all.reads.push(quote!(
+                #ident: <#ty as ::moldloft_registry::FromValue<T>>::from_value(&args[#k])
+                    .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(#k)))?
+            ));
+            all.constants.push(constant(ident));
+        }
+        all.reads.extend(markers.iter().map(|field| {
+            let ident = &field.ident;
+            quote!(#ident: ::core::marker::PhantomData)
+        }));
+        Ok(all)
+    }
+
+    /// The checks of evaluated arguments.
+    fn check(&self) -> Tokens {
+        if self.checks.is_empty() {
+            return quote!();
+        }
+        let positions = &self.checks;
+        let fields = positions.iter().map(|&k| &self.infos[k]);
+        quote!(
+            for (at, field) in [#((#positions, #fields)),*] {
+                ::moldloft_registry::check_evaluated(&field, &args[at])
+                    .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(at)))?;
+            }
+        )
+    }
+}
+
+/// The entry of a field in the row. It is filled for one scalar; classes do not depend on it.
+fn field_info(
+    field: &syn::Field,
+    ident: &syn::Ident,
+    options: &FieldOptions,
+) -> syn::Result<Tokens> {
+    let ty = &field.ty;
+    let help = doc_text(&field.attrs);
+    if help.is_empty() {
+        return Err(syn::Error::new_spanned(ident, "a field needs a doc comment"));
+    }
+    let name = LitStr::new(&ident.unraw().to_string(), ident.span());
+    let default = match &options.default {
+        Some(default) => quote!(Some(#default)),
+        None => quote!(if <#ty as ::moldloft_registry::FromValue<S>>::OPTIONAL {
+            Some(::moldloft_registry::DefaultValue::Unset)
+        } else {
+            None
+        }),
+    };
+    let bound = |e: &Option<Expr>| match e {
+        Some(e) => quote!(Some((#e) as f64)),
+        None => quote!(None),
+    };
+    let (min, max) = (bound(&options.min), bound(&options.max));
+    let min_items = options.min_items.as_ref().map_or(quote!(0), |e| quote!(#e));
+    let variadic = options.variadic;
+    let unit = if options.angle { quote!(Angle) } else { quote!(None) };
+    Ok(quote!({
+        type T = f64;
+        type S = f64;
+        let _ = ::core::marker::PhantomData::<(T, S)>;
+        ::moldloft_registry::FieldSpec {
+            name: #name,
+            help: #help,
+            class: <#ty as ::moldloft_registry::FromValue<S>>::CLASS,
+            many: <#ty as ::moldloft_registry::FromValue<S>>::MANY,
+            default: #default,
+            unit: ::moldloft_registry::Unit::#unit,
+            min: #min,
+            max: #max,
+            min_items: #min_items,
+            variadic: #variadic,
+        }
+    }))
+}
+
+/// The row of a kind, with a last argument `relabel` if its result takes one.
+fn row(
+    input: &DeriveInput,
+    options: &KindOptions,
+    infos: &[Tokens],
+    relabelled: bool,
+) -> syn::Result<Tokens> {
+    let ident = &input.ident;
+    let doc = doc_text(&input.attrs);
+    if doc.is_empty() {
+        return Err(syn::Error::new_spanned(ident, "a kind needs a doc comment"));
+    }
+    let Some(example) = &options.example else {
+        return Err(syn::Error::new_spanned(ident, "a kind needs `example = ...`"));
+    };
+    let columns = match &options.columns {
+        Some(columns) => quote!(Some(#columns)),
+        None => quote!(None),
+    };
+    let name = match &options.name {
+        Some(name) => quote!(#name),
+        None => {
+            let text = LitStr::new(&ident.to_string(), ident.span());
+            quote!(#text)
+        }
+    };
+    let sweep = match &options.sweep {
+        Some(fields) => quote!(Some([#(Self::#fields),*])),
+        None => quote!(None),
+    };
+    let role = match &options.role {
+        Some(role) => quote!(::moldloft_registry::Role::#role),
+        None => quote!(::moldloft_registry::Role::Plain),
+    };
+    let rev = match options.forward {
+        true => quote!(None),
+        false => quote!(::moldloft_registry::taped!(
+            #ident::<::moldloft_registry::export::Rev>::call
+        )),
+    };
+    let extra =
+        if relabelled { quote!(, ::moldloft_registry::export::RELABEL_FIELD) } else { quote!() };
+    let (class, cheap, is_kind) = (&options.class, options.cheap, !options.function);
+    Ok(quote!(
+        ::moldloft_registry::Row {
+            name: #name.into(),
+            doc: #doc.into(),
+            class: ::moldloft_registry::Class::#class,
+            fields: ::std::vec![#(#infos),* #extra].into(),
+            kind: #is_kind,
+            columns: #columns,
+            example: #example.into(),
+            sweep: #sweep,
+            cheap: #cheap,
+            role: #role,
+            body: ::moldloft_registry::Implementation::Native {
+                plain: #ident::<f64>::call,
+                dual: #ident::<::moldloft_registry::export::Dual4>::call,
+                rev: #rev,
+            },
+        }
+    ))
+}
+
+/// `Build` of a struct that is itself the curve, surface or solid.
+fn shape_build(ident: &syn::Ident, class: &Expr) -> syn::Result<Tokens> {
+    let reference = match quote!(#class).to_string().as_str() {
+        "Curve" => quote!(CurveRef),
+        "Surface" => quote!(SurfaceRef),
+        "Solid" => quote!(SolidRef),
+        _ => {
+            let message = "`shape` is for Curve, Surface and Solid";
+            return Err(syn::Error::new_spanned(class, message));
+        }
+    };
+    Ok(quote!(
+        impl<T: ::moldloft_registry::export::Real> ::moldloft_registry::Build<T> for #ident<T> {
+            fn build(
+                self,
+                context: &::moldloft_registry::Context,
+            ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::CallError> {
+                Ok(::moldloft_registry::Value::#class(
+                    ::moldloft_registry::#reference::new(self, context.nesting)
+                ))
+            }
+        }
     ))
 }
 

@@ -30,6 +30,8 @@ pub enum Class {
     Ring,
     /// A parametric curve.
     Curve,
+    /// A straight line, from the end of a curve to the other: an axis.
+    Axis,
     /// A curve on a surface.
     Snake,
     /// A parametric surface.
@@ -73,7 +75,7 @@ pub enum Class {
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 31] = [
+    pub const ALL: [Class; 32] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -86,6 +88,7 @@ impl Class {
         Class::Magnet,
         Class::Ring,
         Class::Curve,
+        Class::Axis,
         Class::Snake,
         Class::Surface,
         Class::Solid,
@@ -122,6 +125,7 @@ impl Class {
             Class::Magnet => "magnet",
             Class::Ring => "ring",
             Class::Curve => "curve",
+            Class::Axis => "line",
             Class::Snake => "snake",
             Class::Surface => "surface",
             Class::Solid => "solid",
@@ -159,6 +163,7 @@ impl Class {
             Class::Magnet => "a magnet (a point on a surface)",
             Class::Ring => "a ring (a point on a snake)",
             Class::Curve => "a curve",
+            Class::Axis => "a line",
             Class::Snake => "a snake (a curve on a surface)",
             Class::Surface => "a surface",
             Class::Solid => "a solid",
@@ -193,6 +198,7 @@ impl Class {
             Point => matches!(found, Bead | Magnet | Ring | Vector),
             Bead | Magnet => found == Ring,
             Curve => found == Snake,
+            Axis => matches!(found, Curve | Snake),
             Side => matches!(found, Snake | Magnet | Ring),
             Along => matches!(found, Curve | Snake | Bead | Ring),
             AlongSnake => matches!(found, Snake | Ring),

@@ -302,11 +302,11 @@ fn axis<T: Real>(curve: &CurveRef<T>) -> Result<Axis<T>, CallError> {
 }
 
 impl<T: Real> FromValue<T> for Axis<T> {
-    const CLASS: Class = Class::Curve;
+    const CLASS: Class = Class::Axis;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(c) => axis(c),
-            other => wrong(Class::Curve, other),
+            other => wrong(Class::Axis, other),
         }
     }
 }

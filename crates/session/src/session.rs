@@ -217,16 +217,12 @@ impl Session {
             Ask::Open | Ask::Sync | Ask::Close | Ask::Ping => {}
             Ask::Text { text } => self.take_text(text),
             Ask::Splice { changes } => {
-                let mut text = self.text.clone();
-                for change in &changes {
-                    text = changed(&text, change)?;
-                }
-                self.take_text(text);
+                let start = self.text.clone();
+                self.take_text(changes.iter().try_fold(start, |text, c| changed(&text, c))?);
             }
             Ask::Set { values } => self.set(values)?,
             Ask::Commit => self.commit(frame),
             Ask::Reset => {
-                self.drag = None;
                 self.kept.clear();
                 self.take_text(self.text.clone());
             }
@@ -237,34 +233,11 @@ impl Session {
             Ask::DragBegin { object, at } => self.drag_begin(&object, &at, frame)?,
             Ask::DragTo { target, basis, names, grain } => {
                 let basis: Vec<Vec3> = basis.into_iter().map(Vec3::from).collect();
-                let mut drag = self.drag.take().ok_or("nothing is dragged".to_string())?;
-                let reached = drag.to(&mut self.document, target.into(), &basis, &names, grain);
-                self.drag = Some(drag);
-                self.rev += 1;
-                let reached = reached?;
-                frame.put("reached", reached.place.to_array().to_vec());
-                frame.put("left", facts::number(reached.left));
-                let values = reached.values.into_iter().map(|(n, x)| (n, facts::number(x)));
-                frame.put("values", Value::Object(values.collect()));
-                frame.put("ended", reached.ended);
+                self.drag_to(target.into(), &basis, &names, grain, frame)?;
             }
             Ask::SolveFor { targets, by } => self.solve_for(targets, by, frame)?,
-            Ask::DragEnd { commit } => {
-                if let Some(drag) = self.drag.take() {
-                    let changed = drag.changed(&self.document);
-                    // Unchanged numbers keep their spelling.
-                    self.take_text(self.text.clone());
-                    if commit && !changed.is_empty() {
-                        self.set(changed.into_iter().collect())?;
-                    }
-                    self.commit(frame);
-                }
-            }
-            Ask::Inspect { name, by } => {
-                let by = by.as_deref();
-                let found = facts::inspected(&mut self.document, &self.text, &name, by);
-                frame.put("object", found.ok_or(format!("there is no object `{name}`"))?);
-            }
+            Ask::DragEnd { commit } => self.drag_end(commit, frame)?,
+            Ask::Inspect { name, by } => self.inspect(&name, by.as_deref(), frame)?,
             Ask::Watch { expressions } => {
                 self.tabs.entry(tab).or_default().watched = expressions;
                 self.measure(tab, frame);
@@ -275,26 +248,13 @@ impl Session {
                 frame.put("values", values);
             }
             Ask::Show { contours, revealed } => {
-                if let Some(contours) = contours {
-                    self.scene.contours = contours;
-                }
+                self.scene.contours = contours.unwrap_or(self.scene.contours);
                 if let Some(revealed) = revealed {
                     self.scene.revealed = revealed.into_iter().collect();
                 }
                 self.drawn = None;
             }
-            Ask::Field { field: name, by } => {
-                let items = self.scene.items();
-                let found = field(&mut self.document, items, &name, by.as_deref())?;
-                let mut parts = Vec::new();
-                for patch in found {
-                    let mut part = frame.floats("value", &patch.values);
-                    part["key"] = json!([patch.item.kind as u8, &*patch.item.name]);
-                    part["components"] = patch.components.into();
-                    parts.push(part);
-                }
-                frame.put("field", parts);
-            }
+            Ask::Field { field, by } => self.put_field(&field, by.as_deref(), frame)?,
             Ask::Combs { names } => self.combs(&names, frame),
             Ask::Blocks { block, axis, index } => {
                 let plane = block.map(|block| GridPlane { block, axis, index });
@@ -310,53 +270,32 @@ impl Session {
             }
             Ask::Deviation => self.overlays.put(&mut self.document, frame, false),
             Ask::SectionAreas { count } => self.section_areas(count, frame)?,
-            Ask::LinesPlan { title } => {
-                let sheet = moldloft_export::lines_sheet(&mut self.document, &title)?;
-                let part = frame.bytes("file", &sheet);
-                frame.put("sheet", part);
-            }
+            Ask::LinesPlan { title } => self.lines_plan(&title, frame)?,
             Ask::Mesh => self.mesh(frame)?,
-            Ask::Hydrostatics => {
-                let options = self.document.hydrostatic_options();
-                let figures = self.document.hydrostatics(&options)?.figures();
-                let rows = figures.into_iter().map(|(name, x)| json!([name, facts::number(x)]));
-                frame.put("figures", rows.collect::<Vec<_>>());
-            }
+            Ask::Hydrostatics => self.hydrostatics(frame)?,
             Ask::Export { format, stem } => self.export(&format, &stem, frame)?,
             Ask::Formats => {
                 let one = |f: &moldloft_export::Format| json!([f.name, f.about]);
                 frame.put("formats", FORMATS.iter().map(one).collect::<Vec<_>>());
             }
-            Ask::Complete { offset } => {
-                let found = self.document.completions(byte(&self.text, offset) as u32);
-                let one =
-                    |c: moldloft_document::Completion| json!([c.word, word(c.kind), c.detail]);
-                frame.put("completions", found.into_iter().map(one).collect::<Vec<_>>());
-            }
+            Ask::Complete { offset } => self.complete(offset, frame),
             Ask::Hover { offset } => {
                 if let Some((said, span)) = self.document.hover(byte(&self.text, offset) as u32) {
                     frame.put("markdown", said);
-                    frame.put("place", facts::place(&self.document, &self.text, span));
+                    self.put_place(span, frame);
                 }
             }
             Ask::Definition { offset } => {
                 if let Some(span) = self.document.definition(byte(&self.text, offset) as u32) {
-                    frame.put("place", facts::place(&self.document, &self.text, span));
+                    self.put_place(span, frame);
                 }
             }
             Ask::Locate { name } => {
                 if let Some(span) = self.document.declaration(&name) {
-                    frame.put("place", facts::place(&self.document, &self.text, span));
+                    self.put_place(span, frame);
                 }
             }
-            Ask::Rename { offset, new } => {
-                let spans = self.document.renamed(byte(&self.text, offset) as u32, &new)?;
-                let edit = |s: moldloft_diag::Span| {
-                    let at = |b: u32| unit(&self.text, b as usize);
-                    json!({"from": at(s.start), "to": at(s.end), "insert": new})
-                };
-                frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
-            }
+            Ask::Rename { offset, new } => self.rename(offset, &new, frame)?,
             Ask::Kinds => frame.put("kinds", facts::kinds(self.document.registry())),
             Ask::Add { statement } => self.rewrite(|d| d.add(&statement), frame)?,
             Ask::Delete { name } => self.rewrite(|d| d.delete(&name).map(drop), frame)?,
@@ -367,23 +306,116 @@ impl Session {
             Ask::RenameObject { name, new } => {
                 self.rewrite(|d| d.rename(&name, &new).map(drop), frame)?;
             }
-            Ask::Format => {
-                let formatted = moldloft_syntax::sdl::format(&self.text);
-                let formatted = formatted
-                    .map_err(|_| "the text has errors and is left as it is".to_string())?;
-                self.put_edits(frame, &formatted);
-            }
-            Ask::Words => {
-                let mut words: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-                for c in self.document.completions_of("") {
-                    if !matches!(c.kind, CompletionKind::Variable | CompletionKind::Object) {
-                        words.entry(word(c.kind)).or_default().push(c.word);
-                    }
-                }
-                frame.put("words", json!(words));
-            }
+            Ask::Format => self.format(frame)?,
+            Ask::Words => self.words(frame),
         }
         Ok(())
+    }
+
+    fn drag_to(
+        &mut self,
+        target: Vec3,
+        basis: &[Vec3],
+        names: &[String],
+        grain: f64,
+        frame: &mut ReplyFrame,
+    ) -> Answer {
+        let mut drag = self.drag.take().ok_or("nothing is dragged".to_string())?;
+        let reached = drag.to(&mut self.document, target, basis, names, grain);
+        self.drag = Some(drag);
+        self.rev += 1;
+        let reached = reached?;
+        frame.put("reached", reached.place.to_array().to_vec());
+        frame.put("left", facts::number(reached.left));
+        let values = reached.values.into_iter().map(|(n, x)| (n, facts::number(x)));
+        frame.put("values", Value::Object(values.collect()));
+        frame.put("ended", reached.ended);
+        Ok(())
+    }
+
+    fn drag_end(&mut self, commit: bool, frame: &mut ReplyFrame) -> Answer {
+        let Some(drag) = self.drag.take() else { return Ok(()) };
+        let changed = drag.changed(&self.document);
+        // Unchanged numbers keep their spelling.
+        self.take_text(self.text.clone());
+        if commit && !changed.is_empty() {
+            self.set(changed.into_iter().collect())?;
+        }
+        self.commit(frame);
+        Ok(())
+    }
+
+    fn inspect(&mut self, name: &str, by: Option<&str>, frame: &mut ReplyFrame) -> Answer {
+        let found = facts::inspected(&mut self.document, &self.text, name, by);
+        frame.put("object", found.ok_or(format!("there is no object `{name}`"))?);
+        Ok(())
+    }
+
+    fn put_field(&mut self, name: &str, by: Option<&str>, frame: &mut ReplyFrame) -> Answer {
+        let found = field(&mut self.document, self.scene.items(), name, by)?;
+        let mut parts = Vec::new();
+        for patch in found {
+            let mut part = frame.floats("value", &patch.values);
+            part["key"] = json!([patch.item.kind as u8, &*patch.item.name]);
+            part["components"] = patch.components.into();
+            parts.push(part);
+        }
+        frame.put("field", parts);
+        Ok(())
+    }
+
+    fn hydrostatics(&mut self, frame: &mut ReplyFrame) -> Answer {
+        let options = self.document.hydrostatic_options();
+        let figures = self.document.hydrostatics(&options)?.figures();
+        let rows = figures.into_iter().map(|(name, x)| json!([name, facts::number(x)]));
+        frame.put("figures", rows.collect::<Vec<_>>());
+        Ok(())
+    }
+
+    fn lines_plan(&mut self, title: &str, frame: &mut ReplyFrame) -> Answer {
+        let sheet = moldloft_export::lines_sheet(&mut self.document, title)?;
+        let part = frame.bytes("file", &sheet);
+        frame.put("sheet", part);
+        Ok(())
+    }
+
+    fn complete(&mut self, offset: usize, frame: &mut ReplyFrame) {
+        let found = self.document.completions(byte(&self.text, offset) as u32);
+        let one = |c: moldloft_document::Completion| json!([c.word, word(c.kind), c.detail]);
+        frame.put("completions", found.into_iter().map(one).collect::<Vec<_>>());
+    }
+
+    fn put_place(&self, span: moldloft_diag::Span, frame: &mut ReplyFrame) {
+        frame.put("place", facts::place(&self.document, &self.text, span));
+    }
+
+    /// The edits that give the name at an offset another spelling everywhere.
+    fn rename(&mut self, offset: usize, new: &str, frame: &mut ReplyFrame) -> Answer {
+        let spans = self.document.renamed(byte(&self.text, offset) as u32, new)?;
+        let edit = |s: moldloft_diag::Span| {
+            let at = |b: u32| unit(&self.text, b as usize);
+            json!({"from": at(s.start), "to": at(s.end), "insert": new})
+        };
+        frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
+        Ok(())
+    }
+
+    fn format(&mut self, frame: &mut ReplyFrame) -> Answer {
+        let formatted = moldloft_syntax::sdl::format(&self.text)
+            .map_err(|_| "the text has errors and is left as it is".to_string())?;
+        self.put_edits(frame, &formatted);
+        Ok(())
+    }
+
+    /// The words of the language by their sort.
+    fn words(&mut self, frame: &mut ReplyFrame) {
+        let mut words: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for c in self.document.completions_of("") {
+            if !matches!(c.kind, CompletionKind::Variable | CompletionKind::Object) {
+                words.entry(word(c.kind)).or_default().push(c.word);
+            }
+        }
+        frame.put("words", json!(words));
     }
 
     /// The watched numbers. The page requests them after the scene, which never waits for

@@ -18,50 +18,35 @@ True
 """
 
 from moldloft.implicit.answers import Attributes, Distance, Hit, Lamp, Leaf, Mass, Nearest, Sun
-from moldloft.implicit.blends import (
-    Blend,
-    fillet,
-    liming,
-    rounded,
-    setback,
-    transition,
-    zhang,
-)
 from moldloft.implicit.divisions import Division, DivisionBox
 from moldloft.implicit.facets import Contour, FacetPatch, Facets, Sheet, Unresolved
 from moldloft.implicit.fields import (
     Field,
     atan2,
     axes,
-    cone,
     cos,
-    cyclide,
-    cylinder,
     exp,
     function,
     ln,
     maximum,
     minimum,
-    plane,
     read_fidget,
     read_libfive,
     s_sqrt,
     sign,
     sin,
-    sphere,
     sqrt,
     tan,
-    torus,
     twist,
 )
-from moldloft.implicit.hulls import convex_hull, intersection, minkowski_sum, union
-from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
+from moldloft.implicit.hulls import intersection, union
+from moldloft.implicit.primitives import point, segment
+from moldloft.implicit.rows import *  # noqa: F403
+from moldloft.implicit.rows import __all__ as _functions
 from moldloft.implicit.sets import Set, load, loads
-from moldloft.implicit.smooth import smooth_difference, smooth_intersection, smooth_union
 
 __all__ = [
     "Attributes",
-    "Blend",
     "Contour",
     "Distance",
     "Division",
@@ -80,45 +65,25 @@ __all__ = [
     "Unresolved",
     "atan2",
     "axes",
-    "cone",
-    "convex_hull",
     "cos",
-    "cuboid",
-    "cyclide",
-    "cylinder",
-    "everything",
     "exp",
-    "fillet",
     "function",
     "intersection",
-    "liming",
     "ln",
     "load",
     "loads",
     "maximum",
     "minimum",
-    "minkowski_sum",
-    "nothing",
-    "plane",
     "point",
     "read_fidget",
     "read_libfive",
-    "rounded",
     "s_sqrt",
     "segment",
-    "setback",
     "sign",
     "sin",
-    "smooth_difference",
-    "smooth_intersection",
-    "smooth_union",
-    "sphere",
     "sqrt",
     "tan",
-    "tetrahedron",
-    "torus",
-    "transition",
     "twist",
     "union",
-    "zhang",
+    *_functions,
 ]

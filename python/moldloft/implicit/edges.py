@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from moldloft import _core
 from moldloft._core import Set as Core
 from moldloft.arguments import explain
 from moldloft.implicit.fields import Field
@@ -51,7 +52,7 @@ class Edged:
         >>> round(im.cuboid((0, 0, 0), (1, 1, 1)).offset(0.1).mass().volume, 9)
         1.728
         """
-        return type(self)(self._core.offset(float(distance)))
+        return type(self)(_core.call_row("set_offset", [self._core, float(distance)]))
 
     def shell(self, thickness: float) -> Self:
         """A wall of given thickness inside the surface.
@@ -78,7 +79,7 @@ class Edged:
         >>> ball.shell(0.1).member([(0.95, 0, 0), (0.5, 0, 0)]).tolist()
         [-1, 1]
         """
-        return type(self)(self._core.shell(float(thickness)))
+        return type(self)(_core.call_row("set_shell", [self._core, float(thickness)]))
 
     def chamfered(self, width: float, *, edges: Sequence[Sequence[str]] | None = None) -> Self:
         """The set with its convex edges chamfered, of setback ``width`` on both faces.

@@ -332,7 +332,8 @@ def _field(x: object) -> Field | None:
     return Field(_core.Field.real(float(x)))
 
 
-def _required(x: object) -> Field:
+def required(x: object) -> Field:
+    """A field, or a number as a constant one."""
     field = _field(x)
     if field is None:
         raise TypeError(f"expected a field or a number, found {type(x).__name__}")
@@ -347,148 +348,11 @@ def axes() -> tuple[Field, Field, Field]:
     tuple of Field
         Three coordinates, in model units.
     """
-    return (
-        plane((1, 0, 0), (0, 0, 0)),
-        plane((0, 1, 0), (0, 0, 0)),
-        plane((0, 0, 1), (0, 0, 0)),
+    x, y, z = (
+        Field(_core.call_row("plane", [normal, (0, 0, 0)]))
+        for normal in ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     )
-
-
-def plane(normal: Triple, point: Triple) -> Field:
-    """The half-space behind a plane: the distance from it, positive on the side of the normal.
-
-    Parameters
-    ----------
-    normal
-        A normal of any length, ``(3,)``; it points from solid to air.
-    point
-        A point of the plane, ``(3,)``.
-
-    Returns
-    -------
-    Field
-        In model units.
-    """
-    return Field(_core.Field.plane(triple(normal, "normal"), triple(point, "point")))
-
-
-def sphere(centre: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The ball ``|X - centre|^2 - radius^2``; with ``distance`` the distance from its surface.
-
-    Parameters
-    ----------
-    centre
-        The centre, ``(3,)``.
-    radius
-        Radius, in model units.
-    distance
-        Give the distance instead of the polynomial.
-
-    Returns
-    -------
-    Field
-        Negative inside.
-    """
-    return Field(_core.Field.sphere(triple(centre, "centre"), float(radius), distance))
-
-
-def cylinder(point: Triple, direction: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The infinite cylinder about a line; with ``distance`` the distance from its surface.
-
-    Parameters
-    ----------
-    point
-        A point of the axis, ``(3,)``.
-    direction
-        A direction of any length, ``(3,)``.
-    radius
-        Radius, in model units.
-    distance
-        Give the distance instead of the polynomial.
-
-    Returns
-    -------
-    Field
-        Negative inside.
-    """
-    p, d = triple(point, "point"), triple(direction, "direction")
-    return Field(_core.Field.cylinder(p, d, float(radius), distance))
-
-
-def cone(apex: Triple, direction: Triple, angle: float) -> Field:
-    """The double cone with a full angle, in radians, at its apex.
-
-    Parameters
-    ----------
-    apex
-        The apex, ``(3,)``.
-    direction
-        A direction of any length, ``(3,)``.
-    angle
-        Full angle at the apex, radians, below pi.
-
-    Returns
-    -------
-    Field
-        Negative inside.
-    """
-    return Field(
-        _core.Field.cone(triple(apex, "apex"), triple(direction, "direction"), float(angle))
-    )
-
-
-def torus(centre: Triple, direction: Triple, major: float, minor: float) -> Field:
-    """The torus about an axis.
-
-    Parameters
-    ----------
-    centre
-        The centre, ``(3,)``.
-    direction
-        A direction of any length, ``(3,)``.
-    major
-        Radius from the axis to the centre of the tube.
-    minor
-        Radius of the tube.
-
-    Returns
-    -------
-    Field
-        Negative inside the tube.
-    """
-    p, d = triple(centre, "centre"), triple(direction, "direction")
-    return Field(_core.Field.torus(p, d, float(major), float(minor)))
-
-
-def cyclide(
-    centre: Triple, direction: Triple, along: Triple, major: float, minor: float, change: float
-) -> Field:
-    """The Dupin cyclide: a ring whose tube is thinner on one side.
-
-    Its radius is ``minor - change`` towards ``along`` and ``minor + change`` opposite.
-
-    Parameters
-    ----------
-    centre
-        The centre, ``(3,)``.
-    direction
-        A direction of any length, ``(3,)``.
-    along
-        Direction in which the tube gets thinner, ``(3,)``.
-    major
-        Radius from the axis to the centre of the tube.
-    minor
-        Radius of the tube.
-    change
-        Half the difference of the greatest and the least radius of the tube.
-
-    Returns
-    -------
-    Field
-        Negative inside the ring.
-    """
-    p, d, a = triple(centre, "centre"), triple(direction, "direction"), triple(along, "along")
-    return Field(_core.Field.cyclide(p, d, a, float(major), float(minor), float(change)))
+    return x, y, z
 
 
 def function(
@@ -584,7 +448,7 @@ def read_libfive(text: str) -> Field:
 
 
 def _unary(name: str, x: Field) -> Field:
-    return Field(_required(x)._core.unary(name))
+    return Field(required(x)._core.unary(name))
 
 
 def sin(x: Field) -> Field:
@@ -753,7 +617,7 @@ def minimum(a: Field | float, b: Field | float) -> Field:
     Field
         Solid where one is.
     """
-    return Field(_required(a)._core.binary("min", _required(b)._core))
+    return Field(required(a)._core.binary("min", required(b)._core))
 
 
 def maximum(a: Field | float, b: Field | float) -> Field:
@@ -771,7 +635,7 @@ def maximum(a: Field | float, b: Field | float) -> Field:
     Field
         Solid where both are.
     """
-    return Field(_required(a)._core.binary("max", _required(b)._core))
+    return Field(required(a)._core.binary("max", required(b)._core))
 
 
 def atan2(y: Field | float, x: Field | float) -> Field:
@@ -789,7 +653,7 @@ def atan2(y: Field | float, x: Field | float) -> Field:
     Field
         In radians.
     """
-    return Field(_required(y)._core.binary("atan2", _required(x)._core))
+    return Field(required(y)._core.binary("atan2", required(x)._core))
 
 
 explain(globals())

@@ -1,4 +1,4 @@
-"""Sets other than solid sides of fields: everything, nothing, boxes, tetrahedra, wires, points."""
+"""Sets without volume: wires and points."""
 
 from __future__ import annotations
 
@@ -13,47 +13,7 @@ from moldloft.implicit.sets import Set
 if TYPE_CHECKING:
     Triple = Sequence[float]
 
-__all__ = ["cuboid", "everything", "nothing", "point", "segment", "tetrahedron"]
-
-
-def everything() -> Set:
-    """All of space.
-
-    Returns
-    -------
-    Set
-        Neutral element of ``&``.
-    """
-    return Set(_core.Set.everything())
-
-
-def nothing() -> Set:
-    """The empty set.
-
-    Returns
-    -------
-    Set
-        Neutral element of ``|``.
-    """
-    return Set(_core.Set.nothing())
-
-
-def cuboid(low: Triple, high: Triple) -> Set:
-    """The box between two corners.
-
-    Parameters
-    ----------
-    low
-        The corner with the least coordinates, ``(3,)``.
-    high
-        The corner with the greatest coordinates, ``(3,)``.
-
-    Returns
-    -------
-    Set
-        A solid.
-    """
-    return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
+__all__ = ["point", "segment"]
 
 
 def segment(start: Triple, end: Triple) -> Set:
@@ -101,28 +61,6 @@ def point(at: Triple) -> Set:
     [[1.0, 2.0, 3.0]]
     """
     return Set(_core.Set.point(triple(at, "point")))
-
-
-def tetrahedron(a: Triple, b: Triple, c: Triple, d: Triple) -> Set:
-    """The tetrahedron of four points, in any order.
-
-    Parameters
-    ----------
-    a
-        A corner, ``(3,)``.
-    b
-        A corner.
-    c
-        A corner.
-    d
-        A corner.
-
-    Returns
-    -------
-    Set
-        A solid.
-    """
-    return Set(_core.Set.tetrahedron([triple(p, "corner") for p in (a, b, c, d)]))
 
 
 explain(globals())

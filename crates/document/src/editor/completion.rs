@@ -137,8 +137,8 @@ impl Document {
         for row in &INSERTED_FILES {
             add(row.name, CompletionKind::Kind, row.signature.into());
         }
-        for builtin in &BUILTINS {
-            add(builtin.name, CompletionKind::Function, builtin.signature.into());
+        for builtin in BUILTINS {
+            add(builtin.name, CompletionKind::Function, builtin.signature());
         }
         for keyword in moldloft_syntax::sdl::keywords() {
             add(keyword, CompletionKind::Keyword, String::new());
@@ -174,7 +174,7 @@ impl Document {
                 .map(|word| Completion {
                     word: word.into(),
                     kind: CompletionKind::Word,
-                    detail: builtin.signature.into(),
+                    detail: builtin.signature(),
                 })
                 .collect();
         }

@@ -148,7 +148,7 @@ impl Document {
             return Some((text, mention.span));
         }
         let builtin = BUILTINS.iter().find(|b| b.name == word)?;
-        let text = format!("```sdl\n{}\n```\n{}", builtin.signature, builtin.doc);
+        let text = format!("```sdl\n{}\n```\n{}", builtin.signature(), builtin.doc);
         Some((text, mention.span))
     }
 

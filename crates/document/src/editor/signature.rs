@@ -79,16 +79,10 @@ impl Document {
             return Some((signature(m, &routine), doc, arguments.collect()));
         }
         let builtin = BUILTINS.iter().find(|b| b.name == callee)?;
-        let inside = builtin.signature.split_once('(')?.1.trim_end_matches(')');
-        let names = inside.split(',').map(str::trim).filter(|n| !n.is_empty() && *n != "...");
-        let word = |n: &str| n.split([' ', '=', '?', '[']).next().unwrap_or(n).to_string();
-        let meaning = |n: &str| {
-            let of = n.trim_end_matches(|c: char| c.is_ascii_digit());
-            let said = builtin.help.iter().find(|(name, ..)| name.trim_end_matches('?') == of);
-            said.map_or_else(String::new, |(_, _, help)| (*help).into())
-        };
-        let arguments = names.map(|n| (word(n), meaning(&word(n)))).collect();
-        Some((builtin.signature.into(), builtin.doc.into(), arguments))
+        let arguments = builtin.help.iter();
+        let arguments =
+            arguments.map(|(name, _, help)| (name.trim_end_matches('?').into(), (*help).into()));
+        Some((builtin.signature(), builtin.doc.into(), arguments.collect()))
     }
 
     /// Names of positional arguments between two byte offsets, where the value does not explain

@@ -532,7 +532,7 @@ fn examples_of_the_libraries_run() {
 
 #[test]
 fn examples_of_built_in_functions_run() {
-    for builtin in &moldloft_lang::BUILTINS {
+    for builtin in moldloft_lang::BUILTINS {
         let document = run(builtin.example);
         assert!(builtin.example.contains(&format!("{}(", builtin.name)), "{}", builtin.name);
         let found = reported(&document);

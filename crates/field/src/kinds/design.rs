@@ -207,7 +207,7 @@ impl<T: Real> Build<T> for SetShell<T> {
 )]
 pub struct ConvexHull<T: Real> {
     /// The sets.
-    #[field(min_items = 1)]
+    #[field(variadic, min_items = 1)]
     sets: Vec<SetArgument<T>>,
 }
 
@@ -349,6 +349,7 @@ impl<T: Real> Build<T> for ChamferEdges<T> {
 )]
 pub struct UnionOf<T: Real> {
     /// The sets.
+    #[field(variadic)]
     sets: Vec<SetArgument<T>>,
 }
 
@@ -369,6 +370,7 @@ impl<T: Real> Build<T> for UnionOf<T> {
 )]
 pub struct IntersectionOf<T: Real> {
     /// The sets.
+    #[field(variadic)]
     sets: Vec<SetArgument<T>>,
 }
 

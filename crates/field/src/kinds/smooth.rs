@@ -20,8 +20,7 @@ impl<T: Real> FromValue<T> for FunctionOf<T> {
     }
 }
 
-fn shape(name: Option<&Arc<str>>, place: FieldId) -> Result<SmoothShape, CallError> {
-    let Some(name) = name else { return Ok(SmoothShape::Quadratic) };
+fn shape(name: &str, place: FieldId) -> Result<SmoothShape, CallError> {
     SmoothShape::of_name(name).ok_or_else(|| {
         CallError::new("unknown-word", format!("`{name}` is no shape of a blend"))
             .expected(SmoothShape::NAMES.join(", "))
@@ -46,14 +45,14 @@ macro_rules! smooth {
             /// The width of the blend.
             #[field(min = 0)]
             width: T,
-            /// Shape of the blend: "quadratic" (default), "cubic" or "circular".
-            #[field(default)]
-            blend: Option<Arc<str>>,
+            /// Shape of the blend: "quadratic", "cubic" or "circular".
+            #[field(default = "quadratic")]
+            blend: Arc<str>,
         }
 
         impl<T: Real> Build<T> for $kind<T> {
             fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-                let shape = shape(self.blend.as_ref(), Self::BLEND)?;
+                let shape = shape(&self.blend, Self::BLEND)?;
                 let [a, b, whole]: [bool; 3] = $signs;
                 let signed = |p: Primitive<T>, turned: bool| if turned { -p } else { p };
                 let (a, b) = (signed(self.a.0, a), signed(self.b.0, b));

@@ -10,6 +10,7 @@ use crate::{Affine, FieldError, Primitive};
 use moldloft_num::{Box3, Real, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::hash::{Hash, Hasher};
 use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
 use std::sync::Arc;
@@ -451,41 +452,54 @@ impl<T: Real> Set<T> {
         turned: bool,
         combine: &dyn Fn(bool, Set<S>, Set<S>) -> Set<S>,
     ) -> Set<S> {
-        let mut out: Vec<Set<S>> = Vec::new();
-        let mut known: FxHashMap<_, Set<S>> = FxHashMap::default();
+        let made: Result<_, Infallible> = self.bottom_up(&mut |set, operands| {
+            let made = match (&set.node.kind, operands) {
+                (SetNodeKind::Leaf(p), _) => leaf(p),
+                (kind, Some([a, b])) => combine(matches!(kind, SetNodeKind::Union) != turned, a, b),
+                (kind, None) if matches!(kind, SetNodeKind::Everything) != turned => {
+                    Set::everything()
+                }
+                _ => Set::nothing(),
+            };
+            Ok(match &set.attributes {
+                Some(a) => made.with((**a).clone()),
+                None => made,
+            })
+        });
+        let Ok(made) = made;
+        made
+    }
+
+    /// The result of `make` for the set, from those of its operands; of a shared part once.
+    ///
+    /// # Errors
+    /// The first of `make`.
+    pub(crate) fn bottom_up<R: Clone, E>(
+        &self,
+        make: &mut dyn FnMut(&Self, Option<[R; 2]>) -> Result<R, E>,
+    ) -> Result<R, E> {
+        let mut known: FxHashMap<(usize, usize), R> = FxHashMap::default();
+        let mut out: Vec<R> = Vec::new();
         let mut stack = vec![(self, false)];
         while let Some((set, ready)) = stack.pop() {
             if let Some(made) = known.get(&set.identity()) {
                 out.push(made.clone());
                 continue;
             }
-            let made = match (&set.node.kind, ready) {
-                (SetNodeKind::Everything, _) if turned => Set::nothing(),
-                (SetNodeKind::Nothing, _) if turned => Set::everything(),
-                (SetNodeKind::Everything, _) => Set::everything(),
-                (SetNodeKind::Nothing, _) => Set::nothing(),
-                (SetNodeKind::Leaf(p), _) => leaf(p),
-                (_, false) => {
-                    stack.push((set, true));
-                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
-                    continue;
-                }
-                (kind, true) => {
-                    let right = out.pop().unwrap_or_else(Set::nothing);
-                    let left = out.pop().unwrap_or_else(Set::nothing);
-                    combine(matches!(kind, SetNodeKind::Union) != turned, left, right)
-                }
-            };
-            let made = match &set.attributes {
-                Some(a) => made.with((**a).clone()),
-                None => made,
-            };
+            let operands = &set.node.operands;
+            if !operands.is_empty() && !ready {
+                stack.push((set, true));
+                stack.extend(operands.iter().rev().map(|o| (o, false)));
+                continue;
+            }
+            let pair = out.split_off(out.len() - operands.len()).try_into().ok();
+            let made = make(set, pair)?;
             if set.is_shared() {
                 known.insert(set.identity(), made.clone());
             }
             out.push(made);
         }
-        out.pop().unwrap_or_else(Set::nothing)
+        Ok(out.swap_remove(0))
     }
 
     fn combined(union: bool, a: Self, b: Self) -> Self {
@@ -514,35 +528,16 @@ impl<T: Real> Set<T> {
         nothing: R,
         join: &dyn Fn(bool, R, R) -> R,
     ) -> R {
-        let mut out: Vec<R> = Vec::new();
-        let mut known: FxHashMap<*const SetNode<T>, R> = FxHashMap::default();
-        let mut stack = vec![(self, false)];
-        while let Some((set, ready)) = stack.pop() {
-            if let Some(made) = known.get(&Arc::as_ptr(&set.node)) {
-                out.push(made.clone());
-                continue;
-            }
-            let made = match (&set.node.kind, ready) {
-                (SetNodeKind::Everything, _) => everything.clone(),
-                (SetNodeKind::Nothing, _) => nothing.clone(),
+        let made: Result<_, Infallible> = self.bottom_up(&mut |set, operands| {
+            Ok(match (&set.node.kind, operands) {
                 (SetNodeKind::Leaf(p), _) => leaf(p),
-                (_, false) => {
-                    stack.push((set, true));
-                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
-                    continue;
-                }
-                (kind, true) => {
-                    let b = out.pop().unwrap_or_else(|| nothing.clone());
-                    let a = out.pop().unwrap_or_else(|| nothing.clone());
-                    join(matches!(kind, SetNodeKind::Union), a, b)
-                }
-            };
-            if set.is_shared() {
-                known.insert(Arc::as_ptr(&set.node), made.clone());
-            }
-            out.push(made);
-        }
-        out.pop().unwrap_or(nothing)
+                (kind, Some([a, b])) => join(matches!(kind, SetNodeKind::Union), a, b),
+                (SetNodeKind::Everything, None) => everything.clone(),
+                _ => nothing.clone(),
+            })
+        });
+        let Ok(made) = made;
+        made
     }
 
     /// The set with real parts only.

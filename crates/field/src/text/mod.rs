@@ -225,40 +225,20 @@ impl Set<f64> {
     /// ```
     pub fn to_text(&self) -> Result<String, FieldError> {
         let mut writer = TextWriter { out: format!("{HEADER}\n"), ..TextWriter::default() };
-        let mut known: HashMap<(usize, usize), usize> = HashMap::new();
-        let mut values: Vec<usize> = Vec::new();
-        let mut stack = vec![(self, false)];
-        while let Some((set, ready)) = stack.pop() {
-            let key = set.identity();
-            if let Some(&number) = known.get(&key) {
-                values.push(number);
-                continue;
-            }
-            let operands = set.operands();
-            if !operands.is_empty() && !ready {
-                stack.push((set, true));
-                stack.extend(operands.iter().rev().map(|o| (o, false)));
-                continue;
-            }
-            let mut text = if set.is_everything() {
-                "everything".to_owned()
-            } else if set.is_nothing() {
-                "nothing".to_owned()
-            } else if let Some(p) = set.primitive() {
-                format!("leaf {}", writer.primitive(p)?)
-            } else {
-                let b = values.pop().unwrap_or(0);
-                let a = values.pop().unwrap_or(0);
-                format!("{} {a} {b}", if set.is_union() { "union" } else { "common" })
+        let root = self.bottom_up::<usize, FieldError>(&mut |set, operands| {
+            let mut text = match (set.primitive(), operands) {
+                (Some(p), _) => format!("leaf {}", writer.primitive(p)?),
+                (_, Some([a, b])) => {
+                    format!("{} {a} {b}", if set.is_union() { "union" } else { "common" })
+                }
+                _ if set.is_everything() => "everything".to_owned(),
+                _ => "nothing".to_owned(),
             };
             if let Some(a) = set.attributes() {
                 text.push_str(&attribute_text(a));
             }
-            let number = writer.line(&text);
-            known.insert(key, number);
-            values.push(number);
-        }
-        let root = values.pop().unwrap_or(0);
+            Ok(writer.line(&text))
+        })?;
         let _ = writeln!(writer.out, "root {root}");
         Ok(writer.out)
     }

@@ -4,7 +4,7 @@ use super::{binary_name, unary_name};
 use crate::expr::algebra::Unary;
 use crate::expr::form::Form;
 use crate::expr::primitive::{Binary, Op};
-use crate::{FieldError, Primitive, Set};
+use crate::{FieldError, Primitive, Set, SetAttributes};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
@@ -81,6 +81,31 @@ impl SdlWriter<'_> {
     }
 }
 
+/// Attributes as further arguments of the function `attributes`.
+fn attribute_arguments(a: &SetAttributes) -> String {
+    let mut out = String::new();
+    let mut text = |name: &str, text: &str| {
+        let _ = write!(out, ", {name} = \"{}\"", text.replace(['"', '\\'], "'"));
+    };
+    if let Some(name) = &a.name {
+        text("name", name);
+    }
+    if let Some(material) = &a.material {
+        text("material", material);
+    }
+    if !a.tags.is_empty() {
+        let tags = a.tags.iter().map(|(tag, value)| format!("{tag} = {value}"));
+        text("tags", &tags.collect::<Vec<_>>().join("; "));
+    }
+    if let Some(colour) = a.colour {
+        let _ = write!(out, ", colour = {colour}");
+    }
+    if let Some(tolerance) = a.tolerance {
+        let _ = write!(out, ", tolerance = {tolerance:?}");
+    }
+    out
+}
+
 impl Set<f64> {
     /// The set as a program of the language that declares it under `name`: the same values, bit for bit, and the same
     /// faces under the same names.
@@ -93,55 +118,17 @@ impl Set<f64> {
             let n = [0, 1, 2].map(|i| if i == k { "1" } else { "0" }).join(", ");
             let _ = writeln!(w.out, "field {name}_{axis} = plane({{{n}}}, {{0, 0, 0}});");
         }
-        let mut known: HashMap<(usize, usize), String> = HashMap::new();
-        let mut values: Vec<String> = Vec::new();
-        let mut stack = vec![(self, false)];
-        while let Some((set, ready)) = stack.pop() {
-            if let Some(name) = known.get(&set.identity()) {
-                values.push(name.clone());
-                continue;
-            }
-            let operands = set.operands();
-            if !operands.is_empty() && !ready {
-                stack.push((set, true));
-                stack.extend(operands.iter().rev().map(|o| (o, false)));
-                continue;
-            }
-            let mut text = if set.is_everything() {
-                "everything()".to_owned()
-            } else if set.is_nothing() {
-                "nothing()".to_owned()
-            } else if let Some(p) = set.primitive() {
-                format!("set({})", w.field(p)?)
-            } else {
-                let b = values.pop().unwrap_or_default();
-                let a = values.pop().unwrap_or_default();
-                format!("{a} {} {b}", if set.is_union() { '|' } else { '&' })
+        let root = self.bottom_up::<String, FieldError>(&mut |set, operands| {
+            let text = match (set.primitive(), operands) {
+                (Some(p), _) => format!("set({})", w.field(p)?),
+                (_, Some([a, b])) => format!("{a} {} {b}", if set.is_union() { '|' } else { '&' }),
+                _ if set.is_everything() => "everything()".to_owned(),
+                _ => "nothing()".to_owned(),
             };
-            if let Some(a) = set.attributes() {
-                let mut extra = String::new();
-                if let Some(name) = &a.name {
-                    let _ = write!(extra, ", name = \"{}\"", name.replace(['"', '\\'], "'"));
-                }
-                if let Some(colour) = a.colour {
-                    let _ = write!(extra, ", colour = {colour}");
-                }
-                if let Some(material) = &a.material {
-                    let _ =
-                        write!(extra, ", material = \"{}\"", material.replace(['"', '\\'], "'"));
-                }
-                if let Some(tolerance) = a.tolerance {
-                    let _ = write!(extra, ", tolerance = {tolerance:?}");
-                }
-                if !extra.is_empty() {
-                    text = format!("attributes({text}{extra})");
-                }
-            }
-            let made = w.fresh("set", &text);
-            known.insert(set.identity(), made.clone());
-            values.push(made);
-        }
-        let root = values.pop().unwrap_or_default();
+            let with = set.attributes().map(attribute_arguments).unwrap_or_default();
+            let text = if with.is_empty() { text } else { format!("attributes({text}{with})") };
+            Ok(w.fresh("set", &text))
+        })?;
         let _ = writeln!(w.out, "set {name} = {root};");
         Ok(w.out)
     }

@@ -13,8 +13,6 @@ pub struct Builtin {
     /// Its name.
     pub name: &'static str,
     pub(crate) action: Action,
-    /// Its arguments.
-    pub signature: &'static str,
     /// Description in one line.
     pub doc: &'static str,
     /// Description of the result.
@@ -26,6 +24,22 @@ pub struct Builtin {
 }
 
 impl Builtin {
+    /// The call: `name(a, [b], ...)`, with arguments that may be left out in brackets, and dots if
+    /// the last ones may be repeated.
+    pub fn signature(&self) -> String {
+        let mut arguments: Vec<String> = Vec::new();
+        for (name, ..) in self.help {
+            arguments.push(match name.strip_suffix('?') {
+                Some(name) => format!("[{name}]"),
+                None => (*name).to_string(),
+            });
+        }
+        if self.help.iter().any(|(_, class, _)| class.ends_with('…')) {
+            arguments.push("...".to_string());
+        }
+        format!("{}({})", self.name, arguments.join(", "))
+    }
+
     /// Minimum and maximum number of arguments.
     pub fn arity(&self) -> (usize, usize) {
         let least = self.help.iter().filter(|(name, ..)| !name.ends_with('?')).count();
@@ -97,11 +111,10 @@ const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
 ];
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 36] = [
+pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "format",
         action: Action::Format,
-        signature: "format(pattern, ...)",
         doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
         returns: "text",
         help: &[
@@ -117,7 +130,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "open",
         action: Action::Open,
-        signature: "open(name, mode, unit)",
         doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
         returns: "file",
         help: &[
@@ -134,7 +146,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "close",
         action: Action::Close,
-        signature: "close(f)",
         doc: "Closes a file.",
         returns: "nothing",
         help: &[("f", "file", "The file, or its unit.")],
@@ -143,7 +154,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write",
         action: Action::Write,
-        signature: "write(f, ...)",
         doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
         returns: "nothing",
         help: &[
@@ -155,7 +165,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "read",
         action: Action::Read,
-        signature: "read(f, ...)",
         doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
         returns: "nothing",
         help: &[
@@ -167,7 +176,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "more",
         action: Action::More,
-        signature: "more(c)",
         doc: "Reports whether a multiple argument, or a file, has unread items.",
         returns: "number",
         help: &[("c", "argument or file", "The multiple argument, or the file.")],
@@ -176,7 +184,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "next",
         action: Action::Next,
-        signature: "next(c)",
         doc: "The next item of a multiple argument.",
         returns: "value",
         help: &[("c", "argument", "The multiple argument.")],
@@ -185,7 +192,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "rewind",
         action: Action::Rewind,
-        signature: "rewind(c)",
         doc: "Returns to the first item of a multiple argument, or to the start of a file.",
         returns: "nothing",
         help: &[("c", "argument or file", "The multiple argument, or the file.")],
@@ -194,7 +200,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "count",
         action: Action::Count,
-        signature: "count(c)",
         doc: "The number of items of a multiple argument or a list; for a mask, the number of true elements.",
         returns: "number",
         help: &[("c", "argument, list or mask", "Multiple argument, list or mask.")],
@@ -203,7 +208,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "isset",
         action: Action::IsSet,
-        signature: "isset(a[i])",
         doc: "Reports whether a variable, or every element of a section, has a value.",
         returns: "number",
         help: &[("a", "variable", "The variable, element or section.")],
@@ -212,7 +216,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "ieee",
         action: Action::Ieee,
-        signature: "ieee(on)",
         doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
         returns: "nothing",
         help: &[("on?", "number", "0: errors again; default 1.")],
@@ -221,7 +224,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "check_edges",
         action: Action::CheckEdges,
-        signature: "check_edges(s)",
         doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
         returns: "nothing",
         help: &[("s", "surface", "The surface.")],
@@ -230,7 +232,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "refined",
         action: Action::Refined,
-        signature: "refined(n)",
         doc: "`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.",
         returns: "number",
         help: &[("n", "integer", "The number of points of the coarse run.")],
@@ -239,7 +240,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "refined_step",
         action: Action::RefinedStep,
-        signature: "refined_step(ds)",
         doc: "A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.",
         returns: "number",
         help: &[("ds", "number", "The step of the coarse run.")],
@@ -248,7 +248,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "refinement",
         action: Action::Refinement,
-        signature: "refinement()",
         doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
         returns: "number",
         help: &[],
@@ -257,7 +256,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_p3d",
         action: Action::WriteGrids(&grid_formats::PLOT3D),
-        signature: "write_p3d(name, words, s1, s2, ...)",
         doc: "Writes curves, surfaces or blocks as a Plot3D file.",
         returns: "nothing",
         help: &[
@@ -278,7 +276,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_vts",
         action: Action::WriteGrids(&grid_formats::VTS),
-        signature: "write_vts(name, s1, s2, ...)",
         doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
         returns: "nothing",
         help: &[
@@ -290,7 +287,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "plot",
         action: Action::WriteGrids(&grid_formats::PICTURE),
-        signature: "plot(name, s1, s2, ...)",
         doc: "Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from \"x\", \"-y\", \"z\", \"iso\" ...",
         returns: "nothing",
         help: &[
@@ -307,7 +303,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_stl",
         action: Action::WriteGrids(&grid_formats::STL),
-        signature: "write_stl(name, words, s1, s2, ...)",
         doc: "Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; \"flip\" reverses the normals.",
         returns: "nothing",
         help: &[
@@ -320,7 +315,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_cgns",
         action: Action::WriteGrids(&grid_formats::CGNS),
-        signature: "write_cgns(name, s1, s2, ...), write_cgns(name, b1, \"k1 = hull wall\", b2, ...)",
         doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.",
         returns: "nothing",
         help: &[
@@ -337,7 +331,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_su2",
         action: Action::WriteGrids(&grid_formats::SU2),
-        signature: "write_su2(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -346,7 +339,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_gmsh",
         action: Action::WriteGrids(&grid_formats::GMSH),
-        signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -355,7 +347,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_blockmesh",
         action: Action::WriteGrids(&grid_formats::BLOCK_MESH),
-        signature: "write_blockmesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
         doc: "Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -364,7 +355,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_polymesh",
         action: Action::WriteGrids(&grid_formats::POLY_MESH),
-        signature: "write_polymesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
         doc: "Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -373,7 +363,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_ugrid",
         action: Action::WriteGrids(&grid_formats::UGRID),
-        signature: "write_ugrid(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -382,7 +371,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_nmf",
         action: Action::WriteGrids(&grid_formats::NEUTRAL_MAP),
-        signature: "write_nmf(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name.",
         returns: "nothing",
         help: BLOCKS_AND_FACES,
@@ -391,7 +379,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "interfaces",
         action: Action::Interfaces,
-        signature: "interfaces(b1, \"k1 = hull wall\", b2, ...)",
         doc: "The connections and boundaries of blocks, or of surfaces in one plane, as the writers use them, a line for each; folded and left-handed cells, faces that are not joined and symmetry that is not plane are reported.",
         returns: "text",
         help: &[BLOCKS_AND_FACES[1], BLOCKS_AND_FACES[2]],
@@ -400,7 +387,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "write_csv",
         action: Action::WriteGrids(&grid_formats::CSV),
-        signature: "write_csv(name, c1, c2, ...)",
         doc: "Writes points as lines of x,y,z under a heading, with all digits.",
         returns: "nothing",
         help: &[
@@ -412,7 +398,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "read_p3d",
         action: Action::ReadPlot3d,
-        signature: "read_p3d(name, block)",
         doc: "A surface or block of a Plot3D file of any variant.",
         returns: "surface or block",
         help: &[
@@ -424,7 +409,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "iblank_p3d",
         action: Action::BlankingPlot3d,
-        signature: "iblank_p3d(name, block)",
         doc: "The blanking of a surface or block of a Plot3D file, a whole number for each point.",
         returns: "farray or block",
         help: &[
@@ -436,7 +420,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "count_p3d",
         action: Action::CountPlot3d,
-        signature: "count_p3d(name)",
         doc: "The number of surfaces and blocks of a Plot3D file.",
         returns: "number",
         help: &[("name", "text", "Name of the file, beside the program.")],
@@ -445,7 +428,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "read_cgns",
         action: Action::ReadCgns,
-        signature: "read_cgns(name, zone)",
         doc: "A structured zone of a CGNS file (HDF5) as a surface or block.",
         returns: "surface or block",
         help: &[
@@ -457,7 +439,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "count_cgns",
         action: Action::CountCgns,
-        signature: "count_cgns(name)",
         doc: "The number of zones of a CGNS file.",
         returns: "number",
         help: &[("name", "text", "Name of the file, beside the program.")],
@@ -466,7 +447,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "names_cgns",
         action: Action::NamesCgns,
-        signature: "names_cgns(name)",
         doc: "The names of the zones of a CGNS file, in their order.",
         returns: "text list",
         help: &[("name", "text", "Name of the file, beside the program.")],
@@ -475,7 +455,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "read_points",
         action: Action::ReadRows(RowFormat::Points),
-        signature: "read_points(name)",
         doc: "The points of a text with two or three numbers to a line, as a curve.",
         returns: "curve",
         help: &[("name", "text", "Name of the file, beside the program.")],
@@ -484,7 +463,6 @@ pub const BUILTINS: [Builtin; 36] = [
     Builtin {
         name: "read_aerofoil",
         action: Action::ReadRows(RowFormat::Aerofoil),
-        signature: "read_aerofoil(name)",
         doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
         returns: "curve",
         help: &[("name", "text", "Name of the file, beside the program.")],

@@ -31,7 +31,7 @@ fn in_order(m: &Module, builtin: &Builtin, args: NodeList<Arg>) -> Result<Vec<Ex
         };
         let word = m.program.name(ident.symbol);
         let fault = |id: &'static str, message: String| {
-            Diagnostic::error(id, message).at(ident.span).expected(builtin.signature)
+            Diagnostic::error(id, message).at(ident.span).expected(builtin.signature())
         };
         match names.iter().position(|name| *name == word) {
             Some(at) if at == given.len() => given.push(arg.value),
@@ -109,7 +109,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let message = format!("invalid arguments of {}", builtin.name);
             return Err(Diagnostic::error(id, message)
                 .at(span)
-                .expected(builtin.signature)
+                .expected(builtin.signature())
                 .found(format!("{} arguments", given.len())));
         }
         match builtin.action {

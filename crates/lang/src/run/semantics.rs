@@ -371,7 +371,7 @@ impl<'a> Semantics<'a> {
                 self.say(
                     Diagnostic::warning(id, format!("invalid arguments of {word}"))
                         .at(span)
-                        .expected(builtin.signature)
+                        .expected(builtin.signature())
                         .found(format!("{} arguments", args.len())),
                 );
             }

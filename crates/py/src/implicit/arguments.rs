@@ -3,11 +3,12 @@
 use super::oracle::Slots;
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft::field::{FieldError, SetAttributes};
+use moldloft::field::SetAttributes;
 use moldloft::num::{Box3, Vec3};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::fmt::Display;
 
 /// Points of an array (n, 3).
 pub fn points(array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
@@ -22,13 +23,17 @@ pub fn box_of(low: [f64; 3], high: [f64; 3]) -> Box3 {
     Box3 { low: Vec3::from(low), high: Vec3::from(high) }
 }
 
+/// The exception that a Python function raised meanwhile, if any.
+pub fn check_raised(py: Python<'_>, slots: &Slots) -> PyResult<()> {
+    let Some(raised) = slots.take() else { return Ok(()) };
+    let error = plain_error(format!("a field's function failed: {}", raised.value(py)));
+    error.set_cause(py, Some(raised));
+    Err(error)
+}
+
 /// The result, or the exception that a Python function raised meanwhile, or the fault.
-pub fn finished<R>(py: Python<'_>, slots: &Slots, outcome: Result<R, FieldError>) -> PyResult<R> {
-    if let Some(raised) = slots.take() {
-        let error = plain_error(format!("a field's function failed: {}", raised.value(py)));
-        error.set_cause(py, Some(raised));
-        return Err(error);
-    }
+pub fn finished<R>(py: Python<'_>, slots: &Slots, outcome: Result<R, impl Display>) -> PyResult<R> {
+    check_raised(py, slots)?;
     outcome.map_err(plain_error)
 }
 

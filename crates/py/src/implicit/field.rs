@@ -1,12 +1,11 @@
 //! Implicit functions.
 
-use super::arguments::{box_of, finished, points};
+use super::arguments::{box_of, check_raised, points};
 use super::oracle::{PythonOracle, Slots};
-
 use crate::arrays;
 use crate::error::plain_error;
 use crate::work::unlocked_if;
-use moldloft::field::{Affine, FieldError, Form, Primitive, SmoothShape, check_rail, check_rails};
+use moldloft::field::{Affine, FieldError, Form, Primitive};
 use moldloft::num::{Axis, Vec3};
 use moldloft_parallel::prelude::*;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
@@ -32,10 +31,6 @@ impl PyField {
         Self { inner, slots: Slots::default() }
     }
 
-    fn made(inner: Result<Primitive, FieldError>) -> PyResult<Self> {
-        inner.map(Self::of).map_err(plain_error)
-    }
-
     fn from(&self, inner: Primitive) -> Self {
         Self { inner, slots: self.slots.clone() }
     }
@@ -43,10 +38,6 @@ impl PyField {
     fn both(&self, o: &Self, inner: Primitive) -> Self {
         Self { inner, slots: self.slots.with(&o.slots) }
     }
-}
-
-fn axis(point: [f64; 3], direction: [f64; 3]) -> Axis<f64> {
-    Axis { point: Vec3::from(point), direction: Vec3::from(direction) }
 }
 
 /// The values at many points, spread over threads.
@@ -76,7 +67,7 @@ pub fn values_at<'py>(
         values(&points, &mut out, serial, evaluate);
         out
     })?;
-    finished(py, slots, Ok(()))?;
+    check_raised(py, slots)?;
     Ok(PyArray1::from_vec(py, out))
 }
 
@@ -88,57 +79,6 @@ impl PyField {
             true => Ok(Self::of(Primitive::real(value))),
             false => Err(plain_error(FieldError::NotFinite { what: "number" })),
         }
-    }
-
-    #[staticmethod]
-    fn plane(normal: [f64; 3], point: [f64; 3]) -> PyResult<Self> {
-        Self::made(Primitive::plane(Vec3::from(normal), Vec3::from(point)))
-    }
-
-    #[staticmethod]
-    fn sphere(centre: [f64; 3], radius: f64, distance: bool) -> PyResult<Self> {
-        let centre = Vec3::from(centre);
-        Self::made(match distance {
-            false => Primitive::sphere(centre, radius),
-            true => Primitive::sphere_distance(centre, radius),
-        })
-    }
-
-    #[staticmethod]
-    fn cylinder(
-        point: [f64; 3],
-        direction: [f64; 3],
-        radius: f64,
-        distance: bool,
-    ) -> PyResult<Self> {
-        let axis = axis(point, direction);
-        Self::made(match distance {
-            false => Primitive::cylinder(axis, radius),
-            true => Primitive::cylinder_distance(axis, radius),
-        })
-    }
-
-    #[staticmethod]
-    fn cone(apex: [f64; 3], direction: [f64; 3], angle: f64) -> PyResult<Self> {
-        Self::made(Primitive::cone(axis(apex, direction), angle))
-    }
-
-    #[staticmethod]
-    fn torus(centre: [f64; 3], direction: [f64; 3], major: f64, minor: f64) -> PyResult<Self> {
-        Self::made(Primitive::torus(axis(centre, direction), major, minor))
-    }
-
-    #[staticmethod]
-    fn cyclide(
-        centre: [f64; 3],
-        direction: [f64; 3],
-        along: [f64; 3],
-        major: f64,
-        minor: f64,
-        change: f64,
-    ) -> PyResult<Self> {
-        let axis = axis(centre, direction);
-        Self::made(Primitive::cyclide(axis, Vec3::from(along), major, minor, change))
     }
 
     /// A primitive that is a Python function of points (n, 3).
@@ -190,80 +130,6 @@ impl PyField {
         self.inner.to_power(exponent).map(|p| self.from(p)).map_err(plain_error)
     }
 
-    fn liming(
-        &self,
-        o: &Self,
-        l3: &Self,
-        l4: Option<&Self>,
-        lambda: f64,
-        contact: u32,
-    ) -> PyResult<Self> {
-        let bodies = [&self.inner, &o.inner];
-        let made = match l4 {
-            Some(l4) => moldloft::field::liming(bodies, [&l3.inner, &l4.inner], lambda),
-            None => moldloft::field::liming_on_rail(bodies, &l3.inner, lambda, contact),
-        };
-        let mut slots = self.slots.with(&o.slots).with(&l3.slots);
-        if let Some(l4) = l4 {
-            slots = slots.with(&l4.slots);
-        }
-        Ok(Self { inner: made.map_err(plain_error)?, slots })
-    }
-
-    fn zhang(&self, o: &Self, l3: &Self, l4: &Self, lambda: f64, contact: u32) -> PyResult<Self> {
-        let made = moldloft::field::zhang(
-            [&self.inner, &o.inner],
-            [&l3.inner, &l4.inner],
-            lambda,
-            contact,
-        );
-        let slots = self.slots.with(&o.slots).with(&l3.slots).with(&l4.slots);
-        Ok(Self { inner: made.map_err(plain_error)?, slots })
-    }
-
-    fn setback(&self, o: &Self, a: f64, b: f64) -> PyResult<Self> {
-        let made = moldloft::field::setback_rail([&self.inner, &o.inner], [a, b]);
-        made.map(|p| self.both(o, p)).map_err(plain_error)
-    }
-
-    /// The smooth minimum of two.
-    fn smooth(&self, o: &Self, width: f64, shape: &str) -> PyResult<Self> {
-        let Some(shape) = SmoothShape::of_name(shape) else {
-            let names = SmoothShape::NAMES.join(", ");
-            return Err(plain_error(format!("`{shape}` is no shape of a blend: one of {names}")));
-        };
-        let made = moldloft::field::smooth_minimum([&self.inner, &o.inner], width, shape);
-        made.map(|p| self.both(o, p)).map_err(plain_error)
-    }
-
-    fn check_rail(
-        &self,
-        py: Python<'_>,
-        o: &Self,
-        rail: &Self,
-        low: [f64; 3],
-        high: [f64; 3],
-    ) -> PyResult<()> {
-        let over = box_of(low, high);
-        let outcome = py.detach(|| check_rail([&self.inner, &o.inner], &rail.inner, &over));
-        finished(py, &self.slots.with(&o.slots).with(&rail.slots), outcome)
-    }
-
-    fn check_rails(
-        &self,
-        py: Python<'_>,
-        o: &Self,
-        l3: &Self,
-        l4: &Self,
-        low: [f64; 3],
-        high: [f64; 3],
-    ) -> PyResult<()> {
-        let over = box_of(low, high);
-        let bodies = [&self.inner, &o.inner];
-        let outcome = py.detach(|| check_rails(bodies, [&l3.inner, &l4.inner], &over));
-        finished(py, &self.slots.with(&o.slots).with(&l3.slots).with(&l4.slots), outcome)
-    }
-
     fn values<'py>(
         &self,
         py: Python<'py>,
@@ -284,7 +150,7 @@ impl PyField {
             true => points.par_iter().map(|p| inner.gradient(*p)).collect::<Vec<_>>(),
             false => points.iter().map(|p| inner.gradient(*p)).collect(),
         })?;
-        finished(py, &self.slots, Ok(()))?;
+        check_raised(py, &self.slots)?;
         let fill = |out: &mut [Vec3]| out.iter_mut().zip(&all).for_each(|(o, g)| *o = g.slope);
         let slopes = arrays::filled(py, [all.len(), 3], fill).0;
         Ok((PyArray1::from_vec(py, all.iter().map(|g| g.value).collect()), slopes))
@@ -302,7 +168,7 @@ impl PyField {
             true => points.par_iter().map(|p| inner.hessian(*p).second).collect::<Vec<_>>(),
             false => points.iter().map(|p| inner.hessian(*p).second).collect(),
         })?;
-        finished(py, &self.slots, Ok(()))?;
+        check_raised(py, &self.slots)?;
         let fill = |out: &mut [Vec3]| out.copy_from_slice(all.as_flattened());
         Ok(arrays::filled(py, [3 * all.len(), 3], fill).0)
     }
@@ -310,7 +176,8 @@ impl PyField {
     fn range(&self, py: Python<'_>, low: [f64; 3], high: [f64; 3]) -> PyResult<(f64, f64)> {
         let over = box_of(low, high);
         let range = py.detach(|| self.inner.range(&over));
-        finished(py, &self.slots, Ok((range.low, range.high)))
+        check_raised(py, &self.slots)?;
+        Ok((range.low, range.high))
     }
 
     fn mapped(&self, rows: [[f64; 3]; 3], shift: [f64; 3]) -> PyResult<Self> {

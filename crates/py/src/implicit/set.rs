@@ -1,6 +1,6 @@
 //! Sets.
 
-use super::arguments::{attributes, box_of, finished, points};
+use super::arguments::{attributes, box_of, check_raised, finished, points};
 use super::facets::PyFacets;
 use super::field::{LARGE, PyField, values_at};
 use super::oracle::Slots;
@@ -32,12 +32,6 @@ impl PySet {
 
     fn from(&self, inner: Set) -> Self {
         Self { inner, slots: self.slots.clone() }
-    }
-
-    /// One set of several.
-    fn of_all(sets: &[PyRef<'_, Self>], join: impl Fn(Vec<Set>) -> Set) -> Self {
-        let slots = sets.iter().fold(Slots::default(), |all, s| all.with(&s.slots));
-        Self { inner: join(sets.iter().map(|s| s.inner.clone()).collect()), slots }
     }
 
     /// Work on the set that may take long, and stops at Ctrl-C.
@@ -75,26 +69,6 @@ impl PySet {
     #[staticmethod]
     fn of_field(field: &PyField) -> Self {
         Self { inner: Set::new(&field.inner), slots: field.slots.clone() }
-    }
-
-    #[staticmethod]
-    fn everything() -> Self {
-        Self::of(Set::everything())
-    }
-
-    #[staticmethod]
-    fn nothing() -> Self {
-        Self::of(Set::nothing())
-    }
-
-    #[staticmethod]
-    fn cuboid(low: [f64; 3], high: [f64; 3]) -> PyResult<Self> {
-        Set::cuboid(Vec3::from(low), Vec3::from(high)).map(Self::of).map_err(plain_error)
-    }
-
-    #[staticmethod]
-    fn tetrahedron(corners: [[f64; 3]; 4]) -> PyResult<Self> {
-        Set::tetrahedron(corners.map(Vec3::from)).map(Self::of).map_err(plain_error)
     }
 
     #[staticmethod]
@@ -161,18 +135,6 @@ impl PySet {
         Set::from_text(text).map(Self::of).map_err(plain_error)
     }
 
-    fn offset(&self, distance: f64) -> PyResult<Self> {
-        self.inner.offset(distance).map(|s| self.from(s)).map_err(plain_error)
-    }
-
-    fn as_field(&self) -> PyField {
-        PyField { inner: self.inner.as_primitive(), slots: self.slots.clone() }
-    }
-
-    fn shell(&self, thickness: f64) -> PyResult<Self> {
-        self.inner.shell(thickness).map(|s| self.from(s)).map_err(plain_error)
-    }
-
     /// The union with another set, with fillets.
     fn filleted(
         &self,
@@ -203,62 +165,6 @@ impl PySet {
             None => moldloft::field::chamfer_edges(set, width, edges.as_deref()),
         });
         made.map(|s| self.from(s)).map_err(plain_error)
-    }
-
-    /// The convex hull of sets.
-    #[staticmethod]
-    fn convex_hull(py: Python<'_>, sets: Vec<PyRef<'_, PySet>>) -> PyResult<Self> {
-        let inner: Vec<Set> = sets.iter().map(|s| s.inner.clone()).collect();
-        let slots = sets.iter().fold(Slots::default(), |all, s| all.with(&s.slots));
-        let made = py.detach(|| moldloft::field::convex_hull(&inner)).map_err(plain_error)?;
-        Ok(Self { inner: made, slots })
-    }
-
-    /// The Minkowski sum with another set.
-    fn minkowski_sum(&self, py: Python<'_>, o: &Self) -> PyResult<Self> {
-        let (a, b) = (&self.inner, &o.inner);
-        let made = py.detach(|| moldloft::field::minkowski_sum(a, b)).map_err(plain_error)?;
-        Ok(Self { inner: made, slots: self.slots.with(&o.slots) })
-    }
-
-    #[staticmethod]
-    fn blended(
-        kind: &str,
-        l1: &PyField,
-        l2: &PyField,
-        setbacks: [f64; 2],
-        lambda: f64,
-    ) -> PyResult<(Self, PyField)> {
-        let bodies = [&l1.inner, &l2.inner];
-        let blend = match kind {
-            "fillet" => moldloft::field::fillet(bodies, setbacks, lambda),
-            _ => moldloft::field::round(bodies, setbacks, lambda),
-        };
-        let blend = blend.map_err(plain_error)?;
-        let slots = l1.slots.with(&l2.slots);
-        let field = PyField { inner: blend.primitive, slots: slots.clone() };
-        Ok((Self { inner: blend.set, slots }, field))
-    }
-
-    #[staticmethod]
-    fn transition(
-        l1: &PyField,
-        l2: &PyField,
-        l3: &PyField,
-        l4: &PyField,
-        lambda: f64,
-        contact: u32,
-    ) -> PyResult<(Self, PyField)> {
-        let blend = moldloft::field::transition(
-            [&l1.inner, &l2.inner],
-            [&l3.inner, &l4.inner],
-            lambda,
-            contact,
-        )
-        .map_err(plain_error)?;
-        let slots = l1.slots.with(&l2.slots).with(&l3.slots).with(&l4.slots);
-        let field = PyField { inner: blend.primitive, slots: slots.clone() };
-        Ok((Self { inner: blend.set, slots }, field))
     }
 
     fn with_attributes(
@@ -328,16 +234,6 @@ impl PySet {
         values_at(py, &self.slots, &at, move |p, o| inner.values(p, o))
     }
 
-    #[staticmethod]
-    fn union_of(sets: Vec<PyRef<'_, Self>>) -> Self {
-        Self::of_all(&sets, Set::union_of)
-    }
-
-    #[staticmethod]
-    fn intersection_of(sets: Vec<PyRef<'_, Self>>) -> Self {
-        Self::of_all(&sets, Set::intersection_of)
-    }
-
     /// -1 in the solid, 0 on the surface, 1 in air; the points are on the surfaces of `known`.
     fn members<'py>(
         &self,
@@ -358,7 +254,7 @@ impl PySet {
             true => points.par_iter().map(one).collect::<Vec<_>>(),
             false => points.iter().map(one).collect(),
         })?;
-        finished(py, &self.slots, Ok(()))?;
+        check_raised(py, &self.slots)?;
         Ok(PyArray1::from_vec(py, out))
     }
 
@@ -373,14 +269,15 @@ impl PySet {
         let one = move |p: &Vec3| inner.winner(*p).1.map_or(-1, |leaf| leaf as i64);
         let large = many && points.len() > LARGE;
         let out = unlocked_if(py, large, move || points.iter().map(one).collect::<Vec<_>>())?;
-        finished(py, &self.slots, Ok(()))?;
+        check_raised(py, &self.slots)?;
         Ok(PyArray1::from_vec(py, out))
     }
 
     fn range(&self, py: Python<'_>, low: [f64; 3], high: [f64; 3]) -> PyResult<(f64, f64)> {
         let over = box_of(low, high);
         let range = py.detach(|| self.inner.range(&over));
-        finished(py, &self.slots, Ok((range.low, range.high)))
+        check_raised(py, &self.slots)?;
+        Ok((range.low, range.high))
     }
 
     fn bounds(&self, py: Python<'_>, accuracy: f64) -> PyResult<Option<([f64; 3], [f64; 3])>> {
@@ -530,7 +427,7 @@ impl PySet {
         }
         let ray = Ray { start, direction, length };
         let hits = py.detach(|| Caster::new(&self.inner).hits(&ray));
-        finished(py, &self.slots, Ok(()))?;
+        check_raised(py, &self.slots)?;
         let one = |h: moldloft::field::Hit| {
             (h.t, h.point.to_array(), h.leaf, h.normal.to_array(), h.enters)
         };

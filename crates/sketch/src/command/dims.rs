@@ -3,7 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::digits::rounded;
-use super::draw::{require_line, require_point, set_letters};
+use super::draw::{require_line, require_lines, require_point, set_letters};
 use super::question::Question;
 use super::session::{CommandReply, SketchSession};
 use super::subject::{ReplySubject, all_missing};
@@ -688,22 +688,7 @@ impl SketchSession {
         self.take_object(args)?;
         args.end()?;
         let object = self.active()?.clone();
-        if object.drawing.points.is_empty() {
-            return Err(CommandError::new(
-                101,
-                format!("object {} has no points yet", object.name),
-                "draw some, or INPUT it",
-            )
-            .about(ReplySubject::of("no-points").names([&object.name])));
-        }
-        if object.drawing.lines.is_empty() {
-            return Err(CommandError::new(
-                102,
-                format!("object {} has no lines", object.name),
-                "draw some",
-            )
-            .about(ReplySubject::of("no-lines").names([&object.name])));
-        }
+        require_lines(&object)?;
         let (view, layout) = self.laid_out(&object);
         if let Some(fault) = self.first_type_fault(&object, &view.planes) {
             return Err(fault);

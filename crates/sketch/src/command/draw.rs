@@ -561,6 +561,26 @@ pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Fre
     }
 }
 
+/// The object must have points.
+pub(super) fn require_points(object: &SketchObject) -> Result<(), CommandError> {
+    if !object.drawing.points.is_empty() {
+        return Ok(());
+    }
+    let text = format!("object {} has no points yet", object.name);
+    let error = CommandError::new(101, text, "draw some, or INPUT it");
+    Err(error.about(ReplySubject::of("no-points").names([&object.name])))
+}
+
+/// The object must have points and lines.
+pub(super) fn require_lines(object: &SketchObject) -> Result<(), CommandError> {
+    require_points(object)?;
+    if !object.drawing.lines.is_empty() {
+        return Ok(());
+    }
+    let error = CommandError::new(102, format!("object {} has no lines", object.name), "draw some");
+    Err(error.about(ReplySubject::of("no-lines").names([&object.name])))
+}
+
 /// The point must exist.
 pub(super) fn require_point(object: &SketchObject, p: PointId) -> Result<(), CommandError> {
     if object.drawing.points.contains_key(&p) {

@@ -2,7 +2,7 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::draw::require_point;
+use super::draw::{require_lines, require_point};
 use super::info::suggestions;
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
@@ -22,22 +22,7 @@ impl SketchSession {
         object: &SketchObject,
     ) -> Result<BTreeMap<PointId, Vec3>, CommandError> {
         let (view, layout) = self.laid_out(object);
-        if object.drawing.points.is_empty() {
-            return Err(CommandError::new(
-                101,
-                format!("object {} has no points yet", object.name),
-                "draw some, or INPUT it",
-            )
-            .about(ReplySubject::of("no-points").names([&object.name])));
-        }
-        if object.drawing.lines.is_empty() {
-            return Err(CommandError::new(
-                102,
-                format!("object {} has no lines", object.name),
-                "draw some",
-            )
-            .about(ReplySubject::of("no-lines").names([&object.name])));
-        }
+        require_lines(object)?;
         match layout.positions(&view.planes) {
             Some(at) => Ok(view.planes.ids().iter().copied().zip(at).collect()),
             None => {
