@@ -45,6 +45,7 @@ WITHOUT = {
     "units-differ",
     "faces-apart",
     "faces-tangled",
+    "folded-surface",
     "internal-error",
     "no-derivative",
     "no-distance",

@@ -52,13 +52,9 @@ _WHEN_FLOODED = frozenset(
 
 
 def _add_misses(answer: dict[str, Any], off: dict[str, float], images: int, water: float) -> None:
-    """Adds the misses of triangles to the bounds of a state's main figures.
-
-    Triangles beside whole surfaces leave slits along their common rim. The volumes along x, y and z
-    differ by them, which is the closure error.
-    """
+    """Adds the misses of triangles to the bounds of a state's main figures."""
     bounds = answer["bounds"]
-    volume = off["volume"] * images + abs(answer["closure_error"] * answer["volume"])
+    volume = off["volume"] * images
     misses = {"volume": volume, "displacement": volume * water, "wetted_area": off["area"] * images}
     if answer["volume"]:
         reach = off["reach"] + abs(answer["level"])
@@ -397,7 +393,8 @@ class Floating:
         sets = faceted(cast("Model", self))
         images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
         partial = self._document.partial() and not self._document.is_whole()
-        inner = [found.message for found in self._document.inner_skins()]
+        doubts = [*self._document.inner_skins(), *self._document.folded_surfaces()]
+        doubts = [found.message for found in doubts]
         for answer in answers:
             if answer["open_edges"] and not self._document.partial():
                 lost = (k for k in set(answer) - _WHEN_FLOODED if isinstance(answer[k], float))
@@ -405,7 +402,7 @@ class Floating:
                 zero = dict.fromkeys(names_of(by), math.nan)
                 answer["derivatives"] = {name: dict(zero) for name in answer["derivatives"]}
             answer["partial"] = partial or (answer["open_edges"] > 0 and self._document.partial())
-            answer["inner_skins"] = inner
+            answer["doubts"] = doubts
             answer["faceted"] = sets
             if names:
                 answer["on_triangles"] = names

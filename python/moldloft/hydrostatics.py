@@ -38,7 +38,7 @@ _ROUNDING = 1e-12
 
 
 def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
-    """Trimmed surfaces and round bodies of sketches, with the misses of their triangles.
+    """Round bodies and trimmed surfaces that are measured on triangles, with their misses.
 
     The triangles' figures are compared with those of the shape. ``volume`` is twice the miss of the
     cones, as what is missed above the water may cancel what is missed below, for bodies also that
@@ -47,12 +47,17 @@ def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
     """
     import numpy as np
 
-    mesh = model.mesh()
     names: list[str] = []
+    on_panels = model._document.on_panels()
+    if not on_panels:
+        return names, {}
+    mesh = model.mesh()
     volume = area = 0.0
     size = float(np.ptp(mesh.vertices, axis=0).max()) if len(mesh.vertices) else 0.0
     for patch in mesh.patches:
-        if patch.name not in model.objects or (part := model[patch.name]).kind not in _ON_TRIANGLES:
+        if patch.name not in on_panels or patch.name not in model.objects:
+            continue
+        if (part := model[patch.name]).kind not in _ON_TRIANGLES:
             continue
         corners = mesh.vertices[mesh.faces[patch.start : patch.stop]]
         halves = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
@@ -211,15 +216,16 @@ class Hydrostatics:
     accuracy: float = 0.0
     """Requested relative accuracy."""
     on_triangles: list[str] = field(default_factory=list)
-    """Trimmed surfaces and round bodies of sketches, which are measured on the triangles of their
-    panels. The errors of volume, area and centre are estimated in ``bounds``.
+    """Round bodies of sketches, and trimmed surfaces whose loops nearly cross: they are measured on
+    the triangles of their panels. ``bounds`` includes the errors of volume, area and centre.
     """
     faceted: list[str] = field(default_factory=list)
     """Bodies of sets, which are measured on their facets. Their distance from the set is unknown,
     so there are no ``bounds``.
     """
-    inner_skins: list[str] = field(default_factory=list)
-    """Plates inside a body and bodies that overlap, as remarks; see ``Model.inner_skins``."""
+    doubts: list[str] = field(default_factory=list)
+    """Plates inside a body, bodies that overlap and surfaces that turn over themselves, as remarks;
+    see ``Model.inner_skins`` and ``Model.folded_surfaces``."""
     partial: bool = False
     """True for a model with failed objects, or with contradictory divisions of panels; see
     ``Model.partial``.
@@ -234,7 +240,7 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Immersed openings, overlaps, surfaces measured on triangles, inaccurate figures."""
+        """Immersed openings, overlaps, folds, figures of triangles, inaccurate figures."""
         lines = []
         if self.partial:
             lines.append("the model is incomplete: the figures are those of the valid objects")
@@ -244,7 +250,7 @@ class Hydrostatics:
                 f"{count} of the skin below the water, which enters there: the figures are not "
                 "those of a body"
             )
-        lines += self.inner_skins
+        lines += self.doubts
         if self.on_triangles:
             named = ", ".join(f"`{name}`" for name in self.on_triangles[:3])
             more = len(self.on_triangles) - 3
@@ -284,8 +290,8 @@ class Hydrostatics:
             del kept["on_triangles"]
         if not self.faceted:
             del kept["faceted"]
-        if not self.inner_skins:
-            del kept["inner_skins"]
+        if not self.doubts:
+            del kept["doubts"]
         if not self.partial:
             del kept["partial"]
         return kept

@@ -664,6 +664,31 @@ class Model(Differentiable, Floating, Writable, Adapted):
         """
         return self._document.inner_skins()
 
+    def folded_surfaces(self) -> list[_core.Diagnostic]:
+        """Surfaces of the skin that turn over themselves.
+
+        Each is a warning with a place: areas, volumes and panels count the fold more than once. The
+        normals of smooth cells are compared at about 24 x 24 places of each surface; where they are
+        opposite, halving leads to the place at which the normal vanishes. A smaller fold is missed.
+
+        Returns
+        -------
+        list of Diagnostic
+            Empty when no surface is found to do so, or the skin has no body.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 3, 0);
+        ... AbsPoint E(1, 9, 0); AbsPoint F(3, -8, 0);
+        ... Line low(A, B); BCurve high({C, E, F, D}); RuledSurf plate(low, high);
+        ... ''')
+        >>> [(d.id, d.object) for d in m.folded_surfaces()]
+        [('folded-surface', 'plate')]
+        """
+        return self._document.folded_surfaces()
+
     def junctions(self) -> list[_core.Diagnostic]:
         """Coincident edges of patches, and corners on edges of others, that are not joined.
 

@@ -65,7 +65,7 @@ def test_inner_plates_and_overlaps_are_named() -> None:
     Arc half(A, {1, 0, 0}, B, type = 1); RevSurf ball(half, axis, 0, 2*PI);
     """
     m = moldloft.loads(ball)
-    assert m.inner_skins() == [] and m.hydrostatics().inner_skins == []
+    assert m.inner_skins() == [] and m.hydrostatics().doubts == []
     other = moldloft.loads(ball + "CopySurf other(ball, A, C, 1, 1, 1);")
     assert [d.id for d in other.inner_skins()] == ["bodies-overlap"]
     assert any("overlap" in remark for remark in other.hydrostatics().remarks)

@@ -3,7 +3,9 @@
 
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
+use crate::folds::fold;
 use crate::integrals::{Immersed, Wanted, immersed};
+use crate::trimmed::TrimLoops;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
 use std::sync::Arc;
@@ -31,6 +33,8 @@ pub struct HullSide<'a, T: Real> {
     pub reversed: bool,
     /// True for each of the edges v = 0, u = 1, v = 1, u = 0 that is not joined.
     pub open_edges: [bool; 4],
+    /// The loops of the part that bounds the body; `None` for the whole surface.
+    pub loops: Option<&'a TrimLoops<'a, T>>,
 }
 
 /// The skin of a body as polynomial cells.
@@ -39,6 +43,8 @@ pub struct Body<T> {
     cells: Vec<Arc<PolynomialCell<T>>>,
     /// Control points of the open edges of the skin.
     rims: Vec<Vec<Vec3<T>>>,
+    /// See [`Self::folds`].
+    folds: Vec<(usize, Vec3)>,
     size: f64,
     accuracy: f64,
 }
@@ -72,13 +78,13 @@ pub fn surface_measures<T: Real>(
         return None;
     }
     let size = Box3::around(points.iter().map(|p| p.re())).diagonal();
-    let side = HullSide { surface, reversed: false, open_edges: [false; 4] };
+    let side = HullSide { surface, reversed: false, open_edges: [false; 4], loops: None };
     Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
 }
 
 impl<T: Real> Body<T> {
     /// The body bounded by surfaces and by panels of other skins. `size` is approximately its
-    /// diagonal. `None` if a point of a surface is not finite.
+    /// diagonal. `None` if a point of a surface is not finite, or loops bound no part of it.
     pub fn new(
         sides: &[HullSide<'_, T>],
         panels: impl IntoIterator<Item = [Vec3<T>; 4]>,
@@ -91,11 +97,15 @@ impl<T: Real> Body<T> {
             area: 0.1 * SHARE * accuracy * size * size,
             relative: (SHARE * accuracy).max(1e-11),
         };
-        let mut body = Self { cells: Vec::new(), rims, size, accuracy };
-        for side in sides {
-            let cells = cells_of(side.surface, side.reversed, limits)?;
-            for k in (0..4).filter(|&k| side.open_edges[k]) {
-                body.rims.extend(cells.iter().filter(|c| c.on_edge(k)).map(|c| c.edge(k)));
+        let mut body = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
+        for (k, side) in sides.iter().enumerate() {
+            let cells = cells_of(side.surface, side.loops, side.reversed, limits)?;
+            for edge in (0..4).filter(|&edge| side.open_edges[edge]) {
+                let rim = cells.iter().filter(|c| c.on_edge(edge));
+                body.rims.extend(rim.map(|c| c.edge(edge)));
+            }
+            if T::PARTS == 1 {
+                body.folds.extend(fold(&cells).map(|at| (k, at)));
             }
             body.cells.extend(cells.into_iter().map(Arc::new));
         }
@@ -109,7 +119,7 @@ impl<T: Real> Body<T> {
         let at = |v: u32| mesh.positions()[v as usize];
         let panels = mesh.skin_faces().into_iter().map(|f| mesh.faces()[f].map(at));
         let rims = mesh.open_skin_edges().into_iter().map(|(_, e)| e.map(at).to_vec()).collect();
-        let no_surface = Self { cells: Vec::new(), rims, size, accuracy };
+        let no_surface = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
         let cells = panels.map(|p| Arc::new(PolynomialCell::of_panel(p))).collect();
         Self { cells, ..no_surface }
     }
@@ -127,6 +137,12 @@ impl<T: Real> Body<T> {
     /// Relative accuracy of the figures.
     pub fn accuracy(&self) -> f64 {
         self.accuracy
+    }
+
+    /// The sides, by their index, that turn over themselves, each with a place at which it does;
+    /// found without derivatives, where the body was made of its sides.
+    pub fn folds(&self) -> &[(usize, Vec3)] {
+        &self.folds
     }
 
     /// The number of polynomial cells.
@@ -148,6 +164,7 @@ impl<T: Real> Body<T> {
         Self {
             cells: self.cells.iter().map(|c| Arc::new(c.mapped(&map, turned))).collect(),
             rims: self.rims.iter().map(|r| r.iter().map(|&p| map(p)).collect()).collect(),
+            folds: Vec::new(),
             size: self.size,
             accuracy: self.accuracy,
         }
@@ -172,6 +189,7 @@ impl<T: Real> Body<T> {
         Body {
             cells: self.cells.iter().map(|c| Arc::new(c.re())).collect(),
             rims: self.rims.iter().map(|r| r.iter().map(|p| p.re()).collect()).collect(),
+            folds: self.folds.clone(),
             size: self.size,
             accuracy: self.accuracy,
         }

@@ -5,6 +5,7 @@
 
 use crate::bernstein::{MOST_DEGREE, basis, halves};
 use crate::chart::{Chart, charts};
+use crate::trimmed::TrimLoops;
 use moldloft_num::period::crease_rate;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use std::sync::OnceLock;
@@ -180,11 +181,12 @@ impl<T: Real> PolynomialCell<T> {
     }
 }
 
-/// The cells of a surface, or `None` if it is not finite. `reversed` is true for an outward normal
-/// of -S_u x S_v.
+/// The cells of a surface or, with loops, of its part within them; `None` if it is not finite, or
+/// the loops bound no part. `reversed` is true for an outward normal of -S_u x S_v.
 /// A part of another surface is also cut along the break lines of that surface.
 pub(crate) fn cells_of<T: Real>(
     surface: &dyn Surface<T>,
+    loops: Option<&TrimLoops<'_, T>>,
     reversed: bool,
     limits: FitLimits,
 ) -> Option<Vec<PolynomialCell<T>>> {
@@ -201,7 +203,7 @@ pub(crate) fn cells_of<T: Real>(
     let (us, vs) = (ends(bu, ju), ends(bv, jv));
     let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
     let mut frames: Vec<CellFrame<'_, T>> = Vec::new();
-    let charts = charts(surface, &us, &vs);
+    let charts = charts(surface, loops, [&us, &vs])?;
     match &charts {
         Some(charts) => {
             let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);

@@ -5,6 +5,7 @@
 //! sides are mapped to unit squares, one side of which may have zero length. Where it is not a
 //! graph, as near a turning point, the square is quartered.
 
+use crate::trimmed::{TrimLoops, trimmed_charts};
 use moldloft_num::period::breaks_between;
 use moldloft_num::{Bi1, InnerPlane, Jet, Order, Real, Surface, find_root};
 
@@ -13,6 +14,8 @@ use moldloft_num::{Bi1, InnerPlane, Jet, Order, Real, Surface, find_root};
 #[derive(Clone, Debug)]
 pub(crate) struct Chart<T> {
     cuts: Vec<ChartCut<T>>,
+    /// For u and v, true if its places may be beyond 0 and 1.
+    closed: [bool; 2],
     /// True for each of the edges v = 0, u = 1, v = 1, u = 0 of the surface that it reaches.
     pub border: [bool; 4],
 }
@@ -24,13 +27,42 @@ struct ChartCut<T> {
     along: usize,
     /// The range of the other parameter.
     range: [f64; 2],
+    /// The steps from one boundary to the other.
+    graded: GradedSteps,
     /// Both boundaries, as functions of the relative position of the other parameter in its range.
     sides: [ChartBoundary<T>; 2],
 }
 
 /// A polynomial on [0, 1] in Chebyshev form.
 #[derive(Clone, Debug)]
-struct ChartBoundary<T>(Vec<T>);
+pub(crate) struct ChartBoundary<T>(Vec<T>);
+
+/// A monotonic map of [0, 1] to itself, with slope zero at the chosen ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct GradedSteps {
+    pub ends: [bool; 2],
+}
+
+impl GradedSteps {
+    pub fn at<J: Real>(self, s: J) -> J {
+        match self.ends {
+            [false, false] => s,
+            [true, false] => s * s,
+            [false, true] => s * (-s + 2.0),
+            [true, true] => s * s * (s * -2.0 + 3.0),
+        }
+    }
+
+    /// Its derivative.
+    pub fn slope(self, s: f64) -> f64 {
+        match self.ends {
+            [false, false] => 1.0,
+            [true, false] => 2.0 * s,
+            [false, true] => 2.0 - 2.0 * s,
+            [true, true] => 6.0 * s * (1.0 - s),
+        }
+    }
+}
 
 /// A line of constant parameter: coordinate `axis` of parameter plane `plane` is `at`.
 #[derive(Clone, Copy, Debug)]
@@ -53,19 +85,23 @@ const ON_LINE: f64 = 1e-11;
 const STEEPEST: f64 = 3.0;
 
 /// Tolerance of a boundary, relative to the square.
-const BOUNDARY_FIT: f64 = 1e-11;
+pub(crate) const BOUNDARY_FIT: f64 = 1e-11;
 
 /// Maximum number of quarterings of a square and of halvings of a boundary.
-const DEEPEST: u32 = 14;
+pub(crate) const DEEPEST: u32 = 14;
 
 /// Distance from a line at which one side of it is evaluated, relative to the square.
 const BESIDE: f64 = 1e-9;
 
 /// Parameters at which a boundary is compared with its line.
-const PROBES: [f64; 4] = [0.003, 0.31, 0.77, 0.997];
+pub(crate) const PROBES: [f64; 4] = [0.003, 0.31, 0.77, 0.997];
 
 impl<T: Real> ChartBoundary<T> {
-    fn at<J: Jet<T>>(&self, t: J) -> J {
+    pub fn constant(value: T) -> Self {
+        Self(vec![value])
+    }
+
+    pub fn at<J: Jet<T>>(&self, t: J) -> J {
         let [first, rest @ ..] = &*self.0 else { return J::zero() };
         let x = t * 2.0 - 1.0;
         let (mut next, mut after) = (J::zero(), J::zero());
@@ -76,7 +112,7 @@ impl<T: Real> ChartBoundary<T> {
     }
 
     /// The polynomial with these values at the roots of the Chebyshev polynomial of degree [`NODES`].
-    fn through(values: &[T; NODES]) -> Self {
+    pub fn through(values: &[T; NODES]) -> Self {
         let coefficient = |k: usize| {
             let sum = (0..NODES).fold(T::zero(), |sum, j| {
                 let angle = std::f64::consts::PI * (k as f64) * (j as f64 + 0.5) / NODES as f64;
@@ -87,13 +123,22 @@ impl<T: Real> ChartBoundary<T> {
         Self((0..NODES).map(coefficient).collect())
     }
 
+    /// The same without its last coefficients, where they are rounding.
+    pub fn shortened(mut self) -> Self {
+        let negligible = |c: &T| (0..T::PARTS).all(|part| c.part(part).abs() < 1e-16);
+        while self.0.len() > 1 && self.0.last().is_some_and(negligible) {
+            self.0.pop();
+        }
+        self
+    }
+
     fn is_constant(&self) -> bool {
         self.0.iter().all(|c| c.is_constant())
     }
 }
 
 /// The roots of that polynomial on [0, 1].
-fn nodes() -> [f64; NODES] {
+pub(crate) fn nodes() -> [f64; NODES] {
     std::array::from_fn(|j| {
         let half = std::f64::consts::FRAC_PI_2 * (j as f64 + 0.5) / NODES as f64;
         // From 1 down to 0, in the order of the cosines of the coefficients.
@@ -107,10 +152,31 @@ impl<T: Real> Chart<T> {
         let cut = |along: usize, a: T, b: T| ChartCut {
             along,
             range: [0.0, 1.0],
+            graded: GradedSteps::default(),
             sides: [ChartBoundary(vec![a]), ChartBoundary(vec![b])],
         };
         let border = [v0.re() == 0.0, u1.re() == 1.0, v1.re() == 1.0, u0.re() == 0.0];
-        Self { cuts: vec![cut(0, u0, u1), cut(1, v0, v1)], border }
+        Self { cuts: vec![cut(0, u0, u1), cut(1, v0, v1)], closed: [false; 2], border }
+    }
+
+    /// The part of a trapezoid between two values of the parameter `w`, over a range of its steps
+    /// along w; `sides` are its boundaries there.
+    pub fn trapezoid(
+        w: usize,
+        ends: [T; 2],
+        graded: GradedSteps,
+        range: [f64; 2],
+        sides: [ChartBoundary<T>; 2],
+        closed: [bool; 2],
+    ) -> Self {
+        let along_w = ChartCut {
+            along: w,
+            range: [0.0, 1.0],
+            graded,
+            sides: ends.map(ChartBoundary::constant),
+        };
+        let across = ChartCut { along: 1 - w, range, graded: GradedSteps::default(), sides };
+        Self { cuts: vec![along_w, across], closed, border: [false; 4] }
     }
 
     /// The point in the parameter square of the surface.
@@ -119,7 +185,7 @@ impl<T: Real> Chart<T> {
             let share = p[1 - cut.along];
             let [low, high] = cut.sides.each_ref().map(|side| side.at(share));
             let mut out = p;
-            out[cut.along] = low + (high - low) * p[cut.along];
+            out[cut.along] = low + (high - low) * cut.graded.at(p[cut.along]);
             let [from, to] = cut.range;
             out[1 - cut.along] =
                 if [from, to] == [0.0, 1.0] { share } else { share * (to - from) + from };
@@ -129,7 +195,9 @@ impl<T: Real> Chart<T> {
 
     /// The same point without derivatives.
     pub fn real(&self, place: [f64; 2]) -> [f64; 2] {
-        self.at(place.map(T::from)).map(|w| w.re().clamp(0.0, 1.0))
+        let [u, v] = self.at(place.map(T::from)).map(T::re);
+        let within = |w: f64, closed: bool| if closed { w } else { w.clamp(0.0, 1.0) };
+        [within(u, self.closed[0]), within(v, self.closed[1])]
     }
 
     /// True when it depends on a parameter of the model.
@@ -152,34 +220,43 @@ impl<T: Real> Chart<T> {
             side.unwrap_or_else(|| ChartBoundary(vec![T::from(at)]))
         };
         let mut cuts = self.cuts.clone();
-        cuts.push(ChartCut { along, range, sides: [end(low, 0.0), end(high, 1.0)] });
-        Self { cuts, border }
+        let sides = [end(low, 0.0), end(high, 1.0)];
+        cuts.push(ChartCut { along, range, graded: GradedSteps::default(), sides });
+        Self { cuts, closed: self.closed, border }
     }
 }
 
-/// The charts of a subsurface, or `None` for a surface without inner lines. `us` and `vs` are the
-/// cell boundaries at its own joints.
+/// The charts of a surface or, with loops, of its part within them; `Some(None)` for a whole
+/// surface without inner lines, `None` for loops that bound no part. `us` and `vs` are the cell
+/// boundaries at its own joints.
 pub(crate) fn charts<T: Real>(
     surface: &dyn Surface<T>,
-    us: &[T],
-    vs: &[T],
-) -> Option<Vec<Chart<T>>> {
+    loops: Option<&TrimLoops<'_, T>>,
+    [us, vs]: [&[T]; 2],
+) -> Option<Option<Vec<Chart<T>>>> {
     let planes = surface.inner_planes();
     let none = |plane: &InnerPlane<'_>| {
         plane.joints.iter().all(Vec::is_empty) && plane.closed == [false; 2]
     };
-    if planes.iter().all(none) {
-        return None;
+    let whole = planes.iter().all(none);
+    let charts = match loops {
+        Some(loops) => trimmed_charts(surface, loops)?,
+        None if whole => return Some(None),
+        None => {
+            let pairs =
+                |u: &[T]| vs.windows(2).map(|v| [u[0], u[1], v[0], v[1]]).collect::<Vec<_>>();
+            us.windows(2).flat_map(pairs).map(Chart::rectangle).collect()
+        }
+    };
+    if whole {
+        return Some(Some(charts));
     }
     let mut cutter = Cutter { surface, planes, charts: Vec::new() };
-    for u in us.windows(2) {
-        for v in vs.windows(2) {
-            let chart = Chart::rectangle([u[0], u[1], v[0], v[1]]);
-            let lines = cutter.lines(&chart);
-            cutter.cut(chart, lines, 0);
-        }
+    for chart in charts {
+        let lines = cutter.lines(&chart);
+        cutter.cut(chart, lines, 0);
     }
-    Some(cutter.charts)
+    Some(Some(cutter.charts))
 }
 
 struct Cutter<'a, T: Real> {

@@ -99,7 +99,10 @@ pub(crate) fn floating<T: Real>(
     let largest = (x - z).re().abs().max((y - z).re().abs());
     let green = sums.green.re().abs();
     let fit = body.fit_errors(&box_);
-    let errors = std::array::from_fn(|k| (all.errors[k] + fit[k]) * sides);
+    let mut errors: [f64; 6] = std::array::from_fn(|k| (all.errors[k] + fit[k]) * sides);
+    // Rims that only nearly meet leave slits, whose share differs from form to form.
+    errors[0] += largest;
+    errors[1] += largest * body.size();
     let figures = Hydrostatics {
         level,
         volume,

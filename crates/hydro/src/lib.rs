@@ -18,11 +18,13 @@ mod descent;
 mod equilibrium;
 mod figures;
 mod flotation;
+mod folds;
 mod hydrostatics;
 mod integrals;
 mod measures;
 mod section;
 mod strip;
+mod trimmed;
 
 pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, surface_measures};
 pub use cell::PolynomialCell;
@@ -32,10 +34,15 @@ pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
 pub use hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 pub use measures::{curve_measures, solid_measures};
 pub use section::section_area;
+pub use trimmed::{TrimCurve, TrimLoops, bounds_part};
 
+#[cfg(test)]
+mod folds_tests;
 #[cfg(test)]
 mod mesh_tests;
 #[cfg(test)]
 mod part_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod trimmed_tests;

@@ -29,7 +29,7 @@ impl<T: Real> SurfaceFormula for Ellipsoid<T> {
 
 pub(crate) fn ellipsoid<T: Real>(axes: [T; 3], at: Vec3<T>, accuracy: f64) -> Body<T> {
     let surface = Ellipsoid { axes, at };
-    let side = HullSide { surface: &surface, reversed: true, open_edges: [false; 4] };
+    let side = HullSide { surface: &surface, reversed: true, open_edges: [false; 4], loops: None };
     let size = 2.0 * axes.iter().map(|a| a.re() * a.re()).sum::<f64>().sqrt();
     Body::new(&[side], [], Vec::new(), size, accuracy).unwrap()
 }
@@ -113,7 +113,7 @@ impl SurfaceFormula for Lumpy {
 
 #[test]
 fn below_and_above_are_all() {
-    let side = HullSide { surface: &Lumpy, reversed: true, open_edges: [false; 4] };
+    let side = HullSide { surface: &Lumpy, reversed: true, open_edges: [false; 4], loops: None };
     let body = Body::new(&[side], [], Vec::new(), 3.0, 1e-7).unwrap();
     let whole = body.measures();
     let turned = body.mapped(|p| Vec3::new(p.x, -p.y, -p.z), false);
@@ -153,7 +153,7 @@ impl SurfaceFormula for Torus {
 fn a_torus_half_immersed_and_on_its_side() {
     let (big, small) = (3.0, 0.8);
     let torus = Torus([big, small]);
-    let side = HullSide { surface: &torus, reversed: true, open_edges: [false; 4] };
+    let side = HullSide { surface: &torus, reversed: true, open_edges: [false; 4], loops: None };
     let body = Body::new(&[side], [], Vec::new(), 8.0, 1e-7).unwrap();
     let volume = 2.0 * PI * PI * big * small * small;
     assert!((body.measures().volume - volume).abs() < 1e-6);
@@ -185,8 +185,12 @@ impl SurfaceFormula for Bowl {
 
 #[test]
 fn a_skin_with_an_infinite_tangent() {
-    let side =
-        HullSide { surface: &Bowl, reversed: false, open_edges: [false, false, true, false] };
+    let side = HullSide {
+        surface: &Bowl,
+        reversed: false,
+        open_edges: [false, false, true, false],
+        loops: None,
+    };
     let body = Body::new(&[side], [], Vec::new(), 2.0, 1e-6).unwrap();
     let found = flotation(&body, Water::default(), Attitude::upright(0.0), None);
     let off = (found.earth.volume.abs() - PI / 2.0).abs();

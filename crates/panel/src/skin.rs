@@ -2,11 +2,11 @@
 //! edges.
 
 use crate::panelling::Panelling;
-use moldloft_hydro::{Body, HullSide};
+use moldloft_hydro::{Body, HullSide, TrimCurve, bounds_part};
 use moldloft_mesh::{Closes, EdgeName, Mesh, OpenEdge, closure};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
-use moldloft_registry::{Scalar, Value};
+use moldloft_registry::{Border, Scalar, SurfaceRef, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Skin {
     sides: Vec<SkinSide>,
-    /// Faces of bodies of triangles, and of grids of very many pieces, which are their panels.
+    /// Faces of bodies of triangles, and of surfaces of very many pieces, which are their panels.
     faces: Vec<usize>,
     /// Open panel edges where no whole edge of a surface is open.
     rims: Vec<[u32; 2]>,
@@ -30,6 +30,14 @@ struct SkinSide {
     name: Arc<str>,
     reversed: bool,
     open_edges: [bool; 4],
+    /// True for a part of a surface within loops.
+    trimmed: bool,
+}
+
+/// The shape of a side: a surface, or a part of one.
+enum SideShape<T: Scalar> {
+    Whole(SurfaceRef<T>),
+    Trimmed(Border<T>),
 }
 
 /// A surface of more pieces than this is measured on its panels.
@@ -55,20 +63,36 @@ impl Skin {
             on_panels: Vec::new(),
             open: Vec::new(),
         };
+        // The sheet of each patch of a body of triangles, and its orientation.
+        let sheets: Vec<Option<(&Arc<str>, bool)>> = (panelling.bodies.iter())
+            .flat_map(|body| {
+                let sheet = body.has_border().then_some((&body.name, body.reversed));
+                vec![sheet; body.facets.groups.len().max(1)]
+            })
+            .collect();
         let mut in_parts: HashSet<usize> = HashSet::new();
         let shared = shared_edges(panelling, mesh);
         for (k, patch) in mesh.patches().iter().enumerate() {
             if !patch.info.tag.is_skin() {
                 continue;
             }
-            let pieces = |name: &Arc<str>| {
-                let object = graph.get(graph.find(name)?)?;
-                let Value::Surface(surface) = object.value()? else { return None };
+            let few = |surface: &SurfaceRef<T>| {
                 let [u, v] = surface.joints();
-                Some((u.len() + 1) * (v.len() + 1))
+                (u.len() + 1) * (v.len() + 1) <= MOST_PIECES
             };
-            let side = names.get(k).zip(patch.block.as_ref());
-            let side = side.filter(|(name, _)| pieces(name).is_some_and(|n| n <= MOST_PIECES));
+            let whole = |name: &Arc<str>| match shape(graph, name, false) {
+                Some(SideShape::Whole(surface)) => few(&surface),
+                _ => false,
+            };
+            let side = names.get(k).zip(patch.block.as_ref()).filter(|(name, _)| whole(name));
+            let sheet = k.checked_sub(names.len()).and_then(|k| sheets.get(k).copied().flatten());
+            let sheet = sheet.filter(|(name, _)| match shape(graph, name, true) {
+                Some(SideShape::Trimmed(border)) => {
+                    let surface = border.0.surface();
+                    few(surface) && bounds_part(&**surface, &loops(&border))
+                }
+                _ => false,
+            });
             let mut open_edges = [false; 4];
             let closed =
                 |edge: EdgeName| matches!(edge, EdgeName::Side(n) if shared.contains(&(k, n)));
@@ -96,7 +120,11 @@ impl Skin {
                         open_edges = [false; 4];
                     }
                     let (name, reversed) = (name.clone(), block.reversed);
-                    skin.sides.push(SkinSide { name, reversed, open_edges });
+                    skin.sides.push(SkinSide { name, reversed, open_edges, trimmed: false });
+                }
+                None if let Some((name, reversed)) = sheet => {
+                    let (name, open_edges) = (name.clone(), [false; 4]);
+                    skin.sides.push(SkinSide { name, reversed, open_edges, trimmed: true });
                 }
                 None => {
                     skin.faces.extend(patch.faces.clone());
@@ -117,9 +145,15 @@ impl Skin {
         skin
     }
 
-    /// The patches that are measured on their panels: they have no surface, or it has very many pieces.
+    /// The patches that are measured on their panels: they have no surface, it has very many pieces, or
+    /// the loops of a part cross.
     pub fn on_panels(&self) -> &[String] {
         &self.on_panels
+    }
+
+    /// The name of a surface, by its index among the sides of the body.
+    pub fn side(&self, index: usize) -> &str {
+        &self.sides[index].name
     }
 
     /// The patches with an edge that nothing closes: neither a neighbour nor a mirror image.
@@ -140,19 +174,23 @@ impl Skin {
         graph: &Graph<T>,
         accuracy: f64,
     ) -> Option<Body<T>> {
-        let surface = |side: &SkinSide| match graph.get(graph.find(&side.name)?)?.value()? {
-            Value::Surface(surface) => Some(surface.clone()),
-            _ => None,
-        };
-        let surfaces: Vec<_> = self.sides.iter().map(surface).collect::<Option<_>>()?;
-        let sides: Vec<HullSide<'_, T>> = self
-            .sides
-            .iter()
-            .zip(&surfaces)
-            .map(|(side, surface)| HullSide {
-                surface: &**surface,
+        let shapes = self.sides.iter().map(|side| shape(graph, &side.name, side.trimmed));
+        let shapes: Vec<_> = shapes.collect::<Option<_>>()?;
+        let parts: Vec<Option<_>> = (shapes.iter())
+            .map(|shape| match shape {
+                SideShape::Whole(_) => None,
+                SideShape::Trimmed(border) => Some(loops(border)),
+            })
+            .collect();
+        let sides: Vec<HullSide<'_, T>> = (self.sides.iter().zip(&shapes).zip(&parts))
+            .map(|((side, shape), loops)| HullSide {
+                surface: match shape {
+                    SideShape::Whole(surface) => &**surface,
+                    SideShape::Trimmed(border) => &**border.0.surface(),
+                },
                 reversed: side.reversed,
                 open_edges: side.open_edges,
+                loops: loops.as_deref(),
             })
             .collect();
         let mut panels: Vec<[Vec3<T>; 4]> = Vec::new();
@@ -165,6 +203,22 @@ impl Skin {
         }
         Body::new(&sides, panels, rims, self.size, accuracy)
     }
+}
+
+/// The shape of a side, by the name of its object.
+fn shape<T: Scalar>(graph: &Graph<T>, name: &str, trimmed: bool) -> Option<SideShape<T>> {
+    match graph.get(graph.find(name)?)?.value()? {
+        Value::Surface(surface) if !trimmed => Some(SideShape::Whole(surface.clone())),
+        Value::Body(facets) if trimmed => facets.border.clone().map(SideShape::Trimmed),
+        _ => None,
+    }
+}
+
+/// The loops of a part of a surface.
+fn loops<T: Scalar>(border: &Border<T>) -> Vec<Vec<TrimCurve<'_, T>>> {
+    let curves = border.0.curves();
+    let of = |&(k, backwards): &(usize, bool)| TrimCurve { curve: &*curves[k].curve, backwards };
+    border.0.cycles().iter().map(|cycle| cycle.iter().map(of).collect()).collect()
 }
 
 /// The edges (patch of the mesh, edge 0..4) all of whose intervals belong to another edge of the

@@ -632,6 +632,19 @@ impl PyDocument {
         Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
     }
 
+    /// Surfaces of the skin that turn over themselves.
+    fn folded_surfaces(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
+        let found = self.long_checked(py, |d| d.folded_surfaces().map_err(|e| vec![e]))?;
+        let document = self.lock(py);
+        let sources = document.sources();
+        Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
+    }
+
+    /// The patches that hydrostatics measure on their panels.
+    fn on_panels(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.long_checked(py, |d| d.on_panels().map_err(|e| vec![e]))
+    }
+
     /// Plates inside a body, and bodies that overlap.
     fn inner_skins(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
         let found = self.long_checked(py, |d| d.inner_skins().map_err(|e| vec![e]))?;

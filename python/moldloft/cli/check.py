@@ -57,6 +57,7 @@ def _check(options: argparse.Namespace) -> tuple[int, Any]:
             diagnostics += model.junctions()
         if mesh is not None and mesh.patches:
             diagnostics += model.inner_skins()
+            diagnostics += model.folded_surfaces()
         if not options.quality:
             mesh = None
     errors = sum(d.is_error for d in diagnostics)

@@ -6,6 +6,7 @@ use moldloft_diag::{Diagnostic, Severity};
 use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::{not_finite, open_below_water};
 use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
+use moldloft_num::Vec3;
 use moldloft_panel::Skin;
 use std::sync::Arc;
 
@@ -91,6 +92,42 @@ impl Document {
         let bodied = Arc::new(Bodied { clock, accuracy, skin, body });
         self.bodied = Some(bodied.clone());
         Ok(bodied)
+    }
+
+    /// The patches of the skin that are measured on their panels; see [`Skin::on_panels`].
+    ///
+    /// # Errors
+    /// If the panels exceed the limit, or a surface is not finite.
+    pub fn on_panels(&mut self) -> Result<Vec<String>, Diagnostic> {
+        let accuracy = self.bodied.as_ref().map_or(USUAL_ACCURACY, |known| known.accuracy);
+        Ok(self.bodied(accuracy)?.skin.on_panels().to_vec())
+    }
+
+    /// Warnings about surfaces of the skin that turn over themselves: areas and volumes count the
+    /// fold more than once.
+    ///
+    /// # Errors
+    /// None: a skin without a body has no such warnings.
+    pub fn folded_surfaces(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
+        let accuracy = self.bodied.as_ref().map_or(USUAL_ACCURACY, |known| known.accuracy);
+        // Without a body its own fault is reported where it is measured.
+        let Ok(bodied) = self.bodied(accuracy) else { return Ok(Vec::new()) };
+        let report = |(side, at): &(usize, Vec3)| {
+            let name = bodied.skin.side(*side);
+            let place = format!("({:.6}, {:.6}, {:.6})", at.x, at.y, at.z);
+            let message = format!(
+                "`{name}` turns over itself, at {place}: areas count the fold more than once"
+            );
+            let advice =
+                "move its sides apart there, run them at other rates, or cut it before the fold";
+            let fault = Diagnostic::warning("folded-surface", message).help(advice).object(name);
+            let object = self.graph().find(name).and_then(|key| self.graph().get(key));
+            match object.and_then(|o| self.declared_at(&self.plain, o)) {
+                Some(span) => fault.at(span),
+                None => fault,
+            }
+        };
+        Ok(bodied.body.folds().iter().map(report).collect())
     }
 
     /// Warnings about plates of the skin inside a body, and about bodies that overlap and whose
