@@ -133,11 +133,12 @@ pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };
 pub use net::network;
-pub use net::network::{Network, NetworkFit};
+pub use net::network::Network;
 pub use net::patches::{NetEdge, PatchNet, Seam};
 pub use net::report::{NetworkMode, NetworkReport};
 pub use net::shapes::{NetworkCondition, one_way};
 pub use net::strand::NetworkCurve;
+pub use net::toward::NetworkFit;
 pub use optimum::certificate::{Certificate, ball_gap};
 pub use optimum::goal::Goal;
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};

@@ -1,24 +1,14 @@
 //! Curves that share points: control nets of surfaces, and hulls of stations, waterlines and
 //! buttocks.
 
-use crate::curve::exact::{all_exact, between_breaks};
-use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
-use crate::net::lines::{LineNumbers, LineRound, PlacedNet};
+use crate::net::lines::PlacedNet;
 use crate::net::seam::SeamCondition;
-use crate::net::shapes::{EquationSpan, KEPT, MET, NetworkCondition, ROUNDS, SETTLED, one_way};
+use crate::net::shapes::{NetworkCondition, one_way};
 use crate::net::strand::NetworkCurve;
-use crate::optimum::certificate::gap;
-use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, allowed, check_decided,
-    check_unique, is_between, moved, rounding,
-};
 use crate::optimum::ties::Ties;
-use crate::optimum::{Bounded, ControlInequality, Optimum, Parts};
-use crate::{
-    Bound, Certificate, Condition, EndContinuity, FairError, Job, KnotRemovalOptions, Limit,
-    Measure, Motion, Space, SparseRows, knot_removal_from, replay_from_with,
-};
+use crate::optimum::{Bounded, Optimum, Parts};
+use crate::{Bound, Condition, EndContinuity, FairError, Job, Limit, Measure, Space, SparseRows};
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
 
@@ -238,16 +228,8 @@ impl Network {
         })
     }
 
-    fn check_seams(&self) -> Result<(), FairError> {
-        if self.seams.is_empty() && self.held.is_empty() {
-            Ok(())
-        } else {
-            Err(FairError::SeamsByPasses)
-        }
-    }
-
     /// Curve `k` as a job of its own, at these points.
-    fn job(&self, k: usize, points: &[Vec3<f64>]) -> Job {
+    pub(super) fn job(&self, k: usize, points: &[Vec3<f64>]) -> Job {
         let strand = &self.strands[k];
         let pick = |i: &usize| points[*i];
         Job {
@@ -261,17 +243,6 @@ impl Network {
             marks: strand.marks.clone(),
             ends: strand.ends,
         }
-    }
-
-    /// Curve `k` at the original points, where what stays fixed for any curve does so for this one.
-    fn pass_job(&self, k: usize, frozen: &[bool]) -> Job {
-        let mut job = self.job(k, &self.points);
-        for (radius, &i) in job.limit.radii.iter_mut().zip(&self.strands[k].points) {
-            if frozen[i] {
-                *radius = 0.0;
-            }
-        }
-        job
     }
 
     /// The value of a measure over some of the curves.
@@ -297,70 +268,6 @@ impl Network {
             sum += crate::measure::value(&job.measure_rows(measure)?, measure.norm(), &relative);
         }
         Ok(sum)
-    }
-
-    /// Fairs curve after curve by local steps, `passes` times over: the faithful way. The limit is
-    /// kept from the original across passes. The direction faired first gets rougher again, so
-    /// passes do not converge to the joint optimum.
-    ///
-    /// `steps` is the number of steps per control point of each curve.
-    ///
-    /// # Errors
-    /// As [`crate::knot_removal`].
-    pub fn passes(&self, passes: usize, steps: usize) -> Result<Vec<Vec3<f64>>, FairError> {
-        self.check()?;
-        self.check_seams()?;
-        let frozen = self.frozen();
-        let mut points = self.points.clone();
-        for _ in 0..passes {
-            for k in 0..self.strands.len() {
-                let job = self.pass_job(k, &frozen);
-                let from = self.strands[k].points.iter().map(|&i| points[i]).collect();
-                let options = KnotRemovalOptions::faithful(steps * job.points.len());
-                let faired = knot_removal_from(&job, from, &options)?.points;
-                for (&i, p) in self.strands[k].points.iter().zip(faired) {
-                    points[i] = p;
-                }
-            }
-        }
-        Ok(points)
-    }
-
-    /// The same for points that carry derivatives, whose real parts are those of the network: which
-    /// knots are chosen is as it is for the real parts.
-    ///
-    /// # Errors
-    /// As [`Network::passes`].
-    pub fn passes_with<T: Real>(
-        &self,
-        passes: usize,
-        steps: usize,
-        points: &[Vec3<T>],
-        tolerances: &[T],
-    ) -> Result<Vec<Vec3<T>>, FairError> {
-        self.check()?;
-        self.check_seams()?;
-        let frozen = self.frozen();
-        let mut now = points.to_vec();
-        for _ in 0..passes {
-            for (k, strand) in self.strands.iter().enumerate() {
-                let job = self.pass_job(k, &frozen);
-                let pick = |of: &[Vec3<T>]| -> Vec<Vec3<T>> {
-                    strand.points.iter().map(|&i| of[i]).collect()
-                };
-                let (from, original) = (pick(&now), pick(points));
-                let radii: Vec<T> = strand.points.iter().map(|&i| tolerances[i]).collect();
-                let plain = from.iter().map(|p| p.re()).collect();
-                let mut options = KnotRemovalOptions::faithful(steps * job.points.len());
-                options.log = true;
-                let made = knot_removal_from(&job, plain, &options)?;
-                let faired = replay_from_with(&job, &options, &made.log, &from, &original, &radii)?;
-                for (&i, p) in strand.points.iter().zip(faired) {
-                    now[i] = p;
-                }
-            }
-        }
-        Ok(now)
     }
 
     /// The rows of a measure over all curves.
@@ -391,333 +298,6 @@ impl Network {
         Ok(all)
     }
 
-    /// The points that pull: those that may move, over their tolerances.
-    fn pull(&self, frozen: &[bool]) -> (SparseRows, Vec<usize>) {
-        let (mut pull, mut owners) = (SparseRows::new(), Vec::new());
-        for (i, &radius) in self.limit.radii.iter().enumerate() {
-            if !frozen[i] && radius.is_finite() {
-                pull.push([(i, 1.0 / radius)]);
-                owners.push(i);
-            }
-        }
-        (pull, owners)
-    }
-
-    /// True if all curves through their points are exact between breaks.
-    fn exact(&self) -> bool {
-        let curve = |strand: &NetworkCurve| {
-            let own: Vec<Vec3<f64>> = strand.points.iter().map(|&i| self.points[i]).collect();
-            between_breaks(&own, &strand.marks, strand.space.is_closed())
-        };
-        self.strands.iter().all(|s| s.at.is_some())
-            && all_exact(self.strands.iter().flat_map(curve))
-    }
-
-    fn found<'a>(
-        &'a self,
-        parts: &mut Parts<'a>,
-        measure: Measure,
-        goal: Goal,
-        conditioned: bool,
-    ) -> Result<ReachedGoal<'a>, FairError> {
-        if self.conditions.is_empty() {
-            return self.found_near(parts, measure, goal, conditioned);
-        }
-        let base = parts.clone();
-        let lines = self.strands.len();
-        let most = MET * self.extent();
-        let finite = || self.limit.radii.iter().filter(|r| r.is_finite() && **r > 0.0);
-        let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
-        let mut at = self.points.clone();
-        let mut made: Option<ReachedGoal<'a>> = None;
-        let mut missed = (f64::INFINITY, 0);
-        for _ in 0..ROUNDS {
-            let linear = self.linear_conditions(&at)?;
-            let kept = linear.left.0 <= KEPT * mean;
-            let before =
-                std::mem::replace(&mut missed, if kept { linear.missed } else { linear.left });
-            if let Some(made) = made.take_if(|_| kept && missed.0 <= most) {
-                return Ok(made);
-            }
-            // The rest is rounding once the conditions do not change any more.
-            if kept
-                && missed.0 <= SETTLED * mean
-                && missed.0 > 0.5 * before.0
-                && let Some(mut made) = made.take()
-            {
-                let span = EquationSpan::of(self, &parts.equations());
-                made.found.optimum.points = span.nearest(self, &made.found.optimum.points);
-                return Ok(made);
-            }
-            let equations = self.independent(linear.equations)?;
-            *parts = base.clone();
-            // Limits all along curves do not hold at the positions of ties.
-            let direct = matches!(parts.bounded, Bounded::ControlPoints);
-            let equations = if direct {
-                let (ties, others, frozen) = self.tied(equations)?;
-                (parts.ties, parts.frozen) = (ties, frozen);
-                others
-            } else {
-                equations
-            };
-            let owners: Vec<usize> = equations.iter().map(|e| e.1).collect();
-            parts.conditions.extend(equations.into_iter().map(|e| e.0));
-            // Combinations that the equations determine have no sign.
-            let span = EquationSpan::of(self, &parts.equations());
-            // A search that begins where the equations hold keeps them.
-            if direct && self.limit.motion != Motion::Box && !parts.conditions.is_empty() {
-                let moves = span.within(self).into_iter().enumerate();
-                parts.begin = moves.map(|(i, v)| v - parts.ties.shift(i)).collect();
-            }
-            // The first owners are the lines, of the signs that these hold themselves.
-            let own = linear.halves.into_iter().filter(|h| !span.determines(&h.entries));
-            parts.halves.extend(own.map(|h| ControlInequality { owner: lines + h.owner, ..h }));
-            let found =
-                self.found_near(parts, measure, goal, true).map_err(|error| match error {
-                    FairError::Shape { shapes, miss } => {
-                        let shapes =
-                            shapes.into_iter().filter_map(|k| k.checked_sub(lines)).collect();
-                        FairError::Shape { shapes, miss }
-                    }
-                    FairError::Contradiction { conditions, ends, miss } => {
-                        let owner =
-                            |k: usize| owners.get(k.checked_sub(base.conditions.len())?).copied();
-                        let mut shapes: Vec<usize> =
-                            conditions.iter().filter_map(|&k| owner(k)).collect();
-                        shapes.dedup();
-                        if shapes.is_empty() {
-                            return FairError::Contradiction { conditions, ends, miss };
-                        }
-                        FairError::Shape { shapes, miss }
-                    }
-                    other => other,
-                })?;
-            at.clone_from(&found.found.optimum.points);
-            made = Some(found);
-        }
-        Err(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
-    }
-
-    fn found_near<'a>(
-        &'a self,
-        parts: &mut Parts<'a>,
-        measure: Measure,
-        goal: Goal,
-        conditioned: bool,
-    ) -> Result<ReachedGoal<'a>, FairError> {
-        let shaped = !self.conditions.is_empty();
-        let (pull, owners) = self.pull(&parts.frozen);
-        let (rows, norm) = (parts.measure.clone(), parts.norm);
-        let mut rounds = Vec::new();
-        if let (Goal::Near(share), true) = (goal, shaped || !conditioned) {
-            if !shaped && self.exact() {
-                let value = crate::measure::value(&rows, norm, &self.points);
-                let found = GoalOptimum::unmoved(&self.points, value, false);
-                return Ok(ReachedGoal { found, pull, owners, rounds });
-            }
-            if self.has_lines(norm) && !pull.is_empty() {
-                rounds.push(self.by_lines(parts, measure, &pull, None)?);
-                let fairest_used = rounds[0][rounds[0].len() - 1].found.used;
-                if let Some(share) = allowed(share, fairest_used, owners.len()) {
-                    rounds.push(self.by_lines(parts, measure, &pull, Some(share))?);
-                }
-                let last =
-                    rounds.last().and_then(|own| own.last()).map(|round| round.found.clone());
-                let mut found = last.expect("there are rounds");
-                found.fairest_used = fairest_used;
-                return Ok(ReachedGoal { found, pull, owners, rounds });
-            }
-        }
-        let path = RegularizationPath {
-            energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
-            squares: |points: &[Vec3<f64>]| {
-                let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
-                pull.sum_sq(&moved)
-            },
-            count: pull.len(),
-            noise: rounding(&rows, norm, &self.points),
-            original: &self.points,
-            adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
-            known: None,
-            moves: None,
-        };
-        let found = path.follow(goal, norm, conditioned, parts, &pull)?;
-        Ok(ReachedGoal { found, pull, owners, rounds })
-    }
-
-    /// The result of a goal, with a ball round each point; see [`Goal`].
-    ///
-    /// # Errors
-    /// As [`Network::optimum`]; [`FairError::Goal`].
-    pub fn toward(
-        &self,
-        measure: Measure,
-        goal: Goal,
-        conditions: Vec<Condition>,
-        accuracy: f64,
-    ) -> Result<(Optimum, f64), FairError> {
-        let (found, _) = self.reached(measure, goal, conditions, accuracy)?;
-        Ok((found.optimum, found.used))
-    }
-
-    /// The same with the curves that bend more than their points require.
-    pub(super) fn reached(
-        &self,
-        measure: Measure,
-        goal: Goal,
-        conditions: Vec<Condition>,
-        accuracy: f64,
-    ) -> Result<(GoalOptimum, Vec<usize>), FairError> {
-        let conditioned = !conditions.is_empty();
-        let mut parts = self.parts(measure, self.bound, conditions, accuracy)?;
-        let reached = self.found(&mut parts, measure, goal, conditioned)?;
-        let last = reached.rounds.last().and_then(|rounds| rounds.last());
-        let bent = last.map_or_else(Vec::new, |round| round.bent.clone());
-        Ok((reached.found, bent))
-    }
-
-    /// The same for numbers that carry derivatives: points, tolerances, and of each curve with
-    /// parameters these. With the points what is to be said of them.
-    ///
-    /// # Errors
-    /// As [`Network::toward`].
-    pub fn toward_with<T: Real>(
-        &self,
-        measure: Measure,
-        goal: Goal,
-        accuracy: f64,
-        points: &[Vec3<T>],
-        tolerances: &[T],
-        ats: &[Option<Vec<T>>],
-    ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
-        let mut parts = self.parts(measure, self.bound, Vec::new(), accuracy)?;
-        let reached = self.found(&mut parts, measure, goal, false)?;
-        let ReachedGoal { found, pull, owners, rounds } = reached;
-        let fit = NetworkFit {
-            certificate: found.optimum.certificate,
-            active: found.optimum.active,
-            used: found.used,
-            fairest_used: found.fairest_used,
-        };
-        let mut numbers = points.iter().flat_map(|p| p.to_array());
-        if numbers.all(T::is_constant) && tolerances.iter().all(|t| t.is_constant()) {
-            return Ok((found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect(), fit));
-        }
-        if !self.conditions.is_empty() {
-            return Err(FairError::NoDerivative(
-                "derivatives of a network with shapes and other conditions are not known",
-            ));
-        }
-        if found.share == 0.0 {
-            return Ok((points.to_vec(), fit));
-        }
-        if self.bound != Bound::ControlPoints {
-            return Err(FairError::NoDerivative(
-                "derivatives of a network with limits all along its curves are not known: take limits of \
-                 its points",
-            ));
-        }
-        let explained = allowed(0.0, found.used, owners.len()).is_none();
-        let free = match goal {
-            Goal::Near(share) => found.used > share,
-            Goal::Fairest => explained,
-            _ => false,
-        };
-        if found.weight == 0.0 && free {
-            // Limits at one line leave the others' parabolas free, and which of them the solver takes
-            // says nothing about how they move.
-            return Err(FairError::NoDerivative(
-                "the fairest network may be one of many as fair, so that its derivatives are not \
-                 known: take the goal \"budget\"",
-            ));
-        }
-        if !rounds.is_empty() {
-            let pulling = (&pull, &owners[..]);
-            let rows = &self.all_moving_rows(measure, ats)?;
-            let numbers = LineNumbers { points, tolerances, rows, ats };
-            let moved = self.budget_moved(goal, &rounds, pulling, &numbers)?;
-            return Ok((moved, fit));
-        }
-        check_unique(&mut parts, &found, &pull)?;
-        if parts.norm != crate::RowNorm::Square
-            && (found.share < 1.0 || ats.iter().any(Option::is_some))
-        {
-            return Err(FairError::NoDerivative(
-                "derivatives of a sum of lengths through moving parameters are not known: take \
-                 another measure, or spacing \"index\"",
-            ));
-        }
-        parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
-        let solved = parts.whole()?;
-        check_decided(&found, &solved)?;
-        let each = self.all_moving_rows(measure, ats)?;
-        let rows = MovingRows { rows: each.into_iter().flat_map(|own| own.rows).collect() };
-        let forces = if parts.norm == crate::RowNorm::Square {
-            let slope = rows.slope(&solved.optimum.points);
-            slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect()
-        } else {
-            Vec::new()
-        };
-        let moving = |forces, budget| GoalVariation {
-            originals: points.to_vec(),
-            tolerances,
-            pulled: owners.iter().map(|&i| tolerances[i]).collect(),
-            targets: &[],
-            forces,
-            rows: &rows,
-            bends: &[],
-            budget,
-            start: points,
-        };
-        let mut budget = T::zero();
-        if let (Goal::Near(share), true) = (goal, found.between) {
-            // The squares of the fairest change, too.
-            let parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
-            let fairest = parts.whole()?;
-            let slope = rows.slope(&fairest.optimum.points);
-            let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
-            let optimum = fairest.optimum.clone();
-            let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
-            let own = moving(forces, T::zero());
-            let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
-            let used = used_of(&at, &owners, points, tolerances);
-            budget =
-                allowed(share, used, owners.len()).unwrap_or(used) * (owners.len() as f64 / 3.0);
-        }
-        let moving = moving(forces, budget);
-        Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))
-    }
-
-    /// The result of a goal line by line with derivatives.
-    fn budget_moved<T: Real>(
-        &self,
-        goal: Goal,
-        rounds: &[Vec<LineRound<'_>>],
-        pulling: (&SparseRows, &[usize]),
-        numbers: &LineNumbers<'_, T>,
-    ) -> Result<Vec<Vec3<T>>, FairError> {
-        let (Goal::Near(share), [fairest, budgeted @ ..]) = (goal, rounds) else {
-            return Ok(numbers.points.to_vec());
-        };
-        let count = pulling.1.len();
-        let used = fairest.last().map_or(0.0, |round| round.found.used);
-        if is_between(used, count) {
-            return Err(FairError::NoDerivative(
-                "the budget of this network moves with what its fairest takes, which may be one of many, \
-                 so that its derivatives are not known: take the goal \"budget\"",
-            ));
-        }
-        let mut most = T::from(share);
-        if allowed(share, used, count) != Some(share) {
-            // The squares of the fairest change, too.
-            let at = self.lines_moved(fairest, pulling, most, numbers)?;
-            let used = used_of(&at, pulling.1, numbers.points, numbers.tolerances);
-            most = allowed(share, used, count).unwrap_or(used);
-        }
-        let last = budgeted.first().unwrap_or(fairest);
-        self.lines_moved(last, pulling, most, numbers)
-    }
-
     /// True for points that do not move in the joint optimum.
     pub(super) fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
@@ -737,7 +317,7 @@ impl Network {
 
     /// The point that measures refer to: the mean of the original points when there are weights,
     /// so that results move with the network.
-    fn origin(&self) -> Vec3<f64> {
+    pub(super) fn origin(&self) -> Vec3<f64> {
         if self.strands.iter().all(|s| s.weights.is_none()) {
             return Vec3::zero();
         }
@@ -853,7 +433,7 @@ impl Network {
         parts.solve_bent(points, tolerances, &[], &self.bends(points)?)
     }
 
-    fn parts(
+    pub(super) fn parts(
         &self,
         measure: Measure,
         bound: Bound,
@@ -892,41 +472,6 @@ impl Network {
         })
     }
 
-    /// Joint sweeps over single points, each to its limited minimiser: for nets beyond the direct
-    /// solver. Never worse from sweep to sweep; says how far from the optimum it is.
-    ///
-    /// # Errors
-    /// As [`crate::sweeps`].
-    pub fn sweeps(
-        &self,
-        measure: Measure,
-        count: usize,
-    ) -> Result<(Vec<Vec3<f64>>, Certificate), FairError> {
-        self.check()?;
-        self.check_seams()?;
-        let n = self.points.len();
-        let rows = self.rows(measure)?;
-        let gram = rows.gram(n);
-        let frozen = self.frozen();
-        let origin = self.origin();
-        let mut relative = self.relative(&self.points);
-        let mut points = self.points.clone();
-        for _ in 0..count {
-            for j in (0..n).filter(|&j| !frozen[j]) {
-                let (columns, factors) = gram.row(j);
-                let Some(at) = columns.iter().position(|&c| c as usize == j) else { continue };
-                if factors[at] > 0.0 {
-                    let wanted = points[j] - gram.apply(j, &relative) * (1.0 / factors[at]);
-                    points[j] = self.limit.nearest(j, self.points[j], points[j], wanted);
-                    relative[j] = points[j] - origin;
-                }
-            }
-        }
-        let norm = measure.norm();
-        let certificate = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
-        Ok((points, certificate))
-    }
-
     /// The surface of a net with these control points.
     ///
     /// # Errors
@@ -963,36 +508,4 @@ impl Network {
         surface.grid(&us, &vs, &mut grid, None);
         largest(&grid)
     }
-}
-
-/// A goal reached, with the rows that pull and the points whose rows these are.
-struct ReachedGoal<'a> {
-    found: GoalOptimum,
-    pull: SparseRows,
-    owners: Vec<usize>,
-    /// Line by line: the rounds of the fairest, then those under a budget.
-    rounds: Vec<Vec<LineRound<'a>>>,
-}
-
-/// The squares of moves relative to those of noise of the tolerances.
-fn used_of<T: Real>(at: &[Vec3<T>], owners: &[usize], points: &[Vec3<T>], tolerances: &[T]) -> T {
-    let square = |&i: &usize| {
-        let off = at[i] - points[i];
-        off.dot(off) / (tolerances[i] * tolerances[i])
-    };
-    let sum = owners.iter().fold(T::zero(), |sum, i| sum + square(i));
-    sum / (owners.len() as f64 / 3.0)
-}
-
-/// Figures of the result of a goal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NetworkFit {
-    /// The measure of all curves and the optimality gap within the limits.
-    pub certificate: Certificate,
-    /// Limits that are reached.
-    pub active: usize,
-    /// The mean of the squared moves over tolerances, over 1/3.
-    pub used: f64,
-    /// The same squares of the fairest; 3 if all moves reach their tolerances.
-    pub fairest_used: f64,
 }
