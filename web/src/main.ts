@@ -5,6 +5,7 @@ import { Analysis } from './analysis'
 import type { App, TabName } from './app'
 import { BlockPlanes } from './blocks'
 import { Changes, valuesInWords } from './changes'
+import { ink } from './colour'
 import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
@@ -157,7 +158,7 @@ function polygons(): void {
       return item && view.seen(item) ? view.place(item).toArray() : []
     }),
   )
-  view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
+  view.overlay('polygon', runs.length ? runs : null, ink('guide'), 1)
 }
 on(['selection', 'rev'], polygons)
 
