@@ -512,7 +512,8 @@ async function watchUsual(): Promise<void> {
 
 async function begin(hello: any): Promise<void> {
   warn('')
-  const again = instance !== ''
+  const before = instance
+  const again = before !== ''
   instance = hello.instance ?? 'still'
   model.name = hello.name
   shell.file.textContent = hello.name
@@ -520,7 +521,9 @@ async function begin(hello: any): Promise<void> {
   saving.dirty = hello.dirty
   hidden.clear()
   for (const name of stored<string[]>(`hidden.${hello.name}`, [])) hidden.add(name)
-  editor.begin(hello.text, hello.version, again)
+  if (!again) editor.begin(hello.text, hello.version)
+  else if (instance === before) await editor.resume()
+  else editor.rejoin(hello.text, hello.version)
   editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
@@ -546,6 +549,7 @@ async function begin(hello: any): Promise<void> {
       changed('watched')
       fitTabs()
     }
+    if (again) await changes.holdAgain()
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
     watching = false
