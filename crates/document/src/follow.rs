@@ -68,6 +68,9 @@ pub struct FollowSearch<'a> {
     /// True for conditions of one unit, such as the coordinates of a point: all are scaled alike,
     /// so that a condition on which the numbers have little effect gets no larger weight.
     pub alike: bool,
+    /// Effect of all numbers over their ranges below which a condition counts as independent of
+    /// them, as for rounding; empty for none.
+    pub no_effect: &'a [f64],
     /// Residual below which a condition is met.
     pub enough: f64,
     /// Maximum number of steps.
@@ -114,6 +117,11 @@ pub fn follow(
                 .iter()
                 .map(|row| row.iter().zip(&sizes).map(|(d, s)| (d * s).abs()).sum::<f64>())
                 .collect();
+            for (reach, none) in reach.iter_mut().zip(how.no_effect) {
+                if *reach <= *none {
+                    *reach = 0.0;
+                }
+            }
             if how.alike {
                 let largest = reach.iter().copied().fold(0.0, f64::max);
                 reach.fill(largest);
