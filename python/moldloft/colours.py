@@ -3,7 +3,8 @@
 ``model`` has the sixteen colours of model files, ``turn`` the indices of those that patches without
 a colour have in turn; ``x``, ``y`` and ``z`` are axes; names of classes are boxes of the digraph;
 ``before``, ``after``, ``moved``, ``wrong`` and ``quiet`` are of fairing, and stay apart for
-colour-blind eyes and in grey.
+colour-blind eyes and in grey. ``line-`` are kinds of lines in the picture. Names with ``-dark`` are
+for dark grounds.
 """
 
 from __future__ import annotations

@@ -83,10 +83,10 @@ def bench(tmp_path: Path, browser: Any) -> Iterator[Callable[..., Any]]:
 
     made: list[Bench] = []
 
-    def make(text: str = HULL, name: str = "hull.sdl") -> Bench:
+    def make(text: str = HULL, name: str = "hull.sdl", sharpness: float = 1) -> Bench:
         path = tmp_path / name
         path.write_text(text, encoding="utf-8")
-        made.append(Bench(path, browser))
+        made.append(Bench(path, browser, sharpness))
         return made[-1]
 
     yield make

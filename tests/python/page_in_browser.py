@@ -55,18 +55,16 @@ def own_state(path: Path) -> dict[str, str]:
 
 
 class Bench:
-    """A server and its page."""
+    """A server and its page.
 
-    def __init__(self, path: Path, browser: Any) -> None:
-        command = [sys.executable, "-m", "moldloft", "view", str(path), "--no-browser"]
+    Where nobody looks at the picture, a `sharpness` below 1 saves most of the work of drawing it.
+    """
+
+    def __init__(self, path: Path, browser: Any, sharpness: float = 1) -> None:
         self.path = path
-        self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=own_state(path)
-        )
-        assert self.process.stdout is not None
-        self.url = self.process.stdout.readline().strip()
-        assert self.url, self.process.stderr and self.process.stderr.read()
-        self.context = browser.new_context(viewport={"width": 1400, "height": 860})
+        self.serve()
+        size = {"width": 1400, "height": 860}
+        self.context = browser.new_context(viewport=size, device_scale_factor=sharpness)
         self.page = self.context.new_page()
         self.faults: list[str] = []
         self.page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
@@ -77,6 +75,29 @@ class Bench:
         self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
         if path.read_text(encoding="utf-8").strip():
             self.ready()
+
+    def serve(self) -> None:
+        """Starts the server."""
+        command = [sys.executable, "-m", "moldloft", "view", str(self.path), "--no-browser"]
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(
+            command, stdout=pipe, stderr=pipe, text=True, env=own_state(self.path)
+        )
+        assert self.process.stdout is not None
+        self.url = self.process.stdout.readline().strip()
+        assert self.url, self.process.stderr and self.process.stderr.read()
+
+    def kill(self) -> None:
+        """Ends the server at once."""
+        self.process.kill()
+        self.process.wait(60)
+        self._release()
+
+    def connected(self) -> None:
+        """Until the page is connected and all that it has is accepted."""
+        saved = self.page.locator(".saved")
+        self.until(lambda: saved.get_attribute("data-state") != "off", 60)
+        self.page.evaluate("() => window.moldloft.settled()")
 
     def ready(self) -> None:
         """Until there is something to see."""
@@ -105,6 +126,9 @@ class Bench:
         self.context.close()
         self.process.terminate()
         self.process.wait(60)
+        self._release()
+
+    def _release(self) -> None:
         for pipe in (self.process.stdout, self.process.stderr):
             if pipe is not None:
                 pipe.close()

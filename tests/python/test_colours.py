@@ -23,6 +23,22 @@ def test_pictures_and_the_site_have_the_colours_of_the_file() -> None:
     assert COLOURS["accent"] in (ROOT / "docs" / "mark.svg").read_text(encoding="utf-8")
 
 
+#: Where colours are names of the file; white light is none.
+NAMED = [
+    *(ROOT / "web" / "src").glob("*.css"),
+    *(ROOT / "web" / "src").glob("*.ts"),
+    *(ROOT / "python" / "moldloft" / "fairing").glob("*.py"),
+    *(ROOT / "python" / "moldloft" / "study").glob("*.py"),
+]
+
+
+def test_no_colour_is_written_by_hand() -> None:
+    for path in NAMED:
+        text = path.read_text(encoding="utf-8")
+        found = re.findall(r"[\"' :(]#[0-9a-fA-F]{3,8}\b|0x[0-9a-fA-F]{6}\b", text)
+        assert set(found) <= {"0xffffff"}, path.name
+
+
 def test_styles_of_the_page_name_their_colours() -> None:
     styles = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "web" / "src").glob("*.css"))
     asked = set(re.findall(r"var\(--colour-([\w-]+)\)", styles))

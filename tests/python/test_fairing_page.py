@@ -11,6 +11,7 @@ import pytest
 import moldloft
 from conftest import ROOT
 from moldloft import fairing
+from moldloft.colours import COLOURS
 from moldloft.fairing.drawing import even_turns
 
 DATA = ROOT / "examples" / "fairing"
@@ -108,7 +109,7 @@ def test_teeth_of_a_circle_are_outside_and_alike(axes, back):
     assert not moldloft.fair(points, 2e-3).findings
     html = fairing.page(faired)
     comb = html.split("</svg>")[2]
-    tips, feet = paths(comb, "#1f5fa8")[0], paths(comb, "#1b1f24")[0]
+    tips, feet = paths(comb, "#1f5fa8")[0], paths(comb, COLOURS["ink"])[0]
     # The centre of the circle through three feet: all teeth point away from it, as long as others.
     a, b, c = feet[0], feet[len(feet) // 2], feet[-1]
     centre = np.linalg.solve(2 * np.array([b - a, c - a]), [b @ b - a @ a, c @ c - a @ a])

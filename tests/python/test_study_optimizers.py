@@ -13,6 +13,7 @@ import pytest
 
 import moldloft
 from moldloft import study
+from moldloft.colours import COLOURS
 from moldloft.study.fronts import front
 from moldloft.study.report import html
 
@@ -102,7 +103,7 @@ def test_several_objectives_give_a_front(tmp_path, method, package):
     assert best.outputs["sheet"] == min(results.outputs["sheet"][held])
     page = html(results, "tanks", {"plan": "optimize"}).decode()
     assert f"Marked: the {len(expected)} points of the front" in page
-    assert 'fill="#c2410c"' in page and "sheet by evaluation" in page
+    assert f'fill="{COLOURS["mark"]}"' in page and "sheet by evaluation" in page
     assert b"feasible,front" in results.csv().splitlines()[0]
     # The same definition once more: nothing is evaluated, the front is the same.
     again = study.optimize(definition, tmp_path / "s.sqlite")

@@ -21,6 +21,7 @@ import pytest
 from conftest import SAILBOAT
 from moldloft.errors import Error
 from moldloft.storage import put
+from moldloft.workbench.address import proof
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine
 from moldloft.workbench.frames import head_of
@@ -608,6 +609,48 @@ def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
         assert request(app, "POST", "/token", token, origin=HOME)[0] == 403
         assert request(app, "POST", "/token", token, origin=HOME, cookie=value)[0] == 204
         assert request(app, "POST", "/token", server._token.encode(), origin=HOME)[0] == 204
+    finally:
+        hub.draft.close(keep=False)
+
+
+def test_pages_of_the_last_server_are_known_by_their_secret(
+    model_file: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    path = model_file(LINE)
+    hub = Hub(path)
+    try:
+        server_app(hub)
+        mine = hub.secret
+    finally:
+        hub.draft.close(keep=False)
+    kept = next((tmp_path / "state").rglob("addresses.json"))
+    assert kept.stat().st_mode & 0o077 == 0 and mine in kept.read_text(encoding="utf-8")
+    hub = Hub(path)
+    try:
+        server = server_app(hub)
+        app = server.app()
+        challenge = request(app, path="/challenge")[2].decode()
+        assert mine not in challenge and hub.secret not in (mine, challenge)
+        # Neither the secret itself, nor one of another model, nor a proof for another port.
+        for body in (
+            mine,
+            proof("other", 4321, challenge),
+            proof(hub.secret, 4321, challenge),
+            proof(mine, 9999, challenge),
+            proof(mine, 4321, "other"),
+        ):
+            assert request(app, "POST", "/token", body.encode(), origin=HOME)[0] == 403
+        right = proof(mine, 4321, challenge).encode()
+        assert request(app, "POST", "/token", right)[0] == 403
+        status, head, _ = request(app, "POST", "/token", right, origin=HOME)
+        value = head["set-cookie"].split(";")[0]
+        assert status == 204
+        assert request(app, kind="websocket", path="/ws", origin=HOME, cookie=value)[0] == 101
+        # A challenge is met once, and there is none for a page that is known.
+        assert request(app, "POST", "/token", right, origin=HOME)[0] == 403
+        assert request(app, path="/challenge")[2].decode() != challenge
+        assert request(app, path="/challenge", cookie=value)[2] == b""
     finally:
         hub.draft.close(keep=False)
 

@@ -1,6 +1,6 @@
 // What is asked about a shape and drawn over it: colours by numbers with their legend, combs of curves.
 
-import { ramp, type Scale } from './colour'
+import { ink, ramp, type Scale } from './colour'
 import { h, shown } from './dom'
 import { type Link, Newest } from './link'
 import { model } from './state'
@@ -55,7 +55,7 @@ export class Analysis {
     try {
       const frame = await this.link.ask('field', by ? { field, by } : { field })
       view.field(frame, SIGNED.has(field))
-      view.overlay('arrows', field === 'derivative' ? view.arrows() : null, 0x8a2d1f)
+      view.overlay('arrows', field === 'derivative' ? view.arrows() : null, ink('arrow'))
       this.legend()
     } catch (error) {
       this.act.say((error as Error).message)
@@ -107,6 +107,6 @@ export class Analysis {
       }
       runs.push(tips)
     }
-    view.overlay('combs', runs, 0x2f8f7f)
+    view.overlay('combs', runs, ink('comb'))
   }
 }

@@ -1,6 +1,6 @@
 // Volume grids: a plane of a block in the picture, coloured by the quality of its cells, and the cells that are folded.
 
-import type { Scale } from './colour'
+import { ink, type Scale } from './colour'
 import { h, shown } from './dom'
 import { type Link, Newest } from './link'
 import type { View } from './view'
@@ -93,7 +93,7 @@ export class BlockPlanes {
       this.view.overlay(
         'folded',
         Array.from({ length: ends.length / 6 }, (_, k) => Array.from(ends.subarray(6 * k, 6 * k + 6))),
-        0xc2412d,
+        ink('cut'),
       )
       this.say()
       this.act.legend()

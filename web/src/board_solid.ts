@@ -22,6 +22,7 @@ import {
 } from 'three'
 import { candidates, type Shape } from './board_candidates'
 import type { Drawn } from './board_paint'
+import { ink } from './colour'
 import { h, shown } from './dom'
 
 export interface SolidFacts {
@@ -114,7 +115,7 @@ export class BoardSolid {
     this.sight(d)
     this.fits.replaceChildren(...(solid ? candidates(solid, this.direction, this.choose) : []))
     const dark = document.documentElement.dataset.theme === 'dark'
-    const ink = new LineBasicMaterial({ color: dark ? 0xc9d4df : 0x26323d })
+    const edges = new LineBasicMaterial({ color: ink(dark ? 'line-rim-dark' : 'line-rim') })
     if (solid?.vertices?.length && solid.quads?.length) {
       const { vertices, quads } = solid
       const corners: number[] = []
@@ -131,7 +132,7 @@ export class BoardSolid {
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(corners), 3))
       geometry.computeVertexNormals()
-      const colour = new Color(solid.exact ? 0x6f9fd0 : 0xb9b19c)
+      const colour = new Color(ink(solid.exact ? 'body' : 'estimate'))
       this.parts.add(
         new Mesh(
           geometry,
@@ -147,7 +148,7 @@ export class BoardSolid {
           }),
         ),
       )
-      this.parts.add(new LineSegments(new EdgesGeometry(geometry, 12), ink))
+      this.parts.add(new LineSegments(new EdgesGeometry(geometry, 12), edges))
     } else {
       const places = new Map(d.points?.map((p) => [p[0], p[3]?.map((x) => x ?? 0) ?? null]))
       const ends = (d.lines ?? []).flatMap(([, p, q]) =>
@@ -155,7 +156,7 @@ export class BoardSolid {
       )
       const geometry = new BufferGeometry()
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(ends), 3))
-      if (ends.length) this.parts.add(new LineSegments(geometry, ink))
+      if (ends.length) this.parts.add(new LineSegments(geometry, edges))
       for (const way of solid?.outlines ?? []) {
         const face = flat(way.map((p) => places.get(p)))
         if (face)
@@ -163,7 +164,7 @@ export class BoardSolid {
             new Mesh(
               face,
               new MeshLambertMaterial({
-                color: 0xb9b19c,
+                color: ink('estimate'),
                 side: DoubleSide,
                 transparent: true,
                 opacity: 0.4,

@@ -5,6 +5,14 @@ import colours from '../../python/moldloft/colours.json'
 /** Patches have them in turn; neighbours never have the same. */
 export const HUES = colours.turn.map((k) => Number.parseInt(colours.model[k].slice(1), 16))
 
+type Names = { [K in keyof typeof colours]: (typeof colours)[K] extends string ? K : never }[keyof typeof colours]
+
+/** Kinds of lines and points that have a colour for each theme. */
+export type Line = Names extends infer N ? (N extends `line-${infer K}-dark` ? K : never) : never
+
+/** A colour of the file as a number. */
+export const ink = (name: Names): number => Number.parseInt(colours[name].slice(1), 16)
+
 /** The axes x, y and z. */
 export const AXIS_INKS = [colours.x, colours.y, colours.z]
 

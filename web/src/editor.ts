@@ -21,7 +21,7 @@ import {
   EditorState,
   StateEffect,
   StateField,
-  type Text,
+  Text,
   Transaction,
 } from '@codemirror/state'
 import {
@@ -79,6 +79,10 @@ export class Editor {
   private online = false
   /** What changed the text lately, by the version that it changed. */
   private past: { version: number; changes: ChangeSet }[] = []
+  /** The text that the hub is known to have. */
+  private base: Text = Text.empty
+  /** The hub's version of the text less that of the history. */
+  private ahead = 0
   /** Called when what is typed is not yet with the hub, or is again. */
   onPending: (pending: boolean) => void = () => {}
   onCursor: (offset: number) => void = () => {}
@@ -180,20 +184,51 @@ export class Editor {
 
   // The text and the hub.
 
-  /** The hub's text, of that version; what was typed meanwhile and not taken is put on top. */
-  begin(text: string, version: number, keep: boolean): void {
-    const mine = this.text
-    const had = keep && mine !== text
+  /** The hub's text, of that version. */
+  begin(text: string, version: number): void {
     this.past = []
     this.view.dispatch({ effects: this.shared.reconfigure([]) })
     this.replace(text, true)
     this.view.dispatch({ effects: this.shared.reconfigure(collab({ startVersion: version })) })
+    this.base = this.view.state.doc
+    this.ahead = 0
     this.online = true
-    if (had) {
-      this.replace(mine, false)
-      this.onTrouble('The server had another text; yours was kept. Undo brings back the other.')
-    }
     this.push()
+  }
+
+  /** The connection is back, to the same hub: what it has and this page has not is taken. */
+  async resume(): Promise<void> {
+    this.online = true
+    await this.catchUp()
+    this.push()
+  }
+
+  /** Another hub, or one that has forgotten the changes since: what is not in its text is put on top and sent. */
+  rejoin(text: string, version: number): void {
+    const theirs = Text.of(text.split('\n'))
+    const mine = sendableUpdates(this.view.state)
+    // What was sent last may have arrived before the connection was lost.
+    let known = this.base
+    let arrived = 0
+    while (!known.eq(theirs) && arrived < mine.length) known = mine[arrived++].changes.apply(known)
+    if (!known.eq(theirs)) [known, arrived] = [this.base, 0]
+    this.confirm(mine.slice(0, arrived))
+    if (!known.eq(theirs)) {
+      const { from, to, insert } = difference(known.toString(), text)
+      this.confirm([{ changes: ChangeSet.of({ from, to, insert }, known.length), clientID: 'hub' }])
+      if (arrived < mine.length) this.onTrouble('The text was changed elsewhere, too: both are in it.')
+    }
+    this.past = []
+    this.ahead += version - this.version
+    this.online = true
+    this.push()
+  }
+
+  /** Changes that the hub has. */
+  private confirm(updates: readonly { changes: ChangeSet; clientID: string }[]): void {
+    if (!updates.length) return
+    this.base = updates.reduce((doc, u) => u.changes.apply(doc), this.base)
+    this.view.dispatch(receiveUpdates(this.view.state, updates))
   }
 
   offline(): void {
@@ -212,7 +247,7 @@ export class Editor {
 
   get version(): number {
     try {
-      return getSyncedVersion(this.view.state)
+      return getSyncedVersion(this.view.state) + this.ahead
     } catch {
       return -1
     }
@@ -220,15 +255,9 @@ export class Editor {
 
   /** The least change that makes the text this one: a step of that name, or none. */
   replace(text: string, silently: boolean, host = false, name = 'Your text'): void {
-    const old = this.text
-    if (old === text) return
-    let start = 0
-    const most = Math.min(old.length, text.length)
-    while (start < most && old.charCodeAt(start) === text.charCodeAt(start)) start++
-    let end = 0
-    while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
+    if (this.text === text) return
     this.view.dispatch({
-      changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) },
+      changes: difference(this.text, text),
       annotations: host
         ? [Transaction.addToHistory.of(false), fromHost.of(true)]
         : silently
@@ -246,15 +275,14 @@ export class Editor {
     const made = news.map((u) => ({ changes: ChangeSet.fromJSON(u.changes), clientID: u.clientID }))
     made.forEach((u, k) => this.past.push({ version: known + k, changes: u.changes }))
     if (this.past.length > 400) this.past.splice(0, this.past.length - 200)
-    const tr = receiveUpdates(this.view.state, made)
-    this.view.dispatch(tr)
+    this.confirm(made)
     this.onPending(this.pending)
   }
 
   private async catchUp(): Promise<void> {
     try {
       const answer = await this.link.tell({ kind: 'pull', version: this.version })
-      if (typeof answer.text === 'string') this.begin(answer.text, answer.version, true)
+      if (typeof answer.text === 'string') this.rejoin(answer.text, answer.version)
       else this.received(answer.updates, answer.from)
     } catch {
       // The next message finds it again.
@@ -278,7 +306,7 @@ export class Editor {
     try {
       const sent = updates.map((u) => ({ changes: u.changes.toJSON(), clientID: u.clientID }))
       const answer = await this.link.tell({ kind: 'push', version: this.version, updates: sent })
-      if (!answer.ok && typeof answer.text === 'string') this.begin(answer.text, answer.version, true)
+      if (!answer.ok && typeof answer.text === 'string') this.rejoin(answer.text, answer.version)
       else if (!answer.ok && answer.version > this.version) await this.catchUp()
       if (answer.error) this.onTrouble(answer.error)
     } catch {
@@ -429,6 +457,16 @@ export class Editor {
       this.onTrouble((error as Error).message)
     }
   }
+}
+
+/** The least replacement that makes one text of another. */
+function difference(old: string, text: string): Edit {
+  let start = 0
+  const most = Math.min(old.length, text.length)
+  while (start < most && old.charCodeAt(start) === text.charCodeAt(start)) start++
+  let end = 0
+  while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
+  return { from: start, to: old.length - end, insert: text.slice(start, text.length - end) }
 }
 
 /** Markdown of hovers: code blocks and plain lines, as texts. */

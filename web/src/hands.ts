@@ -1,6 +1,7 @@
 // Hands on the picture: orbit, pan, zoom, pick, measure, drag.
 
 import { Vector3 } from 'three'
+import { ink } from './colour'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
@@ -423,7 +424,7 @@ export class Hands {
   private label(drag: Drag, reached: number[]): void {
     const now = new Vector3().fromArray(reached)
     const by = now.clone().sub(drag.start)
-    this.view.overlay('moved', [[...drag.start.toArray(), ...reached]], 0xe8711a)
+    this.view.overlay('moved', [[...drag.start.toArray(), ...reached]], ink('chosen'))
     const parts = AXES.map((a, k) =>
       by.getComponent(k)
         ? `${a} ${shown(now.getComponent(k), 5)} (${by.getComponent(k) > 0 ? '+' : ''}${shown(by.getComponent(k), 3)})`
@@ -609,7 +610,7 @@ export class Hands {
         .toArray()
         .map((x) => shown(x))
         .join(', ')})`
-    this.view.overlay('measure', b ? [this.places.flatMap((q) => q.toArray())] : null, 0xe8711a)
+    this.view.overlay('measure', b ? [this.places.flatMap((q) => q.toArray())] : null, ink('chosen'))
     if (!b) return this.act.status(`from ${coordinates(a)}: click a second place`)
     const d = b.clone().sub(a)
     const distance = `distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`

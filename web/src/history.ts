@@ -4,7 +4,7 @@
 // text does not state, travels with it as an effect.
 
 import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands'
-import { Annotation, type Extension, StateEffect, type Transaction } from '@codemirror/state'
+import { Annotation, type Extension, StateEffect, StateField, type Transaction } from '@codemirror/state'
 import type { EditorView, ViewUpdate } from '@codemirror/view'
 import { h } from './dom'
 import { icon } from './icons'
@@ -22,10 +22,23 @@ export const holding = StateEffect.define<Held>()
 
 const MOST_STEPS = 2000
 
+const deletes = (tr: Transaction) => tr.isUserEvent('delete')
+
+/** Whether the text was last changed by a deletion. */
+const deleted = StateField.define<boolean>({
+  create: () => false,
+  update: (was, tr) => (tr.docChanged ? deletes(tr) : was),
+})
+
 /** The extension of an editor that keeps the steps. */
 export function keptSteps(): Extension {
   return [
-    history({ minDepth: MOST_STEPS }),
+    deleted,
+    // Typing and deletion are steps of their own: together they might come to nothing, and such a step cannot be redone.
+    history({
+      minDepth: MOST_STEPS,
+      joinToEvent: (tr, adjacent) => adjacent && deletes(tr) === tr.startState.field(deleted),
+    }),
     invertedEffects.of((tr) =>
       tr.effects
         .filter((e) => e.is(holding))
@@ -59,6 +72,8 @@ export class Steps {
   onChange: () => void = () => {}
   /** The text is another one, whoever changed it. */
   onText: () => void = () => {}
+  /** True when the last step taken back or done again changed nothing, such as a word that an input method took back. */
+  private idle = false
   /** A value that is held goes with a step that was taken back or done again. */
   onHeld: (held: Held) => void = () => {}
 
@@ -70,7 +85,8 @@ export class Steps {
       const back = tr.isUserEvent('undo')
       if (back || tr.isUserEvent('redo')) {
         const step = (back ? this.done : this.undone).pop()
-        if (step !== undefined) (back ? this.undone : this.done).push(step)
+        this.idle = !tr.docChanged && !tr.effects.some((e) => e.is(holding))
+        if (step !== undefined && !this.idle) (back ? this.undone : this.done).push(step)
         for (const e of tr.effects) if (e.is(holding)) this.onHeld(e.value)
       } else if (tr.docChanged || tr.effects.some((e) => e.is(holding))) name = word(tr)
     }
@@ -81,10 +97,11 @@ export class Steps {
     this.onChange()
   }
 
-  /** Takes steps back, or does them again when the count is negative; how many there were. */
+  /** Takes steps back, or does them again when the count is negative; how many there were. A single one changes something. */
   go(view: EditorView, count: number): number {
+    const single = Math.abs(count) === 1
     let gone = 0
-    while (gone < Math.abs(count) && (count > 0 ? undo : redo)(view)) gone++
+    while (gone < Math.abs(count) && (count > 0 ? undo : redo)(view)) if (!(single && this.idle)) gone++
     return gone
   }
 }

@@ -37,6 +37,8 @@ export class SocketLink implements Link {
   private retry = 250
   /** The number of the last connection, by which the server knows a page that it has dropped. */
   private tab = 0
+  /** By which the next server knows a page of this one. */
+  private secret = ''
 
   async start(): Promise<void> {
     const token = new URLSearchParams(location.hash.slice(1)).get('t')
@@ -44,6 +46,20 @@ export class SocketLink implements Link {
       history.replaceState(null, '', location.pathname)
       const reply = await fetch('/token', { method: 'POST', body: token, credentials: 'same-origin' })
       if (!reply.ok) throw new Refused('this address has been used: `moldloft view` prints the next one')
+    }
+    this.connect()
+  }
+
+  /** Proves to a server that was started meanwhile that this page was with the last one. */
+  private async again(): Promise<void> {
+    try {
+      const challenge = await (await fetch('/challenge', { credentials: 'same-origin' })).text()
+      if (challenge) {
+        const body = await proof(this.secret, location.port, challenge)
+        await fetch('/token', { method: 'POST', body, credentials: 'same-origin' })
+      }
+    } catch {
+      // No server yet: the connection fails, and is tried again.
     }
     this.connect()
   }
@@ -61,7 +77,7 @@ export class SocketLink implements Link {
       for (const w of this.waiting.values()) w.reject(new Refused('the connection is lost'))
       this.waiting.clear()
       this.onState('down')
-      setTimeout(() => this.connect(), this.retry)
+      setTimeout(() => void this.again(), this.retry)
       this.retry = Math.min(4000, this.retry * 1.7)
     }
   }
@@ -69,7 +85,7 @@ export class SocketLink implements Link {
   private receive(data: string | ArrayBuffer): void {
     if (typeof data === 'string') {
       const message = JSON.parse(data)
-      if (message.kind === 'hello') this.tab = message.tab
+      if (message.kind === 'hello') [this.tab, this.secret] = [message.tab, message.secret]
       const waiting = this.waiting.get(message.id)
       if (waiting) {
         this.waiting.delete(message.id)
@@ -106,6 +122,14 @@ export class SocketLink implements Link {
   tell(message: Facts): Promise<Facts> {
     return this.send(message)
   }
+}
+
+/** The answer of a page with a secret to the challenge of the server at a port. */
+export async function proof(secret: string, port: string, challenge: string): Promise<string> {
+  const bytes = (text: string) => new TextEncoder().encode(text)
+  const key = await crypto.subtle.importKey('raw', bytes(secret), { name: 'HMAC', hash: 'SHA-256' }, false, ['sign'])
+  const signed = await crypto.subtle.sign('HMAC', key, bytes(`${port} ${challenge}`))
+  return Array.from(new Uint8Array(signed), (b) => b.toString(16).padStart(2, '0')).join('')
 }
 
 /** The scene that a file carries. */

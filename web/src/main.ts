@@ -5,6 +5,7 @@ import { Analysis } from './analysis'
 import type { App, TabName } from './app'
 import { BlockPlanes } from './blocks'
 import { Changes, valuesInWords } from './changes'
+import { ink } from './colour'
 import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
@@ -157,7 +158,7 @@ function polygons(): void {
       return item && view.seen(item) ? view.place(item).toArray() : []
     }),
   )
-  view.overlay('polygon', runs.length ? runs : null, 0x8a94a0, 1)
+  view.overlay('polygon', runs.length ? runs : null, ink('guide'), 1)
 }
 on(['selection', 'rev'], polygons)
 
@@ -511,7 +512,8 @@ async function watchUsual(): Promise<void> {
 
 async function begin(hello: any): Promise<void> {
   warn('')
-  const again = instance !== ''
+  const before = instance
+  const again = before !== ''
   instance = hello.instance ?? 'still'
   model.name = hello.name
   shell.file.textContent = hello.name
@@ -519,7 +521,9 @@ async function begin(hello: any): Promise<void> {
   saving.dirty = hello.dirty
   hidden.clear()
   for (const name of stored<string[]>(`hidden.${hello.name}`, [])) hidden.add(name)
-  editor.begin(hello.text, hello.version, again)
+  if (!again) editor.begin(hello.text, hello.version)
+  else if (instance === before) await editor.resume()
+  else editor.rejoin(hello.text, hello.version)
   editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
@@ -545,6 +549,7 @@ async function begin(hello: any): Promise<void> {
       changed('watched')
       fitTabs()
     }
+    if (again) await changes.holdAgain()
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
     watching = false

@@ -1,6 +1,7 @@
 // A section of the picture: a plane across an axis that is dragged, the half before it taken away, the cut hatched.
 
 import { Vector3 } from 'three'
+import { ink } from './colour'
 import { type Cuttable, cut } from './cut'
 import { h, shown } from './dom'
 import { model } from './state'
@@ -124,8 +125,8 @@ export class SectionPlane {
     const found = cut(this.drawn(), clip.axis, clip.value, size)
     view.cap.fill(found, clip.axis, (clip.flip ? 1 : -1) * LIFT * size)
     const runs = found.closed.map((_, k) => found.segments.slice(6 * k, 6 * k + 6))
-    view.overlay('section', runs, 0xc2412d, 1.8)
-    view.overlay('section-frame', [this.frame(clip.axis, clip.value)], 0x8a94a0, 1)
+    view.overlay('section', runs, ink('cut'), 1.8)
+    view.overlay('section-frame', [this.frame(clip.axis, clip.value)], ink('guide'), 1)
     view.dots()
   }
 

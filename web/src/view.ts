@@ -28,7 +28,7 @@ import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js'
 import { Camera } from './camera'
 import { Cap } from './cap'
-import { coloured, HUES, hex, type Scale, scale } from './colour'
+import { coloured, HUES, hex, ink, type Line, type Scale, scale } from './colour'
 import { creases, isTriangulation } from './creases'
 import type { Frame, Part } from './frame'
 import { type Hit, hit } from './pick'
@@ -378,7 +378,7 @@ export class View {
     this.items.delete(key)
   }
 
-  private material(name: string, grey: number, opacity: number, tint = 0, colour = 0x8fb3d9): ShaderMaterial {
+  private material(name: string, grey: number, opacity: number, tint = 0, colour = ink('neutral')): ShaderMaterial {
     const key = `${name}|${grey}|${opacity}|${tint}|${colour}`
     let found = this.materials.get(key)
     if (!found) {
@@ -431,25 +431,29 @@ export class View {
     return found
   }
 
+  /** The colour of a kind of lines in this theme. */
+  private inkOf(kind: Line): number {
+    return ink(`line-${kind}${this.dark ? '-dark' : ''}`)
+  }
+
   /** Colours of lines for the theme. */
   private ink(): void {
-    const d = this.dark
     const inks: Record<string, number> = {
-      edge: d ? 0xdfe6ee : 0x1b2530,
-      rim: d ? 0xc9d3de : 0x2b3541,
-      curve: d ? 0x7fb0e6 : 0x2a5d9c,
-      wire: d ? 0xe6edf5 : 0x1b2533,
-      contour: d ? 0xe2b66b : 0x8a5a12,
-      grid: d ? 0x8a97a5 : 0x7a8794,
-      frame: d ? 0xa0acb8 : 0x5c6875,
-      chosen: 0xe8711a,
-      hover: 0xf09a52,
-      extra: 0xc2412d,
-      stale: d ? 0x727d89 : 0xa3acb6,
-      foreign: d ? 0x9aa7b4 : 0x4a5560,
-      ghost: d ? 0xaab4be : 0x6d7883,
+      edge: this.inkOf('edge'),
+      rim: this.inkOf('rim'),
+      curve: this.inkOf('spline'),
+      wire: this.inkOf('wire'),
+      contour: this.inkOf('contour'),
+      grid: this.inkOf('grid'),
+      frame: this.inkOf('box'),
+      chosen: ink('chosen'),
+      hover: ink('hover'),
+      extra: ink('cut'),
+      stale: this.inkOf('stale'),
+      foreign: this.inkOf('foreign'),
+      ghost: this.inkOf('ghost'),
     }
-    for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
+    for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? this.inkOf('box'))
   }
 
   theme(dark: boolean): void {
@@ -479,7 +483,8 @@ export class View {
       if (item.mesh) {
         const tinted = this.paint === 'field' && item.field ? 1 : 0
         const own = (item.colour[0] << 16) | (item.colour[1] << 8) | item.colour[2]
-        const colour = this.paint === 'field' ? 0xb9bfc6 : this.paint === 'model' ? own : HUES[item.hue % HUES.length]
+        const colour =
+          this.paint === 'field' ? ink('neutral') : this.paint === 'model' ? own : HUES[item.hue % HUES.length]
         if (!item.geometry.getAttribute('tint'))
           item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
         item.mesh.material = this.material('', grey, opacity, tinted, colour)
@@ -528,7 +533,7 @@ export class View {
     this.dotItems.forEach((item, k) => {
       for (let c = 0; c < 3; c++) position[3 * k + c] = item.position[c] + item.origin.getComponent(c)
       const marked = item.object === this.selected || item.object === this.hovered
-      tint.set(marked ? hex(0xe8711a) : item.stale ? hex(0x9aa3ad) : hex(this.dark ? 0xf0c46a : 0x7a4d0b), 3 * k)
+      tint.set(hex(marked ? ink('chosen') : this.inkOf(item.stale ? 'stale' : 'dot')), 3 * k)
       big[k] = marked ? 1.6 : usual
     })
     const g = this.cloud.geometry
@@ -783,7 +788,7 @@ export class View {
   }
 
   /** Lines that are drawn besides: combs, sections, measures, arrows. */
-  overlay(name: string, runs: number[][] | null, colour = 0xc2412d, width = 1.5): void {
+  overlay(name: string, runs: number[][] | null, colour = ink('cut'), width = 1.5): void {
     const old = this.extras.children.find((c) => c.name === name)
     if (old) this.extras.remove(old)
     if (runs?.length) {

@@ -68,6 +68,9 @@ pub struct FollowSearch<'a> {
     /// True for conditions of one unit, such as the coordinates of a point: all are scaled alike,
     /// so that a condition on which the numbers have little effect gets no larger weight.
     pub alike: bool,
+    /// Effect of all numbers over their ranges below which a condition counts as independent of
+    /// them, as for rounding; empty for none.
+    pub no_effect: &'a [f64],
     /// Residual below which a condition is met.
     pub enough: f64,
     /// Maximum number of steps.
@@ -169,6 +172,11 @@ impl<'a> ScaledSearch<'a> {
         }
         let effect = |row: &Vec<f64>| row.iter().zip(&self.sizes).map(|(d, s)| (d * s).abs()).sum();
         self.reach = slopes.iter().map(effect).collect();
+        for (reach, none) in self.reach.iter_mut().zip(self.how.no_effect) {
+            if *reach <= *none {
+                *reach = 0.0;
+            }
+        }
         if self.how.alike {
             let largest = self.reach.iter().copied().fold(0.0, f64::max);
             self.reach.fill(largest);

@@ -244,7 +244,14 @@ fn search(
     begin: &[f64],
 ) -> Result<Followed, String> {
     let equal = vec![1.0; wish.values.len()];
-    let how = FollowSearch { importance: &equal, alike: false, enough: 0.0, steps: MOST_STEPS };
+    let no_effect = no_effect(&wish.values);
+    let how = FollowSearch {
+        importance: &equal,
+        alike: false,
+        no_effect: &no_effect,
+        enough: 0.0,
+        steps: MOST_STEPS,
+    };
     let first = follow(wish, followers, begin, how);
     let values = wish.values.clone();
     let off = |f: &Followed| -> f64 {
@@ -269,6 +276,11 @@ fn search(
         (Err(_), Ok(b)) => Ok(b),
         (a, _) => a,
     }
+}
+
+/// Effects that are within the tolerance of the targets.
+fn no_effect(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| ACCURACY * v.abs()).collect()
 }
 
 /// The target with the largest miss, if any is missed.
@@ -363,8 +375,14 @@ impl Wish<'_> {
         let wished = self.values.clone();
         let importance: Vec<f64> =
             (0..wished.len()).map(|k| if k == at { GIVES_WAY } else { 1.0 }).collect();
-        let how =
-            FollowSearch { importance: &importance, alike: false, enough: 0.0, steps: MOST_STEPS };
+        let no_effect = no_effect(&wished);
+        let how = FollowSearch {
+            importance: &importance,
+            alike: false,
+            no_effect: &no_effect,
+            enough: 0.0,
+            steps: MOST_STEPS,
+        };
         let mut ends = [None; 2];
         for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
             let step = BEYOND * reach[at].max(wished[at].abs());

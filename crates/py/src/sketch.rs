@@ -12,14 +12,16 @@ use moldloft::lang::World;
 use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Options, StyledPolyline, render};
+use moldloft::sketch::command::words::{CommandToken, TextCommand, text_commands};
 use moldloft::sketch::{
-    CommandReply, DimensionMark, DrawingHit, Files, ObjectChange, PointId, ReplySubject,
-    SketchSession, SketchSolid, Suggestion, scripts,
+    CommandReply, CoordinateAxis, DimensionMark, DrawingHit, Files, ObjectChange, PointId,
+    ReplySubject, SketchSession, SketchSolid, Suggestion, scripts,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyBytes;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -198,6 +200,28 @@ fn mesh_arrays<'py>(
     Ok((vertices, faces))
 }
 
+/// Verb, words with the positions of their first and past their last character, and whether the
+/// command is the last one of its line.
+type WrittenCommand = (String, Vec<(String, usize, usize)>, bool);
+
+/// Name, angle and scale of an axis on the page.
+type PageAxis = (String, f64, f64);
+
+/// Counts code points of a text at increasing byte positions.
+struct PointCount<'a> {
+    text: &'a str,
+    byte: usize,
+    point: usize,
+}
+
+impl PointCount<'_> {
+    fn at(&mut self, byte: usize) -> usize {
+        self.point += self.text[self.byte..byte].chars().count();
+        self.byte = byte;
+        self.point
+    }
+}
+
 /// Change of an object: its name; added, removed, changed body; points drawn, moved, removed;
 /// lines; faces; numbers.
 type Changed = (String, [bool; 3], [Vec<u32>; 5], Vec<String>);
@@ -357,6 +381,37 @@ impl PySketch {
     /// The active object's name.
     fn active(&self, py: Python<'_>) -> Option<String> {
         self.lock(py).active_object().map(|o| o.name.clone())
+    }
+
+    /// The commands of a text: verb in full or empty, words with their spans in code points, and
+    /// whether it is the last one of its line.
+    #[staticmethod]
+    fn commands(text: &str) -> Vec<WrittenCommand> {
+        let mut points = PointCount { text, byte: 0, point: 0 };
+        let mut words = |command: TextCommand| {
+            let word = |(token, span): (CommandToken, Range<usize>)| {
+                (token.text, points.at(span.start), points.at(span.end))
+            };
+            let verb = command.verb.unwrap_or_default().to_owned();
+            (verb, command.tokens.into_iter().map(word).collect(), command.last)
+        };
+        text_commands(text).into_iter().map(&mut words).collect()
+    }
+
+    /// The plane of a section, and name, page angle in degrees and page scale of each axis of the
+    /// drawing.
+    fn axes(&self, py: Python<'_>, name: &str) -> PyResult<(Option<String>, Vec<PageAxis>)> {
+        let session = self.lock(py);
+        let drawing = &session.object(name).ok_or_else(|| no_object(name))?.drawing;
+        let page = &drawing.projection;
+        let all = [CoordinateAxis::X, CoordinateAxis::Y, CoordinateAxis::Z];
+        let drawn: Vec<CoordinateAxis> =
+            all.into_iter().filter(|a| drawing.section != Some(*a)).collect();
+        let plane = drawing.section.map(|_| drawn.iter().map(|a| a.letter()).collect());
+        let axis = |a: &CoordinateAxis| {
+            (a.letter().to_owned(), page.angle_deg[a.index()], page.scale[a.index()])
+        };
+        Ok((plane, drawn.iter().map(axis).collect()))
     }
 
     fn names(&self, py: Python<'_>) -> Vec<String> {

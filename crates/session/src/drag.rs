@@ -250,7 +250,13 @@ impl Drag {
         let mut aim = Aim { document, expression: &self.expression, names: &names, target, basis };
         let equal = vec![1.0; basis.len()];
         let enough = (1e-3 * grain).max(1e-12 * (1.0 + target.norm()));
-        let how = FollowSearch { importance: &equal, alike: true, enough, steps: MOST_STEPS };
+        let how = FollowSearch {
+            importance: &equal,
+            alike: true,
+            no_effect: &[],
+            enough,
+            steps: MOST_STEPS,
+        };
         let found = follow(&mut aim, &followers, &begin, how)?;
         let still = found.x == begin && found.left.iter().any(|l| l.abs() > grain);
         if let Some(why) = found.refused.filter(|_| still) {

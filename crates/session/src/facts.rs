@@ -107,6 +107,24 @@ pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value
     all.iter().map(one).collect()
 }
 
+/// Remarks about a file: diagnostics without positions.
+pub fn remarks(document: &Document, all: &[Diagnostic]) -> Value {
+    let one = |d: &Diagnostic| {
+        let data = d.to_data(document.sources());
+        let expected = data.expected.map(|e| format!("expected {e}"));
+        let found = data.found.map(|f| format!("found {f}"));
+        let help: Vec<String> =
+            expected.into_iter().chain(found).chain(data.notes).chain(data.help).collect();
+        json!({
+            "severity": data.severity,
+            "message": data.message,
+            "help": help,
+            "object": data.object,
+        })
+    };
+    all.iter().map(one).collect()
+}
+
 /// A number as JSON; a string for values such as infinity.
 pub fn number(x: f64) -> Value {
     if x.is_finite() { json!(x) } else { json!(x.to_string()) }

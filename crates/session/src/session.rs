@@ -636,6 +636,8 @@ impl Session {
             parts.push(part);
         }
         frame.put("files", parts);
+        let remarks = facts::remarks(&self.document, self.document.export_remarks());
+        frame.put("remarks", remarks);
         Ok(())
     }
 }

@@ -18,7 +18,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser, piped=False, values=False, refined=False)
     parser.add_argument(
-        "--port", metavar="N", type=int, default=0, help="port on this machine; default: a free one"
+        "--port",
+        metavar="N",
+        type=int,
+        default=0,
+        help="port on this machine; default: the last one of the model if it is free, else any",
     )
     parser.add_argument(
         "--no-browser", action="store_true", help="print the address and open no browser"

@@ -11,6 +11,7 @@ import numpy as np
 
 from moldloft._core import __version__
 from moldloft.arguments import explain
+from moldloft.colours import COLOURS
 from moldloft.errors import Error
 from moldloft.fairing.drawing import (
     AFTER,
@@ -40,15 +41,20 @@ if TYPE_CHECKING:
 
 __all__ = ["page", "write_page"]
 
+_INK, _MUTED, _LINE = COLOURS["ink"], COLOURS["muted"], COLOURS["line"]
+
 _STYLE = (
-    "body{font:14px/1.45 sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b1f24}"
-    "h1{font-size:1.4em}h2{font-size:1.1em;margin:1.8em 0 .4em}p.about{color:#555;margin:.2em 0}"
+    f"body{{font:14px/1.45 sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:{_INK}}}"
+    f"h1{{font-size:1.4em}}h2{{font-size:1.1em;margin:1.8em 0 .4em}}"
+    f"p.about{{color:{_MUTED};margin:.2em 0}}"
     "table{border-collapse:collapse;margin:.6em 0;font-variant-numeric:tabular-nums}"
-    "td,th{border-bottom:1px solid #ddd;padding:2px 10px;text-align:right}"
-    "td:first-child,th:first-child{text-align:left}tr.limit td{background:#fdf3e7}"
-    "tr.wrong td{background:#fde4e7}svg{width:100%;height:auto;background:#fff}"
-    "pre{background:#f6f7f9;padding:.8em;white-space:pre-wrap}"
-    "figure{margin:0}figcaption{color:#555;font-size:.92em}"
+    f"td,th{{border-bottom:1px solid {_LINE};padding:2px 10px;text-align:right}}"
+    "td:first-child,th:first-child{text-align:left}"
+    f"tr.limit td{{background:{COLOURS['row-limit']}}}"
+    f"tr.wrong td{{background:{COLOURS['row-wrong']}}}"
+    f"svg{{width:100%;height:auto;background:{COLOURS['paper']}}}"
+    f"pre{{background:{COLOURS['ground']};padding:.8em;white-space:pre-wrap}}"
+    f"figure{{margin:0}}figcaption{{color:{_MUTED};font-size:.92em}}"
     "@media print{body{margin:0;max-width:none}h2{break-after:avoid}figure{break-inside:avoid}}"
 )
 
@@ -104,7 +110,7 @@ class _Picture:
                 f"<title>{escape(title)}</title></circle>"
             )
 
-    def text(self, x: float, y: float, text: str, colour: str = "#333", end: bool = False) -> None:
+    def text(self, x: float, y: float, text: str, colour: str = _INK, end: bool = False) -> None:
         anchor = ' text-anchor="end"' if end else ""
         self.parts.append(
             f'<text x="{x:.1f}" y="{y:.1f}" font-size="12" font-family="sans-serif" '
@@ -116,7 +122,7 @@ class _Picture:
         length = round_below(0.18 * WIDE / float(self.scale[0]))
         x, y = self.margin, self.height - 8
         self.parts.append(
-            f'<path d="M{x} {y}h{length * self.scale[0]:.2f}" stroke="#333" stroke-width="1.5"/>'
+            f'<path d="M{x} {y}h{length * self.scale[0]:.2f}" stroke="{_INK}" stroke-width="1.5"/>'
         )
         self.text(x + float(length * self.scale[0]) + 6, y + 4, f"{length:g}")
 
@@ -215,7 +221,7 @@ def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
     picture.line(rough, BEFORE, 0.5)
     picture.segments(feet, tips, AFTER, 0.5)
     picture.line(tips, AFTER, 1.1)
-    picture.line(feet, "#1b1f24", 1.4)
+    picture.line(feet, _INK, 1.4)
     picture.bar()
     said = f"; teeth beyond {cut:.3g} are cut (largest {largest:.4g})" if cut < largest else ""
     return _figure(
@@ -250,7 +256,7 @@ def _combs(pairs: Sequence[tuple[Spline, Spline]], axes: tuple[int, int]) -> str
         for feet, tips in combs:
             picture.segments(feet, tips, colour, 0.4)
             picture.line(tips, colour, 0.9)
-            picture.line(feet, "#1b1f24", 1.0)
+            picture.line(feet, _INK, 1.0)
         picture.bar()
         caption = f"Curvature combs {word}, to scale; teeth beyond {cut:.3g} are cut."
         parts.append(_figure(picture, caption))
@@ -296,7 +302,7 @@ def _bends(fairing: Fairing) -> str:
     floor = 0.3 * usual
     for value in _ticks(low, high, floor if swamped else 0.0):
         y = float(shown(np.array([value]))[0])
-        picture.line(np.array([[0.0, y], [1.0, y]]), "#c9ccd1" if value else "#888", 0.6)
+        picture.line(np.array([[0.0, y], [1.0, y]]), _LINE if value else QUIET, 0.6)
         height = float(picture.place(np.array([[0.0, y]]))[0, 1])
         picture.text(WIDE - 2, height - 3, f"{value:g}", QUIET, end=True)
     picture.text(WIDE - 60, 12, f"largest {largest:.4g}, median {usual:.4g}", QUIET, end=True)

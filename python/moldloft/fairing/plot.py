@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.colours import COLOURS
 from moldloft.errors import Error
 from moldloft.fairing.drawing import AFTER, BEFORE, MOVE, QUIET, WRONG, even_turns, exaggeration
 from moldloft.fairing.spline import Samples, Spline, grid_metric
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["needed", "plot_curve", "plot_network", "plot_surface"]
 
-ACCENT = "#2e7d32"
+ACCENT, INK, LINE = COLOURS["good"], COLOURS["ink"], COLOURS["line"]
 
 STYLE = {
     "font.size": 8,
@@ -37,7 +38,7 @@ STYLE = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
-    "grid.color": "#e4e6ea",
+    "grid.color": LINE,
     "grid.linewidth": 0.6,
     "lines.linewidth": 1.1,
     "legend.frameon": False,
@@ -113,7 +114,7 @@ def plot_curve(fairing: Fairing, path: str | PathLike[str]) -> None:
 
     def draw(figure: Any) -> None:
         axes = figure.subplots(4, 2)
-        figure.suptitle(_title(fairing), fontsize=9, color="#30363f", ha="left", x=0.01)
+        figure.suptitle(_title(fairing), fontsize=9, color=INK, ha="left", x=0.01)
         _shape(axes[0, 0], fairing, before, after)
         _zoom(axes[0, 1], fairing, before, after)
         _curvature(axes[1, 0], before, after)
@@ -264,7 +265,7 @@ def _comb(ax: Any, fairing: Fairing) -> None:
     for a, b in zip(feet, tips, strict=True):
         ax.plot([a[i], b[i]], [a[j], b[j]], color=AFTER, lw=0.35, alpha=0.6)
     ax.plot(tips[:, i], tips[:, j], color=AFTER, lw=1.0)
-    ax.plot(feet[:, i], feet[:, j], color="#30363f", lw=1.2)
+    ax.plot(feet[:, i], feet[:, j], color=INK, lw=1.2)
     ax.set_xlabel("xyz"[i])
     ax.set_ylabel("xyz"[j])
     ax.set_aspect("equal", adjustable="datalim")
@@ -404,7 +405,7 @@ def plot_surface(fairing: SurfaceFairing, path: str | PathLike[str]) -> None:
             f"{fairing.jumps_after:.3g}, deviation certified {fairing.deviation_certified:.4g} "
             f"({fairing.deviation_percent:.3g} % of the extent)",
             fontsize=9,
-            color="#30363f",
+            color=INK,
             ha="left",
             x=0.01,
         )
@@ -421,7 +422,7 @@ def plot_surface(fairing: SurfaceFairing, path: str | PathLike[str]) -> None:
         for k, (band, word) in enumerate(zip(bands, ("before", "after"), strict=True)):
             ax = figure.add_subplot(sub[0, k])
             ax.set_title(f"Isophotes {word}")
-            ax.contourf(u, v, band.T, levels=[-2.0, 0.0, 2.0], colors=["#20242b", "white"])
+            ax.contourf(u, v, band.T, levels=[-2.0, 0.0, 2.0], colors=[INK, "white"])
             _uv(ax)
         ax = figure.add_subplot(sub[0, 2])
         ax.set_title("Displacement")
@@ -462,7 +463,7 @@ def _lines_of_surface(ax: Any, points: Floats, word: str) -> None:
     for k in np.unique(np.linspace(0, m - 1, 21).astype(int)):
         ax.plot(x[k], y[k], color=BEFORE if word == "before" else AFTER, lw=0.6)
     for k in np.unique(np.linspace(0, n - 1, 9).astype(int)):
-        ax.plot(x[:, k], y[:, k], color="#30363f", lw=0.6)
+        ax.plot(x[:, k], y[:, k], color=INK, lw=0.6)
     ax.set_aspect("equal")
     ax.axis("off")
 
@@ -518,7 +519,7 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
             f"{fairing.deviation_certified:.4g}\nbefore orange, after blue; moves of the points "
             f"(purple) {factor:g} times as long",
             fontsize=9,
-            color="#30363f",
+            color=INK,
             ha="left",
             x=0.01,
         )
@@ -552,7 +553,7 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
         if {i, j} == {0, 1} and np.ptp(given[:, 2]) > 0:
             i, j = 0, 2
         ax.set_title("Displacements of the points")
-        lines(ax, fairing.curves, i, j, "#c9ccd1", 0.5)
+        lines(ax, fairing.curves, i, j, LINE, 0.5)
         most = fairing.tol or float(moved.max()) or 1.0
         dots = ax.scatter(
             given[:, i], given[:, j], c=moved, s=14, cmap="viridis", vmin=0, vmax=most

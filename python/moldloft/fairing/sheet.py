@@ -17,6 +17,7 @@ import numpy as np
 
 from moldloft._core import __version__
 from moldloft.arguments import explain
+from moldloft.colours import COLOURS
 from moldloft.errors import Error
 from moldloft.fairing.drawing import (
     AFTER,
@@ -64,15 +65,18 @@ _UNIT_NAMES = {
 #: A point is at its limit from this share on.
 _AT_LIMIT = 1 - 1e-4
 
+_INK, _MOVED, _LIMIT = COLOURS["ink"], COLOURS["accent-soft"], COLOURS["row-limit"]
+
 _STYLE = (
     "body{font:13px/1.4 Helvetica,Arial,sans-serif;max-width:285mm;margin:8mm auto;padding:0 4mm;"
-    "color:#1b1f24}h1{font-size:1.5em;margin:.2em 0}h2{font-size:1.15em;margin:1.6em 0 .4em}"
+    f"color:{_INK}}}h1{{font-size:1.5em;margin:.2em 0}}h2{{font-size:1.15em;margin:1.6em 0 .4em}}"
     "table{border-collapse:collapse;margin:.6em 0;font-variant-numeric:tabular-nums}"
-    "td,th{border:1px solid #bbb;padding:1px 6px;text-align:right;vertical-align:top}"
-    "td:first-child,th:first-child,.facts td{text-align:left}th{background:#f3f4f6}"
-    "td.moved{background:#dbe8f8;font-weight:bold}td.moved small{display:block;color:#c2571a;"
-    "font-weight:normal}td.limit{background:#fde3cf}p{margin:.3em 0;max-width:60em}"
-    "svg{display:block;margin:.4em 0;background:#fff;max-width:100%}"
+    f"td,th{{border:1px solid {COLOURS['line']};padding:1px 6px;text-align:right;"
+    f"vertical-align:top}}td:first-child,th:first-child,.facts td{{text-align:left}}"
+    f"th{{background:{COLOURS['ground']}}}td.moved{{background:{_MOVED};font-weight:bold}}"
+    f"td.moved small{{display:block;color:{BEFORE};font-weight:normal}}"
+    f"td.limit{{background:{_LIMIT}}}p{{margin:.3em 0;max-width:60em}}"
+    f"svg{{display:block;margin:.4em 0;background:{COLOURS['paper']};max-width:100%}}"
     ".sign td{height:12mm;min-width:55mm}"
     "@media print{@page{size:A4 landscape;margin:10mm}body{margin:0;max-width:none;"
     "padding:0}"
@@ -152,7 +156,7 @@ class _Drawing:
 
     def text(
         self, x: float, y: float, text: str, size: float = 2.4, anchor: str = "start",
-        colour: str = "#1b1f24",
+        colour: str = _INK,
     ) -> None:  # fmt: skip
         self.texts.append((x, y, text, size, anchor, colour))
 
@@ -406,9 +410,9 @@ def _stations(drawing: _Drawing, lines: _Lines, place: Any) -> None:
 def _bar(drawing: _Drawing, scale: float, unit: str | None) -> None:
     length = round_below(60.0 / scale)
     x, y = 12.0, 3.0
-    drawing.line(np.array([[x, y], [x + length * scale, y]]), "#1b1f24", 0.5)
+    drawing.line(np.array([[x, y], [x + length * scale, y]]), _INK, 0.5)
     for at in (x, x + length * scale):
-        drawing.line(np.array([[at, y - 0.9], [at, y + 0.9]]), "#1b1f24", 0.35)
+        drawing.line(np.array([[at, y - 0.9], [at, y + 0.9]]), _INK, 0.35)
     drawing.text(x + length * scale + 2, y - 0.9, f"{length:g} {unit or ''}".strip())
 
 
@@ -440,7 +444,7 @@ def _combs(lines: _Lines, unit: str | None) -> list[_Part]:
                 feet, tips = ((p - low) * scale + np.array([12.0, 8.0]) for p in (feet, tips))
                 drawing.pairs(feet, tips, colour, 0.1)
                 drawing.line(tips, colour, 0.22)
-                drawing.line(feet, "#1b1f24", 0.25)
+                drawing.line(feet, _INK, 0.25)
             drawing.text(12, tall - 4, f"{name}, combs {word}", 3.2)
             _bar(drawing, scale, unit)
             parts.append(drawing)
@@ -506,7 +510,7 @@ def _strip(drawing: _Drawing, lines: _Lines, k: int, left: float, wide: float, t
         0.15,
     )
     full = used >= _AT_LIMIT
-    for mask, colour in ((~full, AFTER), (full, "#7a1f00")):
+    for mask, colour in ((~full, AFTER), (full, COLOURS["arrow"])):
         if mask.any():
             a = np.column_stack([x[mask], np.full(int(mask.sum()), foot)])
             b = np.column_stack([x[mask], tops[mask]])
@@ -796,13 +800,9 @@ def _pdf_table(table: _Table, body: Any) -> Any:
     for k, row in enumerate(table.rows):
         for j, cell in enumerate(row):
             if isinstance(cell, tuple):
-                look.append(
-                    ("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#dbe8f8"))
-                )
+                look.append(("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor(_MOVED)))
             elif (k, j) in table.limits:
-                look.append(
-                    ("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor("#fde3cf"))
-                )
+                look.append(("BACKGROUND", (j, k + shift), (j, k + shift), colors.HexColor(_LIMIT)))
     columns = len(every[0]) if every else 1
     widths: list[float]
     if table.kind == "facts":

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.colours import COLOURS
 from moldloft.study.robustness import sobol_indices, spreads, validity, worst_cases
 from moldloft.study.store import Results
 
@@ -46,16 +47,22 @@ RANK = 1e-10
 
 WIDTH, HEIGHT, MARGIN = 300.0, 220.0, 58.0
 
-_STYLE = """
-body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:76rem;padding:0 1rem;
-color:#1c2733;background:#fff}
-h1,h2{font-weight:600}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
-td,th{padding:2px 12px 2px 0;text-align:right;border-bottom:1px solid #e3e8ee}
-th:first-child,td:first-child{text-align:left}.plots{display:flex;flex-wrap:wrap;gap:1rem}
-figure{margin:0}figcaption{font-size:13px;color:#51606f}svg text{font:11px system-ui;fill:#51606f}
-.wide{overflow-x:auto}
-@media (prefers-color-scheme:dark){body{color:#dde5ec;background:#12181f}
-td,th{border-color:#2b3743}}
+_MUTED, _AXIS = COLOURS["muted"], COLOURS["line-grid"]
+_POINT, _MARKED = COLOURS["accent"], COLOURS["mark"]
+
+_STYLE = f"""
+body{{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:76rem;padding:0 1rem;
+color:{COLOURS["ink"]};background:{COLOURS["paper"]}}}
+h1,h2{{font-weight:600}}table{{border-collapse:collapse;font-variant-numeric:tabular-nums}}
+td,th{{padding:2px 12px 2px 0;text-align:right;border-bottom:1px solid {COLOURS["line"]}}}
+th:first-child,td:first-child{{text-align:left}}.plots{{display:flex;flex-wrap:wrap;gap:1rem}}
+figure{{margin:0}}figcaption{{font-size:13px;color:{_MUTED}}}
+svg text{{font:11px system-ui;fill:{_MUTED}}}
+.wide{{overflow-x:auto}}
+@media (prefers-color-scheme:dark){{
+body{{color:{COLOURS["ink-dark"]};background:{COLOURS["paper-dark"]}}}
+td,th{{border-color:{COLOURS["line-dark"]}}}
+figcaption{{color:{COLOURS["muted-dark"]}}}svg text{{fill:{COLOURS["muted-dark"]}}}}}
 """
 
 
@@ -281,7 +288,7 @@ def _density(px: Floats, py: Floats) -> str:
             for c in filled[shade == k].tolist()
         )
         if cells:
-            paths.append(f'<path d="{cells}" fill="#2563a8" fill-opacity="{opacity}"/>')
+            paths.append(f'<path d="{cells}" fill="{_POINT}" fill-opacity="{opacity}"/>')
     return "".join(paths)
 
 
@@ -291,13 +298,13 @@ def _scatter(
     (x0, x1), (y0, y1) = _span(x), _span(y)
     px = MARGIN + (x - x0) / (x1 - x0) * (WIDTH - MARGIN - 8)
     py = HEIGHT - MARGIN - (y - y0) / (y1 - y0) * (HEIGHT - MARGIN - 8)
-    dots = _density(px, py) if len(x) > MAX_DRAWN else _dots(px, py, 2, "#2563a8")
+    dots = _density(px, py) if len(x) > MAX_DRAWN else _dots(px, py, 2, _POINT)
     if marked is not None:
         few = marked[:MAX_DRAWN]
-        dots += _dots(px[few], py[few], 3, "#c2410c")
+        dots += _dots(px[few], py[few], 3, _MARKED)
     right, low = WIDTH - 8, HEIGHT - MARGIN
     axes = (
-        f'<path d="M{MARGIN} 8V{low}H{right}" fill="none" stroke="#8a97a5"/>'
+        f'<path d="M{MARGIN} 8V{low}H{right}" fill="none" stroke="{_AXIS}"/>'
         f'<text x="{MARGIN}" y="{low + 14}">{_text(x0)}</text>'
         f'<text x="{right}" y="{low + 14}" text-anchor="end">{_text(x1)}</text>'
         f'<text x="{MARGIN - 4}" y="{low}" text-anchor="end">{_text(y0)[:8]}</text>'
@@ -348,13 +355,13 @@ def _failure_plots(results: Results) -> list[str]:
         width = (WIDTH - MARGIN) / 10
         bars = "".join(
             f'<rect x="{MARGIN + k * width:.1f}" y="{8 + 100 * (1 - s):.1f}" '
-            f'width="{width - 2:.1f}" height="{100 * s:.1f}" fill="#c2410c"/>'
+            f'width="{width - 2:.1f}" height="{100 * s:.1f}" fill="{_MARKED}"/>'
             for k, s in enumerate(share)
         )
         label = f"fraction of failures by {name}"
         figures.append(
             f'<figure><svg role="img" aria-label="{escape(label)}" width="{WIDTH:.0f}" '
-            f'height="128">{bars}<path d="M{MARGIN} 8V108H{WIDTH}" fill="none" stroke="#8a97a5"/>'
+            f'height="128">{bars}<path d="M{MARGIN} 8V108H{WIDTH}" fill="none" stroke="{_AXIS}"/>'
             f'<text x="{MARGIN - 4}" y="16" text-anchor="end">1</text>'
             f'<text x="{MARGIN}" y="122">{_text(low)}</text>'
             f'<text x="{WIDTH}" y="122" text-anchor="end">{_text(high)}</text></svg>'
@@ -382,7 +389,7 @@ def _parallel(results: Results) -> str:
         hue = 230 - 200 * float(last[k])
         lines.append(f'<polyline points="{points}" stroke="hsl({hue:.0f} 65% 45%)"/>')
     axes = "".join(
-        f'<path d="M{60 + step * i:.0f} 30V{height - 40:.0f}" stroke="#8a97a5"/>'
+        f'<path d="M{60 + step * i:.0f} 30V{height - 40:.0f}" stroke="{_AXIS}"/>'
         f'<text x="{60 + step * i:.0f}" y="18" text-anchor="middle">{escape(n)}</text>'
         f'<text x="{60 + step * i:.0f}" y="{height - 24:.0f}" text-anchor="middle">'
         f"{_text(_span(c[rows])[0])}</text>"

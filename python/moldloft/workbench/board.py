@@ -32,7 +32,6 @@ from moldloft.workbench.statements import (
 
 __all__ = ["Board", "serve"]
 
-_DEFAULT_AXES = "345 40 90"
 #: What may stand after a value of DIMENSION and GIVE.
 _AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECASE)
@@ -187,11 +186,11 @@ class Board:
         """The last statement that draws a point, and the span of its numbers."""
         found = None
         for s in own:
-            if s.verb("POINT") and s.word(1) == str(point):
+            if s.verb == "POINT" and s.word(1) == str(point):
                 k = 3 if s.word(2) == "AT" else 2
                 if len(s.tokens) == k + 2:
                     found = (s, k)
-            elif s.verb("SPLIT", "WELD", "STROKES", "IMPORT", "INPUT", "MOVE", "SCALE"):
+            elif s.verb in ("SPLIT", "WELD", "STROKES", "IMPORT", "INPUT", "MOVE", "SCALE"):
                 found = None
         return found
 
@@ -199,11 +198,11 @@ class Board:
     def _type(own: Sequence[Statement], line: int, letter: str, added: list[str]) -> Places:
         found: tuple[Statement, int, bool] | None = None
         for s in own:
-            if s.verb("LINE") and s.word(1) == str(line) and s.word(2) == "FROM":
+            if s.verb == "LINE" and s.word(1) == str(line) and s.word(2) == "FROM":
                 typed = s.word(6) == "TYPE" and len(s.tokens) == 8
                 if typed or len(s.tokens) == 6:
                     found = (s, 7 if typed else 5, typed)
-            elif s.verb("TYPE") and str(line) in [t.text for t in s.tokens[1:-1]]:
+            elif s.verb == "TYPE" and str(line) in [t.text for t in s.tokens[1:-1]]:
                 alone = [t for t in s.tokens[1:-1] if t.upper != "AS"]
                 found = (s, len(s.tokens) - 1, True) if len(alone) == 1 else None
                 if found is None:
@@ -240,9 +239,9 @@ class Board:
             end = words.index("IN") if "IN" in words[2:] else len(words)
             while end and words[end - 1] in _AFTER_VALUE:
                 end -= 1
-            if named and s.verb("SET", "VARIABLE", "DECLARE"):
+            if named and s.verb in ("SET", "VARIABLE", "DECLARE"):
                 found = (s, 2)
-            elif named and s.verb("DIMENSION", "GIVE"):
+            elif named and s.verb in ("DIMENSION", "GIVE"):
                 along = words[2] in ("X", "Y", "Z")
                 least = (6 if "TO" in words else 5) if along else 4
                 found = (s, end - 1) if end > least else None
@@ -255,10 +254,10 @@ class Board:
     @staticmethod
     def _axes(own: Sequence[Statement], axes: str) -> Places:
         for s in own:
-            if s.verb("AXES"):
+            if s.verb == "AXES":
                 return [(s.tokens[1].start, s.end, axes)]
         for s in own:
-            if s.verb("SKETCH"):
+            if s.verb == "SKETCH":
                 return [(s.end, s.end, f"\nAXES {axes}")]
         raise RefusedError("the object has no SKETCH command in this text")
 
@@ -318,9 +317,15 @@ class Board:
         self._aside(look)
         return out
 
+    def _axes_of(self, name: str | None) -> tuple[str | None, Axes]:
+        """The plane of a section, and the axes of the drawing."""
+        section, rows = self._session.axes(name or "")
+        letters, angles, scale = zip(*rows, strict=True)
+        return section, Axes("".join(letters), list(angles), list(scale))
+
     def _object_facts(self, data: dict[str, Any]) -> dict[str, Any]:
         session = self._session
-        section, axes = axes_of(session.text(self._object))
+        section, axes = self._axes_of(self._object)
         planes = [
             [a.axis, list(a.points), a.value]
             for a in (Reply.from_row(row).about for row in session.run_line("EXTENSIONS"))
@@ -440,7 +445,7 @@ class Board:
         out: dict[str, Any] = {"at": list(at), "why": None}
         if name is None or not math.isfinite(sum(at)):
             return out
-        _, axes = axes_of(self._session.text(name))
+        _, axes = self._axes_of(name)
         if not request.get("free"):
             out.update(
                 snapped(
@@ -496,27 +501,6 @@ class Board:
         if kind == "board_check":
             return {"checks": self.check(), "proposals": self.proposals()}
         return self.facts()
-
-
-def axes_of(text: str) -> tuple[str | None, Axes]:
-    """The section plane and the axes of an object, from its commands."""
-    section, angles = None, [float(x) for x in _DEFAULT_AXES.split()]
-    scale = [1.0, 1.0, 1.0]
-    for line in text.splitlines():
-        words = line.split()
-        if words[:1] == ["SKETCH"]:
-            section = words[3] if words[2:3] == ["2D"] else None
-            if section:
-                angles = [0.0, 90.0]
-        elif words[:1] == ["AXES"]:
-            numbers = words[1 : words.index("SCALE")] if "SCALE" in words else words[1:]
-            angles = [float(x) for x in numbers]
-            if "SCALE" in words:
-                scale = [float(x) for x in words[words.index("SCALE") + 1 :]]
-        elif words[:1] in (["POINT"], ["LINE"]):
-            break
-    letters = section or "XYZ"
-    return section, Axes(letters, angles, scale)
 
 
 def _shape(vertices: Any, faces: Any) -> dict[str, list[float]]:

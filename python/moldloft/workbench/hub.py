@@ -102,6 +102,8 @@ class Hub:
     tabs: dict[int, Tab] = field(default_factory=dict)
     beside: Callable[[Path], str] | None = None
     """Opens another model and returns the address of its page."""
+    secret: str = ""
+    """Pages prove with it to the next server that they were here."""
 
     def __post_init__(self) -> None:
         utf8_path(self.path)
@@ -215,6 +217,7 @@ class Hub:
         return {
             "kind": "hello",
             "instance": self.instance,
+            "secret": self.secret,
             "tab": tab.number,
             "name": self.path.name,
             "text": self.text,

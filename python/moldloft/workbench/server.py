@@ -22,6 +22,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from moldloft.errors import Error
+from moldloft.workbench.address import Address, keep_address, kept_address, proof
 from moldloft.workbench.hub import Hub, Tab
 from moldloft.workbench.page import page_files
 from moldloft.workbench.recent import note_opened
@@ -108,7 +109,7 @@ class Server:
     hub
         The model.
     port
-        The port; any free one when 0.
+        The port; when 0 that of the model's last server, if it is free, else any free one.
     announce
         Is given the next address when one has been used.
     """
@@ -125,17 +126,27 @@ class Server:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         # What the system keeps for a page that does not read; unset it grows to several times that.
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
-        try:
-            self._socket.bind(("127.0.0.1", port))
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise Error(f"cannot listen on port {port}: {reason}; choose another one") from None
+        kept = kept_address(hub.path)
+        self._bind(port, kept.port)
         self.port: int = self._socket.getsockname()[1]
         self._token = secrets.token_urlsafe(32)
         self._cookie = f"moldloft-{self.port}"
         self._session = secrets.token_urlsafe(32)
+        self._before, hub.secret = kept.secret, secrets.token_urlsafe(32)
+        keep_address(hub.path, Address(self.port, hub.secret))
+        self._challenge = secrets.token_urlsafe(32)
         self._others: dict[Path, tuple[Server, asyncio.Task[None]]] = {}
         hub.beside = self._beside
+
+    def _bind(self, port: int, preferred: int) -> None:
+        """Bind to a port; when that is 0 to the preferred one, and else to any free one."""
+        try:
+            self._socket.bind(("127.0.0.1", port or preferred))
+        except OSError as error:
+            if port:
+                reason = (error.strerror or str(error)).lower()
+                raise Error(f"cannot listen on port {port}: {reason}; choose another one") from None
+            self._socket.bind(("127.0.0.1", 0))
 
     @property
     def url(self) -> str:
@@ -157,6 +168,7 @@ class Server:
             Route("/", self._index),
             Route("/assets/{name}", self._asset),
             Route("/token", self._exchange, methods=["POST"]),
+            Route("/challenge", self._challenged),
             WebSocketRoute("/ws", self._talk),
         ]
         return Guard(Starlette(routes=routes), self.port)
@@ -237,13 +249,25 @@ class Server:
         response = Response(status_code=204, headers=self._headers())
         if self._known(request.cookies):
             return response
-        if not hmac.compare_digest(body, self._token.encode()):
+        proved = proof(self._before, self.port, self._challenge)
+        if hmac.compare_digest(body, proved.encode()):
+            self._challenge = secrets.token_urlsafe(32)
+        elif hmac.compare_digest(body, self._token.encode()):
+            # A token buys one cookie: who reads it later, in a history or over a shoulder, has
+            # nothing.
+            self._token = secrets.token_urlsafe(32)
+            self._announce(self.url)
+        else:
             return Response("refused", status_code=403, headers=self._headers())
-        # A token buys one cookie: who reads it later, in a history or over a shoulder, has nothing.
-        self._token = secrets.token_urlsafe(32)
-        self._announce(self.url)
         response.set_cookie(self._cookie, self._session, httponly=True, samesite="strict", path="/")
         return response
+
+    async def _challenged(self, request: Request) -> Response:
+        """What a page of the last server is to prove itself with; nothing to one that is known."""
+        known = self._known(request.cookies)
+        return Response(
+            "" if known else self._challenge, headers=self._headers(Cache_Control="no-store")
+        )
 
     def _known(self, cookies: Mapping[str, str]) -> bool:
         """True if the browser has a session."""

@@ -1,7 +1,8 @@
 """Statements of a sketch file with their positions, and insertion of new ones.
 
 What is drawn on the board is written as commands: beside those that it continues, or over the one
-that it changes. Places are counted in code points here, in UTF-16 units for the page.
+that it changes. A sketch session divides the text. Places are counted in code points here, in
+UTF-16 units for the page.
 """
 
 from __future__ import annotations
@@ -9,15 +10,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from moldloft import _core
+
 __all__ = ["Statement", "Token", "block", "replaced", "statements", "units"]
 
 #: What makes a body of a drawing, or looks at it: drawing and dimensions are written before it.
-_SOLID = (
+_SOLID = {
     "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "EXTRUDE", "REVOLVE", "CLEAN", "MEASURE",
     "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE", "PATTERN", "FILLET", "CHAMFER",
     "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR", "SCALE", "SAVE", "EXPORT",
     "ESTIMATE",
-)  # fmt: skip
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,8 @@ class Token:
 class Statement:
     """A command of a text."""
 
+    verb: str
+    """Its command in full; empty for an answer to a question."""
     tokens: tuple[Token, ...]
     last: bool
     """True if it is the last one of its line."""
@@ -54,66 +59,21 @@ class Statement:
         """End offset."""
         return self.tokens[-1].end
 
-    def verb(self, *names: str) -> bool:
-        """True for one of these commands, in full or abbreviated to three letters or more."""
-        word = self.tokens[0].upper
-        return any(name == word or (len(word) >= 3 and name.startswith(word)) for name in names)
-
     def word(self, k: int) -> str:
         """The word with an index; empty beyond the end."""
         return self.tokens[k].upper if k < len(self.tokens) else ""
 
 
 def statements(text: str) -> list[Statement]:
-    """The commands of a text, in order.
+    """The commands of a text, in order, without those that cannot be read.
 
-    >>> [s.verb("POINT") for s in statements("POINT 1 0 0; LINE 1 2 ! LINE 3 4")]
-    [True, False]
+    >>> [s.verb for s in statements("POI 1 0 0; LINE 1 2 ! LINE 3 4")]
+    ['POINT', 'LINE']
     """
-    found: list[Statement] = []
-    tokens: list[Token] = []
-
-    def finish(last: bool) -> None:
-        if tokens:
-            found.append(Statement(tuple(tokens), last))
-        tokens.clear()
-
-    k, size = 0, len(text)
-    while k < size:
-        c = text[k]
-        if c == "\n":
-            if tokens and tokens[-1].text == "&":
-                tokens.pop()
-            else:
-                finish(True)
-            k += 1
-        elif c in "!#":
-            k = _until(text, k, "\n")
-        elif c == ";":
-            rest = text[k + 1 : _until(text, k, "\n")].strip()
-            finish(not rest or rest[0] in "!#")
-            k += 1
-        elif c in "\"'":
-            line = _until(text, k, "\n")
-            close = text.find(c, k + 1, line)
-            close = line - 1 if close < 0 else close
-            tokens.append(Token(text[k + 1 : close], k, close + 1))
-            k = close + 1
-        elif c in ",=" or c.isspace():
-            k += 1
-        else:
-            end = k
-            while end < size and text[end] not in ",=;!#\"'" and not text[end].isspace():
-                end += 1
-            tokens.append(Token(text[k:end], k, end))
-            k = end
-    finish(True)
-    return found
-
-
-def _until(text: str, start: int, mark: str) -> int:
-    end = text.find(mark, start)
-    return len(text) if end < 0 else end
+    return [
+        Statement(verb, tuple(Token(*word) for word in words), last)
+        for verb, words, last in _core.SketchSession.commands(text)
+    ]
 
 
 def block(every: Sequence[Statement], name: str) -> list[Statement]:
@@ -125,7 +85,7 @@ def block(every: Sequence[Statement], name: str) -> list[Statement]:
     """
     active, found = "", []
     for s in every:
-        if s.verb("SKETCH", "MODIFY", "USING") and len(s.tokens) > 1:
+        if s.verb in ("SKETCH", "MODIFY", "USING") and len(s.tokens) > 1:
             active = s.word(1)
         if active == name.upper():
             found.append(s)
@@ -136,7 +96,7 @@ def place(own: Sequence[Statement]) -> Statement | None:
     """The statement after which more is drawn: the last one before the object's body is made."""
     last = None
     for s in own:
-        if s.verb(*_SOLID):
+        if s.verb in _SOLID:
             break
         last = s
     return last

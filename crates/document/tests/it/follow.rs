@@ -36,7 +36,7 @@ fn free(home: f64) -> FollowingNumber {
 }
 
 const USUAL: FollowSearch<'static> =
-    FollowSearch { importance: &[1.0, 1.0], alike: false, enough: 0.0, steps: 40 };
+    FollowSearch { importance: &[1.0, 1.0], alike: false, no_effect: &[], enough: 0.0, steps: 40 };
 
 #[test]
 fn a_linear_condition_is_met_by_the_nearest_point() {
@@ -159,4 +159,25 @@ fn what_cannot_be_solved_or_added_is_refused() {
         assert_eq!(fault.id, id, "{statement}: {fault:?}");
     }
     assert_eq!(document.text(), text);
+}
+
+/// A number that the parameters move by less than its tolerance does not hold them: an ordinary
+/// hull that is alike fore and aft has such a centre of buoyancy, by rounding.
+#[test]
+fn a_number_without_effect_beyond_its_tolerance_holds_nothing() {
+    use moldloft_document::{Adjustable, WantedNumber};
+    let text = "param float a = 2 in [1, 5]; param float b = 3 in [1, 5];
+        AbsPoint P(a * b, 3.95 + 1e-10 * (a - b), 0);";
+    let mut document = crate::common::open(text);
+    let by = ["a", "b"].map(|n| Adjustable { name: n.into(), weight: 1.0, home: None });
+    let wish = |expression: &str, value| WantedNumber { expression: expression.into(), value };
+    for (k, area) in [2.0, 6.0, 20.0].into_iter().enumerate() {
+        // As the numbers are where a = 5 and b = 1 or the other way round: both values are met.
+        let off = if k % 2 == 0 { 4e-10 } else { -4e-10 };
+        let found = document.solve_for(&[wish("P.x", area), wish("P.y", 3.95 + off)], &by).unwrap();
+        assert!((found.reached[0] / area - 1.0).abs() < 1e-8, "{found:?}");
+        assert!((found.reached[1] / (3.95 + off) - 1.0).abs() < 1e-8, "{found:?}");
+    }
+    let refused = document.solve_for(&[wish("P.x", 6.0), wish("P.y", 4.0)], &by).unwrap_err();
+    assert!(refused[0].found.as_ref().unwrap().contains("no effect"), "{refused:?}");
 }

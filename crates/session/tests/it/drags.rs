@@ -129,6 +129,22 @@ fn what_cannot_be_dragged_says_so() {
 }
 
 #[test]
+fn a_file_comes_with_remarks_about_it() {
+    let file = json!({"kind": "export", "format": "ms2", "stem": "points"});
+    let mut s = session("AbsPoint P(2, 0, 0); assert(P.x > 1);");
+    let reply = ask(&mut s, file.clone());
+    assert_eq!(reply.head["files"][0]["name"], "points.ms2");
+    let [remark] = &reply.head["remarks"].as_array().unwrap()[..] else {
+        panic!("{}", reply.head["remarks"])
+    };
+    assert_eq!(remark["message"], "a model file has no place for an assertion");
+    assert!(remark["help"][0].as_str().unwrap().contains("in the program"), "{remark}");
+    assert_eq!(remark["severity"], "warning");
+    let mut s = session("AbsPoint P(2, 0, 0);");
+    assert_eq!(ask(&mut s, file).head["remarks"], json!([]));
+}
+
+#[test]
 fn a_coefficient_follows_before_a_parameter_and_a_whole_one_after_it() {
     let text = "param float beam = 4 in [2, 6];\n\
                 AbsPoint P(1, 5.046 * beam, 3);\nAbsPoint Q(1, 0, beam / 2);\n\

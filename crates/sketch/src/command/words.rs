@@ -1,6 +1,7 @@
 //! The command preprocessor (routine LSUCMD): a line into commands of words, numbers and texts.
 
-use super::CommandError;
+use super::{CommandError, verbs};
+use std::ops::Range;
 
 /// Kind of a token.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,8 @@ pub const UNITS: [(&str, f64); 5] =
 pub struct Command {
     /// Its tokens; never empty.
     pub tokens: Vec<CommandToken>,
+    /// Position of each token in the line, in bytes, with its quotation marks.
+    pub spans: Vec<Range<usize>>,
     /// As written.
     pub text: String,
 }
@@ -40,6 +43,58 @@ pub struct Command {
 pub struct Parsed {
     /// The commands, or the reason why one is invalid.
     pub commands: Vec<Result<Command, CommandError>>,
+}
+
+/// A command of a text, with positions in the text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextCommand {
+    /// Its verb in full; none for an answer and for a word that is no verb.
+    pub verb: Option<&'static str>,
+    /// Its tokens with their positions in bytes, quotation marks included.
+    pub tokens: Vec<(CommandToken, Range<usize>)>,
+    /// True if it is the last one of its line.
+    pub last: bool,
+}
+
+/// The commands of a text in order, without those that cannot be read.
+pub fn text_commands(text: &str) -> Vec<TextCommand> {
+    let mut found = Vec::new();
+    let mut joined = String::new();
+    // Where parts of the joined line come from: position there and in the text.
+    let mut parts = Vec::new();
+    let mut start = 0;
+    for piece in text.split_inclusive('\n') {
+        let line = piece.strip_suffix('\n').unwrap_or(piece);
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        parts.push((joined.len(), start));
+        start += piece.len();
+        if let Some(part) = continued(line) {
+            joined.push_str(part);
+            joined.push(' ');
+            continue;
+        }
+        joined.push_str(line);
+        let place = |at: usize| {
+            let (before, from) =
+                parts.iter().rev().find(|p| p.0 <= at).copied().unwrap_or_default();
+            at - before + from
+        };
+        let commands = parse(&joined, None).commands;
+        let count = commands.len();
+        for (k, command) in commands.into_iter().enumerate() {
+            let Ok(command) = command else { continue };
+            let span = |s: &Range<usize>| place(s.start)..place(s.end - 1) + 1;
+            let spans: Vec<Range<usize>> = command.spans.iter().map(span).collect();
+            found.push(TextCommand {
+                verb: verbs::find(&command.tokens[0].text).ok().map(|(verb, _)| verb),
+                tokens: command.tokens.into_iter().zip(spans).collect(),
+                last: k + 1 == count,
+            });
+        }
+        joined.clear();
+        parts.clear();
+    }
+    found
 }
 
 /// If the command continues in the next line (the last character before any comment is `&`), the
@@ -65,32 +120,34 @@ pub fn continued(line: &str) -> Option<&str> {
 /// start a comment; quotation marks protect. `longest` cuts words (1983: 32 characters).
 pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
     let mut parsed = Parsed::default();
-    let mut tokens = Vec::new();
+    let (mut tokens, mut spans) = (Vec::new(), Vec::new());
     let mut fault = None;
     let mut start = 0;
     let chars: Vec<(usize, char)> = line.char_indices().collect();
     let mut k = 0;
-    let mut finish =
-        |tokens: &mut Vec<CommandToken>, fault: &mut Option<CommandError>, text: &str| {
-            match fault.take() {
-                Some(f) => parsed.commands.push(Err(f)),
-                None if !tokens.is_empty() => {
-                    let tokens = std::mem::take(tokens);
-                    parsed.commands.push(Ok(Command { tokens, text: text.trim().to_owned() }));
-                }
-                None => {}
+    let mut finish = |tokens: &mut Vec<CommandToken>,
+                      spans: &mut Vec<Range<usize>>,
+                      fault: &mut Option<CommandError>,
+                      text: &str| {
+        let (tokens, spans) = (std::mem::take(tokens), std::mem::take(spans));
+        match fault.take() {
+            Some(f) => parsed.commands.push(Err(f)),
+            None if !tokens.is_empty() => {
+                let text = text.trim().to_owned();
+                parsed.commands.push(Ok(Command { tokens, spans, text }));
             }
-            tokens.clear();
-        };
+            None => {}
+        }
+    };
     while k < chars.len() {
         let (at, c) = chars[k];
         match c {
             '!' | '#' => {
-                finish(&mut tokens, &mut fault, &line[start..at]);
+                finish(&mut tokens, &mut spans, &mut fault, &line[start..at]);
                 return parsed;
             }
             ';' => {
-                finish(&mut tokens, &mut fault, &line[start..at]);
+                finish(&mut tokens, &mut spans, &mut fault, &line[start..at]);
                 start = at + 1;
                 k += 1;
             }
@@ -100,6 +157,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
                     Some(j) => {
                         let text = line[at + 1..chars[j].0].to_owned();
                         tokens.push(CommandToken { kind: CommandTokenKind::Text, text });
+                        spans.push(at..chars[j].0 + 1);
                         k = j + 1;
                     }
                     None => {
@@ -116,14 +174,17 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
                 let stop = (k..chars.len()).find(|&j| ends(chars[j].1)).unwrap_or(chars.len());
                 let end = chars.get(stop).map_or(line.len(), |x| x.0);
                 match token(&line[at..end], longest) {
-                    Ok(token) => tokens.push(token),
+                    Ok(token) => {
+                        tokens.push(token);
+                        spans.push(at..end);
+                    }
                     Err(f) => fault = fault.or(Some(f)),
                 }
                 k = stop;
             }
         }
     }
-    finish(&mut tokens, &mut fault, &line[start..]);
+    finish(&mut tokens, &mut spans, &mut fault, &line[start..]);
     parsed
 }
 
