@@ -358,7 +358,7 @@ def test_rails_are_checked():
     corner = im.fillet(x, z, 0.5, **box)
     assert corner.degree == 2
     t = 0.5 * (1 - math.sqrt(0.5))
-    (blend,) = (leaf for leaf in corner.leaves() if leaf.name == "fillet")
+    (blend,) = (leaf for leaf in corner.leaves if leaf.name == "fillet")
     assert abs(blend.field((t, 0, t))) < 1e-15
 
 
