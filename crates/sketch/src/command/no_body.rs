@@ -142,6 +142,7 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             "change a dimension there a little; CHECK the bodies that it is made of",
         )
         .about(ReplySubject::of("open-body").place(*p)),
+        CombineError::AtFacets(_) => combine_error(name, e.cause()),
         CombineError::TooLarge => CommandError::new(
             200,
             format!("{name}: there are too many pieces"),

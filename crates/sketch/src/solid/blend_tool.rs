@@ -64,7 +64,7 @@ impl<T: Real> ToolParts<T> {
             vertices: vertices.iter().enumerate().map(vertex).collect(),
             ..SketchSolid::default()
         };
-        let mesh = CombinedMesh { points: vertices, faces: Vec::new(), chains: Vec::new() };
+        let mesh = CombinedMesh { points: vertices, ..CombinedMesh::default() };
         ToolParts { solid, mesh }
     }
 

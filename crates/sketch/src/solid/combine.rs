@@ -8,17 +8,15 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
-use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
-use super::meeting::{EqualCylinders, closed_form};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
-use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
-use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
+use super::surface::{FaceSurface, Jet};
+use super::tangent_ruling::{TangentRuling, rulings};
+use super::{FacetPart, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use crate::solid::operation::Operation;
 use moldloft_mesh::triangulate;
-use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
@@ -35,10 +33,51 @@ pub enum CombineError {
     Coarse(Vec<Vec3>),
     /// The faces of the body do not close within rounding; worst at this position.
     Unbalanced(Vec3),
+    /// One of these, for all that is known of the facets.
+    AtFacets(Box<FacetAttempt>),
     /// There are too many pieces.
     TooLarge,
     /// Nothing is left.
     Empty,
+}
+
+/// A combination that failed with its facets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacetAttempt {
+    facets: usize,
+    /// Rulings in which cylinders are touched.
+    rulings: Vec<TangentRuling>,
+    why: CombineError,
+}
+
+impl CombineError {
+    /// The reason itself.
+    pub fn cause(&self) -> &CombineError {
+        match self {
+            CombineError::AtFacets(attempt) => attempt.why.cause(),
+            other => other,
+        }
+    }
+
+    /// The positions that it names.
+    pub(super) fn places(&self) -> Vec<Vec3> {
+        match self.cause() {
+            CombineError::Coarse(all) => all.clone(),
+            CombineError::Touching(p) | CombineError::Unbalanced(p) | CombineError::Open(p) => {
+                vec![*p]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The number of facets, if known.
+    pub(super) fn facets(&self) -> usize {
+        if let CombineError::AtFacets(attempt) = self { attempt.facets } else { 0 }
+    }
+
+    pub(super) fn rulings(&self) -> &[TangentRuling] {
+        if let CombineError::AtFacets(attempt) = self { &attempt.rulings } else { &[] }
+    }
 }
 
 impl From<ArrangeError> for CombineError {
@@ -99,6 +138,8 @@ pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, Com
 /// The facets of bodies, with their origin.
 pub(super) struct Facetted<T> {
     pub(super) points: Vec<Vec3<T>>,
+    /// The same points where the facets meet.
+    pub(super) flat: Vec<Vec3>,
     pub(super) facets: Vec<Facet>,
     pub(super) sources: Vec<FacetSource<T>>,
     /// By point: whether it is a vertex of its body.
@@ -115,22 +156,39 @@ fn build<T: Real>(
     [crossing, fitted]: [bool; 2],
     rule: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
-    let mut all = facetted(bodies, operand_of);
-    if all.facets.len() > MOST_FACETS {
+    // Tools are fitted to faces and edges, not to facets.
+    let all = facetted(bodies, operand_of, !fitted);
+    let facets = all.facets.len();
+    if facets > MOST_FACETS {
         return Err(CombineError::TooLarge);
     }
+    arranged(bodies, all, [crossing, fitted], rule).map_err(|why| match why {
+        CombineError::TooLarge | CombineError::Empty => why,
+        why => {
+            CombineError::AtFacets(Box::new(FacetAttempt { facets, rulings: rulings(bodies), why }))
+        }
+    })
+}
+
+fn arranged<T: Real>(
+    bodies: &[&SketchSolid<T>],
+    mut all: Facetted<T>,
+    [crossing, fitted]: [bool; 2],
+    rule: &dyn Fn([i32; 2]) -> bool,
+) -> Result<(SketchSolid<T>, bool), CombineError> {
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
     let unclear = all.unclear(&plain, crossing);
     if !unclear.is_empty() {
         return Err(CombineError::Coarse(unclear));
     }
     let facets = std::mem::take(&mut all.facets);
-    let arranged = arrangement::arrange(&plain, facets, [crossing, T::PARTS > 1], rule)?;
+    let arranged = arrangement::arrange(&all.flat, facets, [crossing, T::PARTS > 1], rule)?;
     if arranged.faces.is_empty() {
         return Err(CombineError::Empty);
     }
     let scale = extent(&plain);
-    let mut body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
+    let body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
+    let mut body = body.balanced()?;
     if T::PARTS > 1 {
         body.kinks.append(&mut all.kinks);
         let rushing = coincidence::rushing(&body, &all.points);
@@ -160,15 +218,16 @@ pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Vec<Vec3> {
     if body.edges.iter().all(|e| e.piece.is_none() && e.trace.is_none()) {
         return Vec::new();
     }
-    let all = facetted(&[body], &[0]);
+    let all = facetted(&[body], &[0], false);
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
     all.unclear(&plain, true)
 }
 
 /// The facets of bodies by operand; faces and edges of bodies of one operand are numbered on.
-fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facetted<T> {
+fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize], flat: bool) -> Facetted<T> {
     let mut all = Facetted {
         points: Vec::new(),
+        flat: Vec::new(),
         facets: Vec::new(),
         sources: Vec::new(),
         vertex: Vec::new(),
@@ -189,7 +248,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
                 warped: Vec::new(),
             });
         }
-        add_facets(body, operand, &mut operands[operand], &mut all);
+        add_facets(body, operand, flat, &mut operands[operand], &mut all);
     }
     all.sources = operands;
     all
@@ -212,13 +271,21 @@ fn extent(points: &[Vec3]) -> f64 {
 fn add_facets<T: Real>(
     body: &SketchSolid<T>,
     operand: usize,
+    flat: bool,
     source: &mut FacetSource<T>,
     all: &mut Facetted<T>,
 ) {
     let first_point = all.points.len() as u32;
     let first_edge = source.edges.len() as u32;
-    let outline = body.outline();
+    let (outline, plain, normals) = match flat {
+        true => body.flat_outline(),
+        false => (body.outline(), Vec::new(), Vec::new()),
+    };
     all.points.extend_from_slice(&outline.points);
+    match flat {
+        true => all.flat.extend(plain),
+        false => all.flat.extend(outline.points.iter().map(|p| p.re())),
+    }
     all.vertex.extend((0..outline.points.len()).map(|k| k < body.vertices.len()));
     all.around.resize(all.points.len(), BTreeSet::new());
     for k in 0..body.edges.len() {
@@ -249,35 +316,37 @@ fn add_facets<T: Real>(
         let kink = |part| Kink { part, at: stray.corners[0], volume: true };
         kinks.extend((1..T::PARTS).filter(strays).map(kink));
     }
-    let mut put =
-        |source: &mut FacetSource<T>, surface: FaceSurface<T>, facets: Vec<LoopsAndTags>| {
-            let tag = source.surfaces.len() as u32;
-            let plane = matches!(surface, FaceSurface::Plane { .. });
-            source.surfaces.push(surface);
-            for (loops, tags) in facets {
-                for t in tags.iter().flatten().filter(|t| **t != INNER) {
-                    let beside = &mut source.edges[(first_edge + t) as usize].1;
-                    if !beside.contains(&tag) {
-                        beside.push(tag);
-                    }
+    let mut put = |source: &mut FacetSource<T>,
+                   surface: FaceSurface<T>,
+                   facets: Vec<LoopsAndTags>,
+                   own: &[Vec3]| {
+        let tag = source.surfaces.len() as u32;
+        let plane = matches!(surface, FaceSurface::Plane { .. });
+        source.surfaces.push(surface);
+        for (k, (loops, tags)) in facets.into_iter().enumerate() {
+            for t in tags.iter().flatten().filter(|t| **t != INNER) {
+                let beside = &mut source.edges[(first_edge + t) as usize].1;
+                if !beside.contains(&tag) {
+                    beside.push(tag);
                 }
-                let at = |v: &u32| outline.points[*v as usize].re();
-                let normal = if let FaceSurface::Plane { normal, .. } = surface {
-                    Some(normal.re())
-                } else {
-                    newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized()
-                };
-                let Some(normal) = normal else { continue };
-                for &v in loops.iter().flatten() {
-                    all.around[(v + first_point) as usize].insert((operand, tag));
-                }
-                let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
-                let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
-                let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
-                let loops = loops.into_iter().map(shift).collect();
-                all.facets.push(Facet::new(operand, tag, plane, normal, loops, tags));
             }
-        };
+            let at = |v: &u32| outline.points[*v as usize].re();
+            let normal = match (&surface, own.get(k)) {
+                (FaceSurface::Plane { normal, .. }, _) => Some(normal.re()),
+                (_, Some(normal)) => normal.normalized(),
+                (_, None) => newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized(),
+            };
+            let Some(normal) = normal else { continue };
+            for &v in loops.iter().flatten() {
+                all.around[(v + first_point) as usize].insert((operand, tag));
+            }
+            let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
+            let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
+            let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
+            let loops = loops.into_iter().map(shift).collect();
+            all.facets.push(Facet::new(operand, tag, plane, normal, loops, tags));
+        }
+    };
     for f in 0..body.faces.len() {
         while source.names.len() < source.surfaces.len() {
             // A face that is not plane has one surface for each of its triangles.
@@ -291,7 +360,8 @@ fn add_facets<T: Real>(
             let strips = outline.strips(f).to_vec();
             let outward = along_normal(&surface, &strips, &|v| at(v).re());
             source.borders.push((ring, outward));
-            put(source, surface, strips);
+            let own = normals.get(f).map_or(&[][..], |own| own);
+            put(source, surface, strips, own);
             continue;
         }
         let border = ring;
@@ -312,7 +382,7 @@ fn add_facets<T: Real>(
                     FaceSurface::Plane { at: ring[0], normal }
                 }
             };
-            put(source, plane, vec![(loops, tags)]);
+            put(source, plane, vec![(loops, tags)], &[]);
             continue;
         }
         // A face that is not plane is its triangles, each with a plane of its own.
@@ -327,7 +397,7 @@ fn add_facets<T: Real>(
             let tags = [(a, b), (b, c), (c, a)].map(|e| *side.get(&e).unwrap_or(&INNER));
             let facet = (vec![vec![a, b, c]], vec![tags.to_vec()]);
             source.borders.push((vec![], true));
-            put(source, FaceSurface::Plane { at: ring[0], normal }, vec![facet]);
+            put(source, FaceSurface::Plane { at: ring[0], normal }, vec![facet], &[]);
         }
     }
     let last = body.faces.last().map(|f| f.names.clone()).unwrap_or_default();
@@ -413,20 +483,6 @@ pub(super) fn triangles_of(
         loops.iter().map(|c| c.iter().map(|v| first[v]).collect()).collect();
     triangulate(&points, &cycles, normal).into_iter().map(|t| t.map(|k| used[k])).collect()
 }
-
-/// Maximum deviation of the nodes' paths along a chord, relative to its length, and maximum number
-/// of halvings of a chord: an edge that turns sharply within a chord, or ends at a contact of its
-/// surfaces, needs many.
-const RESOLVED: f64 = 1e-12;
-const MOST_HALVINGS: u32 = 16;
-
-/// Accuracy of points, relative to the bodies; smaller errors of chords cannot be resolved by
-/// halving.
-const ROUNDED: f64 = 1e-14;
-
-/// Faces are tangent where the sine between their normals is less: surfaces that the arrangement takes for one line cross at
-/// no greater angle beside it, √(2·1e-9).
-const TANGENT: f64 = 4.5e-5;
 
 /// Number of facets above which a combination is refused at once: it would take minutes.
 const MOST_FACETS: usize = 200_000;
@@ -720,196 +776,6 @@ impl<'a, T: Real> Placing<'a, T> {
         Ok(())
     }
 
-    /// The points of an edge that is not straight, with their parameters on the round faces beside
-    /// it.
-    fn trace(
-        &self,
-        chain: &[u32],
-        kind: Kind,
-        ends: Option<[Vec3<T>; 2]>,
-    ) -> Result<IntersectionEdge<T>, CombineError> {
-        let Some((operand, tag)) = kind.2 else { return self.crossing(chain, kind, ends) };
-        let (curve, beside) = &self.all.sources[operand].edges[tag as usize];
-        let curve = curve.as_ref();
-        let own = |f: usize| {
-            let mut sources = self.arranged.faces[f].sources.iter();
-            sources.any(|s| s.0 == operand && beside.contains(&s.1))
-        };
-        let fixed = (self.fitted && operand == 1) || (own(kind.0) && own(kind.1));
-        if fixed || self.tangent_along(chain, kind) {
-            return self.trace_on(chain, kind, ends, curve);
-        }
-        // A surface of the other body happens to contain an edge: the new edge moves with both
-        // surfaces.
-        self.crossing(chain, kind, ends).or_else(|_| self.trace_on(chain, kind, ends, curve))
-    }
-
-    /// An edge that two surfaces alone make.
-    fn crossing(
-        &self,
-        chain: &[u32],
-        kind: Kind,
-        ends: Option<[Vec3<T>; 2]>,
-    ) -> Result<IntersectionEdge<T>, CombineError> {
-        let pair = [self.surface(kind.0), self.surface(kind.1)];
-        // Beside the points where they touch, surfaces do not tell where they meet; the curves that cross there do.
-        let middle = self.arranged.points[chain[chain.len() / 2] as usize];
-        let ellipse = EqualCylinders::of(pair, self.scale)
-            .and_then(|cylinders| cylinders.ellipse(pair[0], middle));
-        let mut edge = self.trace_on(chain, kind, ends, ellipse.as_ref())?;
-        edge.carrier = ellipse.or_else(|| closed_form(pair, &edge.points, self.scale));
-        Ok(edge)
-    }
-
-    /// True if the faces beside a chain are tangent all along it, so that they do not determine it.
-    fn tangent_along(&self, chain: &[u32], kind: Kind) -> bool {
-        let normal = |f: usize, p: Vec3| match self.surface(f) {
-            FaceSurface::Plane { normal, .. } => normal.re().normalized(),
-            surface => {
-                let [u, v] = surface.parameters(p);
-                let [_, du, dv] = surface.jet(T::from(u), T::from(v)).map(Vec3::re);
-                du.cross(dv).normalized()
-            }
-        };
-        chain.iter().all(|&v| {
-            let p = self.arranged.points[v as usize];
-            let both = normal(kind.0, p).zip(normal(kind.1, p));
-            both.is_some_and(|(m, n)| m.cross(n).norm() < TANGENT)
-        })
-    }
-
-    fn trace_on(
-        &self,
-        chain: &[u32],
-        kind: Kind,
-        ends: Option<[Vec3<T>; 2]>,
-        curve: Option<&SmoothPiece<T>>,
-    ) -> Result<IntersectionEdge<T>, CombineError> {
-        let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
-        let pair = [self.surface(kind.0), self.surface(kind.1)];
-        let fixed: Vec<Carrier<'_, T>> = match curve {
-            Some(piece) => vec![Carrier::Curve(piece)],
-            None => pair.iter().map(|s| Carrier::Surface(*s)).collect(),
-        };
-        let first = |p: Vec3| -> Vec<[f64; 2]> {
-            fixed
-                .iter()
-                .map(|o| match o {
-                    Carrier::Surface(FaceSurface::Plane { .. }) => [0.0; 2],
-                    Carrier::Surface(s) => s.parameters(p),
-                    Carrier::Curve(c) => [along(c, p), 0.0],
-                })
-                .collect()
-        };
-        let mut start = first(rough[0]);
-        // A plane across an edge may meet its surfaces elsewhere too.
-        let solve = |plane: &FaceSurface<T>, guess: Vec3, reach: f64, start: &mut Vec<[f64; 2]>| {
-            let mut on = fixed.clone();
-            on.push(Carrier::Surface(plane));
-            let from = |s: &Vec<[f64; 2]>| {
-                let mut s = s.clone();
-                s.push([0.0; 2]);
-                s
-            };
-            // Parameters may not leave the patch: a turned surface comes round again.
-            let own = |p: &[T; 2]| p.iter().all(|x| (-0.3..=1.3).contains(&x.re()));
-            let near =
-                |m: &Met<T>| m.at.re().distance(guess) <= reach && m.parameters.iter().all(own);
-            let met = meet(&on, guess, &from(start), self.scale)
-                .filter(near)
-                .or_else(|| meet(&on, guess, &from(&first(guess)), self.scale).filter(near));
-            let met = met.ok_or(CombineError::Touching(guess))?;
-            *start = met.parameters[..fixed.len()].iter().map(|p| p.map(Real::re)).collect();
-            Ok::<Met<T>, CombineError>(met)
-        };
-        let m = chain.len();
-        let closed = chain[0] == chain[m - 1];
-        let mut points: Vec<Vec3<T>> = Vec::with_capacity(m);
-        for k in 0..m {
-            if closed && k == m - 1 {
-                points.push(points[0]);
-                continue;
-            }
-            if let (Some([first, last]), true) = (ends, k == 0 || k == m - 1) {
-                points.push(if k == 0 { first } else { last });
-                continue;
-            }
-            if let Some(at) = self.placed.get(&chain[k]) {
-                points.push(*at);
-                continue;
-            }
-            let before = if k > 0 { rough[k - 1] } else { rough[m - 2] };
-            let after = rough[(k + 1).min(m - 1)];
-            let normal = (after - before).normalized();
-            let normal = normal.ok_or(CombineError::Touching(rough[k]))?;
-            let plane =
-                FaceSurface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
-            let reach = 0.5 * (after.distance(rough[k]) + before.distance(rough[k]));
-            points.push(solve(&plane, rough[k], reach, &mut start)?.at);
-        }
-        // Nodes between neighbouring points.
-        let round: Vec<usize> =
-            [kind.0, kind.1].into_iter().filter(|&f| !self.arranged.faces[f].plane).collect();
-        let mut nodes = Vec::new();
-        let mut places: Vec<Vec<[T; 3]>> = vec![Vec::new(); round.len()];
-        let mut at_round: Vec<Option<[f64; 2]>> = vec![None; round.len()];
-        let mut chords: Vec<([Vec3<T>; 2], u32)> =
-            points.windows(2).rev().map(|p| ([p[0], p[1]], 0)).collect();
-        while let Some(([from, to], depth)) = chords.pop() {
-            let step = to - from;
-            let Some(normal) = step.re().normalized() else { continue };
-            let lifted = Vec3::lifted(normal);
-            let rate = lifted.dot(step);
-            let before = start.clone();
-            let across = |x: f64, start: &mut Vec<[f64; 2]>| {
-                let at = from + step * T::from(x);
-                let plane = FaceSurface::Plane { at, normal: lifted };
-                solve(&plane, at.re(), 0.5 * step.re().norm(), start)
-            };
-            let mut own: Vec<(Met<T>, Vec3<T>, f64)> = Vec::with_capacity(GAUSS_8_UNIT.len());
-            for (x, w) in GAUSS_8_UNIT {
-                let met = across(x, &mut start)?;
-                let by = met.moved * (rate * w);
-                own.push((met, by, w));
-            }
-            // The nodes' steps add up to the chord as far as the rule resolves the edge.
-            let way = own.iter().fold(-step.re(), |sum, n| sum + n.1.re());
-            let most = (RESOLVED * step.re().norm()).max(ROUNDED * self.scale);
-            if depth < MOST_HALVINGS && way.norm() > most {
-                start = before;
-                let middle = across(0.5, &mut start.clone())?.at;
-                chords.push(([middle, to], depth + 1));
-                chords.push(([from, middle], depth + 1));
-                continue;
-            }
-            for (met, by, w) in own {
-                nodes.push((met.at, by));
-                for (r, &f) in round.iter().enumerate() {
-                    let surface = self.surface(f);
-                    let own = fixed.iter().position(
-                        |o| matches!(o, Carrier::Surface(s) if std::ptr::eq::<FaceSurface<T>>(*s, surface)),
-                    );
-                    let place = match own {
-                        Some(k) => {
-                            let [u, v] = met.parameters[k];
-                            [u, v, met.moved_parameters[k][0] * (rate * w)]
-                        }
-                        None => {
-                            let from = at_round[r];
-                            let place = located(surface, met.at, by, from);
-                            let place = place.ok_or(CombineError::Touching(met.at.re()))?;
-                            at_round[r] = Some([place[0].re(), place[1].re()]);
-                            place
-                        }
-                    };
-                    places[r].push(place);
-                }
-            }
-        }
-        let places = round.into_iter().zip(places).collect();
-        Ok(IntersectionEdge { points, nodes, places, carrier: curve.copied() })
-    }
-
     /// The mesh: parts of faces with their points where the exact edges run.
     fn facets(
         &self,
@@ -918,6 +784,8 @@ impl<'a, T: Real> Placing<'a, T> {
         vertices: &[Vertex<T>],
     ) -> super::CombinedMesh<T> {
         let mut points: Vec<Vec3<T>> = vertices.iter().map(|v| v.at).collect();
+        let mut flat = vec![Vec3::zero(); points.len()];
+        number.iter().for_each(|(v, k)| flat[*k] = self.arranged.points[*v as usize]);
         let mut index: HashMap<u32, u32> = number.iter().map(|(v, k)| (*v, *k as u32)).collect();
         let given: HashMap<u32, usize> = {
             let pairs = self.arranged.given.iter().enumerate().rev();
@@ -931,12 +799,14 @@ impl<'a, T: Real> Placing<'a, T> {
                     _ => Vec3::lifted(self.arranged.points[v as usize]),
                 };
                 points.push(at);
+                flat.push(self.arranged.points[v as usize]);
                 points.len() as u32 - 1
             })
         };
         let chains: Vec<Vec<u32>> =
             chains.iter().map(|c| c.iter().map(|&v| name(v)).collect()).collect();
         let mut faces: Vec<Vec<[u32; 3]>> = Vec::new();
+        let mut parts: Vec<Vec<FacetPart>> = Vec::new();
         for face in &self.arranged.faces {
             let mut triangles = Vec::new();
             for part in &face.parts {
@@ -947,8 +817,14 @@ impl<'a, T: Real> Placing<'a, T> {
                 triangles.extend(own.into_iter().map(|t| t.map(&mut name)));
             }
             faces.push(triangles);
+            let mut named = |part: &Vec<Vec<u32>>| -> Vec<Vec<u32>> {
+                part.iter().map(|c| c.iter().map(|&v| name(v)).collect()).collect()
+            };
+            let both = face.parts.iter().zip(&face.normals);
+            let own = both.map(|(part, normal)| FacetPart { normal: *normal, loops: named(part) });
+            parts.push(if face.plane { Vec::new() } else { own.collect() });
         }
-        super::CombinedMesh { points, faces, chains }
+        super::CombinedMesh { points, faces, chains, flat, parts }
     }
 }
 

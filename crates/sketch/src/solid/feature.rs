@@ -70,6 +70,9 @@ const FINEST_EVERYWHERE: u32 = 2;
 /// Maximum number of rounds; finer facets may reveal further such points.
 const ROUNDS: u32 = 12;
 
+/// Maximum number of facets of all attempts of a combination.
+const MAX_TRIED_FACETS: usize = 40_000;
+
 /// The valid body of an object. If its facets are too coarse to determine the intersecting
 /// surfaces, they are refined there. If its measures may lack derivatives, both one-sided ones are
 /// compared.
@@ -81,117 +84,145 @@ pub fn body<T: Real>(
     planes: &Planes,
     layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let first = |plan: &FacetPlan| body_at(object, planes, layout, plan);
-    let mut made = body_of_facets(object, planes, layout, None, &first)?;
+    let mut made = FacetPlan::default().searched(object, planes, layout)?;
     confirm(&mut made, layout, &|layout| Some(body(object, planes, layout).ok()?.mass()));
     Ok(made)
 }
 
-/// The same, with those of its operands that are kept.
+/// The same, with the bodies that are kept.
 pub(crate) fn body_kept(
     object: &Arc<SketchObject>,
     planes: &Planes,
     layout: &DimensionLayout<f64>,
     kept: &Arc<KeptBodies>,
 ) -> Result<SketchSolid<f64>, NoBody> {
-    let first = |plan: &FacetPlan| match object.feature {
-        Some(_) => kept.get(object, layout, || body_at(object, planes, layout, plan)),
+    let mut plan = FacetPlan { kept: Arc::clone(kept), ..FacetPlan::default() };
+    match object.feature {
+        Some(_) => plan.made(object, planes, layout),
         // Drawings change at every move of a drag.
-        None => body_at(object, planes, layout, plan),
-    };
-    body_of_facets(object, planes, layout, Some(kept), &first)
+        None => plan.searched(object, planes, layout),
+    }
 }
 
-fn body_of_facets<T: Real>(
-    object: &SketchObject,
-    planes: &Planes,
-    layout: &DimensionLayout<T>,
-    kept: Option<&Arc<KeptBodies>>,
-    first: &dyn Fn(&FacetPlan) -> Result<SketchSolid<T>, NoBody>,
-) -> Result<SketchSolid<T>, NoBody> {
-    let mut plan = FacetPlan { kept: kept.cloned(), ..FacetPlan::default() };
-    let first = first(&plan);
-    let Err(why) = &first else { return first };
-    let mut unclear = why.unclear();
-    for _ in 0..ROUNDS {
-        let Some((path, places)) = unclear.take() else { break };
-        if !plan.refine(path, places) {
-            break;
-        }
-        match body_at(object, planes, layout, &plan) {
-            // Too many pieces: the first error is more specific.
-            Err(why) if why.too_large() => return first,
-            Err(why) if why.unclear().is_some() => unclear = why.unclear(),
-            found => return found,
-        }
-    }
-    if matches!(why.facet_error(), Some(CombineError::Coarse(_))) {
-        return first;
-    }
-    // The points at which surfaces touch are not all known.
-    for everywhere in 1..=FINEST_EVERYWHERE {
-        let plan = FacetPlan { everywhere, kept: kept.cloned(), ..FacetPlan::default() };
-        match body_at(object, planes, layout, &plan) {
-            Err(why) if why.unclear().is_some() => {}
-            Err(why) if why.too_large() => break,
-            found => return found,
-        }
-    }
-    first
-}
-
-/// Plan of the refinement of facets; for features, by the path from operand to operand.
+/// Facets of a body: those that the features need that have it as an operand, in its own coordinates, and its own.
 #[derive(Clone, Default)]
 pub(super) struct FacetPlan {
-    everywhere: u32,
-    near: BTreeMap<Vec<usize>, FinerPlaces>,
-    /// Refinements of the features that have this one as an operand, in its own coordinates.
-    inherited: Vec<(Vec3, u32)>,
-    way: Vec<usize>,
-    /// Bodies of operands as they are without refinement.
-    kept: Option<Arc<KeptBodies>>,
-}
-
-/// Points near which facets are finer, each with the number of subdivisions, and the number of
-/// requests.
-#[derive(Clone, Default)]
-struct FinerPlaces {
-    places: Vec<(Vec3, u32)>,
-    asked: u32,
+    inherited: FacetDensity,
+    own: FacetDensity,
+    kept: Arc<KeptBodies>,
 }
 
 impl FacetPlan {
-    /// Makes facets finer near points; returns whether that was still possible.
-    fn refine(&mut self, way: Vec<usize>, places: Vec<Vec3>) -> bool {
-        let own = self.near.entry(way).or_default();
-        own.asked += 1;
-        let times = own.asked;
-        own.places.extend(places.into_iter().map(|p| (p, times)));
-        times <= FINEST
-    }
-
     fn density(&self) -> FacetDensity {
-        let own = self.near.get(&self.way).into_iter().flat_map(|n| &n.places);
-        let near = self.inherited.iter().chain(own).copied().collect();
-        FacetDensity { everywhere: self.everywhere, near }
-    }
-
-    /// True if nothing is refined, so that a body may be a kept one.
-    fn is_plain(&self) -> bool {
-        self.everywhere == 0
-            && self.inherited.is_empty()
-            && !self.near.keys().any(|way| way.starts_with(&self.way))
+        self.inherited.with(&self.own)
     }
 
     /// The plan of an operand that is used at several positions.
-    fn of_operand<T: Real>(&self, k: usize, images: &[Similarity<T>]) -> FacetPlan {
-        let near = self.density().near;
-        let back =
-            |image: &Similarity<T>| near.iter().map(|(p, n)| (image.source_of(*p), *n)).collect();
-        let inherited: Vec<Vec<(Vec3, u32)>> = images.iter().map(back).collect();
-        let mut way = self.way.clone();
-        way.push(k);
-        FacetPlan { inherited: inherited.concat(), way, ..self.clone() }
+    fn of_operand<T: Real>(&self, images: &[Similarity<T>]) -> FacetPlan {
+        let density = self.density();
+        let back = |image: &Similarity<T>| density.mapped(&|p| image.source_of(p));
+        let inherited = images.iter().map(back).fold(FacetDensity::default(), |d, e| d.with(&e));
+        FacetPlan { inherited, own: FacetDensity::default(), kept: Arc::clone(&self.kept) }
+    }
+
+    /// The body of an object, kept or made. Bodies with derivatives are made of the facets of those without.
+    fn made<T: Real>(
+        &self,
+        object: &Arc<SketchObject>,
+        planes: &Planes,
+        layout: &DimensionLayout<T>,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let mut plan = self.clone();
+        let numbers = numbers(layout);
+        let known = self.kept.find(object, &numbers, &self.inherited);
+        if let Some((own, made)) = known {
+            if let Some(made) = (made.as_deref()).and_then(|m| (m as &dyn Any).downcast_ref()) {
+                return Result::clone(made);
+            }
+            plan.own = own;
+        } else if self.inherited != FacetDensity::default() {
+            plan.own = self.plain_facets(object, planes, layout, &numbers);
+        }
+        let made = plan.searched(object, planes, layout);
+        let plain = (&made as &dyn Any).downcast_ref::<Made>().map(|m| Arc::new(m.clone()));
+        let FacetPlan { inherited, own, .. } = plan;
+        let object = Arc::clone(object);
+        self.kept.keep(KeptBody { object, numbers, inherited, own, made: plain });
+        made
+    }
+
+    /// The facets that an object needs by itself.
+    fn plain_facets<T: Real>(
+        &self,
+        object: &Arc<SketchObject>,
+        planes: &Planes,
+        layout: &DimensionLayout<T>,
+        numbers: &[u64],
+    ) -> FacetDensity {
+        let plain = FacetPlan { kept: Arc::clone(&self.kept), ..FacetPlan::default() };
+        let find = || self.kept.find(object, numbers, &plain.inherited);
+        if find().is_none() {
+            let _ = plain.made(object, planes, layout);
+        }
+        find().map(|known| known.0).unwrap_or_default()
+    }
+
+    /// The body of an object with the facets that determine it. Those are then the plan's own ones.
+    fn searched<T: Real>(
+        &mut self,
+        object: &SketchObject,
+        planes: &Planes,
+        layout: &DimensionLayout<T>,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let start = self.own.clone();
+        let first = body_at(object, planes, layout, self);
+        let error = first.as_ref().err().and_then(NoBody::facet_error).cloned();
+        let Some(error) = error else { return first };
+        let mut failed = Some(error.clone());
+        let mut facets = 0;
+        for _ in 0..ROUNDS {
+            let Some(why) = failed.take() else { break };
+            facets += why.facets();
+            if facets > MAX_TRIED_FACETS || !self.refine(&why) {
+                break;
+            }
+            match body_at(object, planes, layout, self) {
+                Err(why) if why.too_large() => facets = usize::MAX,
+                Err(why) => failed = why.facet_error().cloned(),
+                made => return made,
+            }
+        }
+        // Else the points at which surfaces touch are not all known.
+        let coarse = matches!(error.cause(), CombineError::Coarse(_));
+        for everywhere in 1..=FINEST_EVERYWHERE {
+            // Facets of curved surfaces in both directions.
+            facets = facets.saturating_add(9usize.pow(everywhere) * error.facets());
+            if coarse || facets > MAX_TRIED_FACETS {
+                break;
+            }
+            self.own = FacetDensity { everywhere, ..start.clone() };
+            match body_at(object, planes, layout, self) {
+                Err(why) if why.too_large() => break,
+                Err(_) => {}
+                made => return made,
+            }
+        }
+        self.own = start;
+        first
+    }
+
+    /// Lets chords end where surfaces touch, then makes facets finer near the places of an error; returns whether that was
+    /// still possible.
+    fn refine(&mut self, why: &CombineError) -> bool {
+        let known = self.density().rulings;
+        let new: Vec<_> = why.rulings().iter().filter(|r| !known.contains(r)).cloned().collect();
+        if !new.is_empty() {
+            self.own.rulings.extend(new);
+            return true;
+        }
+        let times = self.own.near.iter().map(|p| p.1).max().unwrap_or(0) + 1;
+        self.own.near.extend(why.places().into_iter().map(|p| (p, times)));
+        times <= FINEST
     }
 }
 
@@ -199,14 +230,9 @@ impl NoBody {
     /// The error, if finer facets can remove it.
     fn facet_error(&self) -> Option<&CombineError> {
         match self {
-            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => match e {
-                CombineError::Coarse(_)
-                | CombineError::Touching(_)
-                | CombineError::Unbalanced(_)
-                | CombineError::Open(_) => Some(e),
-                CombineError::TooLarge | CombineError::Empty => None,
-            },
-            NoBody::Operand { why, .. } => why.facet_error(),
+            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => {
+                (!matches!(e, CombineError::TooLarge | CombineError::Empty)).then_some(e)
+            }
             _ => None,
         }
     }
@@ -220,23 +246,6 @@ impl NoBody {
             NoBody::Operand { why, .. } => why.too_large(),
             _ => false,
         }
-    }
-
-    /// The feature whose facets are too coarse, by the path to it, and the positions.
-    fn unclear(&self) -> Option<(Vec<usize>, Vec<Vec3>)> {
-        let places = match self.facet_error()? {
-            CombineError::Coarse(all) => all.clone(),
-            CombineError::Touching(p) | CombineError::Unbalanced(p) | CombineError::Open(p) => {
-                vec![*p]
-            }
-            CombineError::TooLarge | CombineError::Empty => return None,
-        };
-        let (mut way, mut at) = (Vec::new(), self);
-        while let NoBody::Operand { number, why, .. } = at {
-            way.push(*number);
-            at = why;
-        }
-        Some((way, places))
     }
 }
 
@@ -479,7 +488,7 @@ impl Feature {
             (FeatureKind::Shell { thickness, open }, [body]) => {
                 let parts = |by: T, still: &BTreeSet<String>| {
                     let (planes, own) = &laid[0];
-                    self.operand_moved(0, (planes, own), &plan.of_operand(0, &images), by, still)
+                    self.operand_moved(0, (planes, own), &plan.of_operand(&images), by, still)
                 };
                 shelled(body, value(thickness)?, open, &parts)
             }
@@ -501,13 +510,7 @@ impl Feature {
         images: &[Similarity<T>],
     ) -> Result<SketchSolid<T>, NoBody> {
         let FeatureOperand { object, prefix, .. } = &self.operands[k];
-        let plan = plan.of_operand(k, images);
-        let make = || body_at(object, planes, own, &plan);
-        let made = match plan.kept.as_ref().filter(|_| plan.is_plain()) {
-            Some(kept) => kept.get(object, own, make),
-            None => make(),
-        };
-        match made {
+        match plan.of_operand(images).made(object, planes, own) {
             Ok(mut body) => {
                 body.prefix_names(prefix);
                 Ok(body)
@@ -569,7 +572,7 @@ impl Feature {
         };
         let part = |k: usize, by: T| {
             let (planes, own) = &laid[k];
-            self.operand_moved(k, (planes, own), &plan.of_operand(k, &images), by, still)
+            self.operand_moved(k, (planes, own), &plan.of_operand(&images), by, still)
         };
         let grows = by.re() > 0.0;
         match &self.kind {
@@ -604,7 +607,7 @@ impl Feature {
                     return None;
                 }
                 let object = &self.operands[0].object;
-                let section = body_at(object, planes, own, &plan.of_operand(0, &images)).ok()?;
+                let section = plan.of_operand(&images).made(object, planes, own).ok()?;
                 let shift = |e: usize| {
                     let name = side_name(object, &section, e);
                     if name.is_some_and(|n| still.contains(&*n)) { T::zero() } else { by }
@@ -619,14 +622,14 @@ impl Feature {
 
 /// The body of an object with its faces moved outwards by a distance, but for those of some names.
 fn moved_object<T: Real>(
-    object: &SketchObject,
+    object: &Arc<SketchObject>,
     planes: &Planes,
     layout: &DimensionLayout<T>,
     plan: &FacetPlan,
     by: T,
     still: &BTreeSet<String>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let body = body_at(object, planes, layout, plan)?;
+    let body = plan.made(object, planes, layout)?;
     let stays = |f: usize| body.faces[f].names.iter().any(|n| still.contains(&**n));
     let first = match moved(&body, &|f| if stays(f) { T::zero() } else { by }) {
         Ok(body) => return Ok(body),
@@ -829,7 +832,7 @@ impl SketchObject {
 }
 
 /// Maximum number of bodies that are kept.
-const MAX_KEPT: usize = 64;
+const MAX_KEPT: usize = 256;
 
 /// Maximum number of vertices of all of them.
 const MAX_VERTICES: usize = 100_000;
@@ -841,7 +844,21 @@ type Made = Result<SketchSolid<f64>, NoBody>;
 struct KeptBody {
     object: Arc<SketchObject>,
     numbers: Vec<u64>,
-    made: Arc<Made>,
+    inherited: FacetDensity,
+    /// The facets that it needed.
+    own: FacetDensity,
+    made: Option<Arc<Made>>,
+}
+
+impl KeptBody {
+    fn is_of(&self, object: &Arc<SketchObject>, numbers: &[u64], inherited: &FacetDensity) -> bool {
+        Arc::ptr_eq(&self.object, object) && self.numbers == numbers && self.inherited == *inherited
+    }
+
+    fn size(&self) -> usize {
+        let body = self.made.as_deref().and_then(|m| m.as_ref().ok());
+        body.map_or(1, |b| b.vertices.len())
+    }
 }
 
 /// The latest bodies of a session.
@@ -849,48 +866,35 @@ struct KeptBody {
 pub(crate) struct KeptBodies(Mutex<VecDeque<KeptBody>>);
 
 /// The bits of all that a body of an object depends on.
-fn numbers(layout: &DimensionLayout<f64>) -> Vec<u64> {
+fn numbers<T: Real>(layout: &DimensionLayout<T>) -> Vec<u64> {
     let coordinates = layout.coordinates.iter().flatten();
-    let coordinates = coordinates.map(|x| x.map_or(u64::MAX, f64::to_bits));
-    coordinates.chain(layout.values.values().map(|x| x.to_bits())).collect()
+    let coordinates = coordinates.map(|x| x.map_or(u64::MAX, |x| x.re().to_bits()));
+    coordinates.chain(layout.values.values().map(|x| x.re().to_bits())).collect()
 }
 
 impl KeptBodies {
-    /// The body of an object, made if it is not kept. Bodies with derivatives are not.
-    pub fn get<T: Real>(
+    /// The facets that an object needed, and its body.
+    fn find(
         &self,
         object: &Arc<SketchObject>,
-        layout: &DimensionLayout<T>,
-        make: impl FnOnce() -> Result<SketchSolid<T>, NoBody>,
-    ) -> Result<SketchSolid<T>, NoBody> {
-        let Some(plain) = (layout as &dyn Any).downcast_ref::<DimensionLayout<f64>>() else {
-            return make();
-        };
-        let numbers = numbers(plain);
-        let same = |k: &KeptBody| Arc::ptr_eq(&k.object, object) && k.numbers == numbers;
-        let found = {
-            let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            let at = kept.iter().position(same);
-            at.and_then(|at| kept.remove(at)).map(|body| {
-                let made = Arc::clone(&body.made);
-                kept.push_back(body);
-                made
-            })
-        };
-        if let Some(known) = found.as_deref().and_then(|m| (m as &dyn Any).downcast_ref()) {
-            return Result::clone(known);
+        numbers: &[u64],
+        inherited: &FacetDensity,
+    ) -> Option<(FacetDensity, Option<Arc<Made>>)> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let at = kept.iter().position(|k| k.is_of(object, numbers, inherited))?;
+        let body = kept.remove(at)?;
+        let found = (body.own.clone(), body.made.clone());
+        kept.push_back(body);
+        Some(found)
+    }
+
+    fn keep(&self, body: KeptBody) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.retain(|k| !k.is_of(&body.object, &body.numbers, &body.inherited));
+        kept.push_back(body);
+        let mut vertices: usize = kept.iter().map(KeptBody::size).sum();
+        while kept.len() > MAX_KEPT || (vertices > MAX_VERTICES && kept.len() > 1) {
+            vertices -= kept.pop_front().as_ref().map_or(0, KeptBody::size);
         }
-        let made: Result<SketchSolid<T>, NoBody> = make();
-        if let Some(plain) = (&made as &dyn Any).downcast_ref::<Made>() {
-            let made = Arc::new(plain.clone());
-            let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.push_back(KeptBody { object: Arc::clone(object), numbers, made });
-            let size = |k: &KeptBody| k.made.as_ref().as_ref().map_or(1, |b| b.vertices.len());
-            let mut vertices: usize = kept.iter().map(size).sum();
-            while kept.len() > MAX_KEPT || (vertices > MAX_VERTICES && kept.len() > 1) {
-                vertices -= kept.pop_front().as_ref().map_or(0, size);
-            }
-        }
-        made
     }
 }

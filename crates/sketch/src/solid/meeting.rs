@@ -26,8 +26,8 @@ enum SymmetryAxis<T> {
 }
 
 pub(super) struct RoundCylinder<T> {
-    axis: Axis<T>,
-    radius: T,
+    pub(super) axis: Axis<T>,
+    pub(super) radius: T,
 }
 
 /// True if a length is zero relative to a size, with its derivatives.

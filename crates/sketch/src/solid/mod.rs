@@ -15,6 +15,7 @@ pub(crate) mod coincidence;
 pub mod combine;
 mod corners;
 pub mod curve;
+mod edge_trace;
 pub(crate) mod edges;
 pub mod faces;
 mod facet_source;
@@ -37,6 +38,7 @@ pub mod place;
 pub(crate) mod ruled_faces;
 pub mod shapes;
 pub mod surface;
+mod tangent_ruling;
 mod turn;
 pub mod validity;
 
@@ -95,7 +97,7 @@ pub struct Trim<T> {
 }
 
 /// The mesh of a body that was combined: its parts do not follow from edges alone.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct CombinedMesh<T> {
     /// The vertices of the body, then points on edges and faces.
     pub points: Vec<Vec3<T>>,
@@ -103,6 +105,26 @@ pub(crate) struct CombinedMesh<T> {
     pub faces: Vec<Vec<[u32; 3]>>,
     /// The points along each edge.
     pub chains: Vec<Vec<u32>>,
+    /// The points where the facets meet that the combination was found with, and by face the parts of those facets:
+    /// facets of one surface stay in their planes through all combinations. Empty where they are the triangles.
+    pub flat: Vec<Vec3>,
+    pub parts: Vec<Vec<FacetPart>>,
+}
+
+/// A part of a facet.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FacetPart {
+    /// The outward unit normal of the facet.
+    pub normal: Vec3,
+    /// Cycles of points, counter-clockwise about the normal; holes clockwise.
+    pub loops: Vec<Vec<u32>>,
+}
+
+impl FacetPart {
+    fn turn_over(&mut self) {
+        self.normal = -self.normal;
+        self.loops.iter_mut().for_each(|c| c.reverse());
+    }
 }
 
 /// A face of a solid.

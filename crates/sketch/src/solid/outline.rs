@@ -6,7 +6,8 @@
 
 use super::combine::LoopsAndTags;
 use super::surface::FaceSurface;
-use super::{SketchSolid, SolidFace};
+use super::tangent_ruling::{ChordEnd, TangentRuling};
+use super::{FacetPart, SketchSolid, SolidFace};
 use crate::solid::arrangement::INNER;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeSet, HashMap};
@@ -23,6 +24,29 @@ pub(super) struct Outline<T> {
 pub(crate) struct FacetDensity {
     pub everywhere: u32,
     pub near: Vec<(Vec3, u32)>,
+    /// Rulings of cylinders at which chords end.
+    pub rulings: Vec<TangentRuling>,
+}
+
+impl FacetDensity {
+    /// The density that two need.
+    pub fn with(&self, other: &FacetDensity) -> FacetDensity {
+        let mut all = self.clone();
+        all.everywhere = all.everywhere.max(other.everywhere);
+        all.near.extend(other.near.iter().filter(|p| !self.near.contains(p)));
+        let new = other.rulings.iter().filter(|r| !self.rulings.contains(r));
+        all.rulings.extend(new.cloned());
+        all
+    }
+
+    /// Its image by a similarity.
+    pub fn mapped(&self, map: &dyn Fn(Vec3) -> Vec3) -> FacetDensity {
+        FacetDensity {
+            everywhere: self.everywhere,
+            near: self.near.iter().map(|(p, n)| (map(*p), *n)).collect(),
+            rulings: self.rulings.iter().map(|r| r.mapped(map)).collect(),
+        }
+    }
 }
 
 /// Ends of an edge's chords, in equal parts of it.
@@ -30,18 +54,26 @@ struct EdgeDivision {
     parts: u64,
     /// In order.
     at: Vec<u64>,
+    /// Their shares of the edge, with those at rulings, if there are any.
+    ruled: Option<Vec<f64>>,
 }
 
 impl EdgeDivision {
     fn even(chords: usize, times: u32) -> EdgeDivision {
         let each = 3u64.pow(times);
         let at = (0..=chords as u64).map(|k| k * each).collect();
-        EdgeDivision { parts: chords as u64 * each, at }
+        EdgeDivision { parts: chords as u64 * each, at, ruled: None }
     }
 
     /// The parameters, as the edge is run.
     fn shares(&self, forward: bool) -> Vec<f64> {
         let share = |k: u64| k as f64 / self.parts as f64;
+        if let Some(ruled) = &self.ruled {
+            return match forward {
+                true => ruled.clone(),
+                false => ruled.iter().rev().map(|s| 1.0 - s).collect(),
+            };
+        }
         match forward {
             true => self.at.iter().map(|k| share(*k)).collect(),
             false => self.at.iter().rev().map(|k| share(self.parts - *k)).collect(),
@@ -52,7 +84,7 @@ impl EdgeDivision {
 impl<T: Real> SketchSolid<T> {
     /// Ends of each edge's chords.
     fn divisions(&self) -> Vec<EdgeDivision> {
-        let FacetDensity { everywhere, near } = &self.density;
+        let FacetDensity { everywhere, near, rulings } = &self.density;
         let most = near.iter().map(|p| p.1).max().unwrap_or(0);
         let chords = self.angular_chords(*everywhere);
         let mut all: Vec<EdgeDivision> =
@@ -87,6 +119,50 @@ impl<T: Real> SketchSolid<T> {
                     division.at.sort_unstable();
                 }
             }
+        }
+        if !rulings.is_empty() {
+            for (division, ends) in all.iter_mut().zip(self.ends_at(rulings)) {
+                // Shorter chords first, so that all ends stay.
+                let (fine, plain): (Vec<_>, Vec<_>) = ends.into_iter().partition(ChordEnd::divides);
+                for end in fine.iter().chain(&plain) {
+                    division.ruled = Some(end.among(&division.shares(true)));
+                }
+            }
+        }
+        all
+    }
+
+    /// The ends of chords of each edge at rulings; opposite edges of round faces have the same.
+    fn ends_at(&self, rulings: &[TangentRuling]) -> Vec<Vec<ChordEnd>> {
+        let own = |e: usize| -> Vec<ChordEnd> {
+            let piece = self.edges[e].piece.map(|_| self.piece((e, true)));
+            piece.iter().flat_map(|p| rulings.iter().filter_map(|r| r.end_on(p))).collect()
+        };
+        let mut all: Vec<Vec<ChordEnd>> = (0..self.edges.len()).map(own).collect();
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for (f, face) in self.faces.iter().enumerate() {
+                if face.loops[0].len() != 4 || self.surface(f).is_none() {
+                    continue;
+                }
+                for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k])) {
+                    // They have opposite directions.
+                    let turned = a.1 == b.1;
+                    for (a, b) in [(a.0, b.0), (b.0, a.0)] {
+                        for end in all[a].clone() {
+                            let end = if turned { end.turned() } else { end };
+                            if !all[b].iter().any(|known| known.same(&end)) {
+                                all[b].push(end);
+                                changed = true;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        for ends in &mut all {
+            ends.sort_by(|a, b| a.order(b));
         }
         all
     }
@@ -184,15 +260,44 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
+    /// The facets of the body for combinations, the points where they meet, and the normals of those of round faces.
+    /// Facets of a combined body are parts of those that it was made of.
+    pub(super) fn flat_outline(&self) -> (Outline<T>, Vec<Vec3>, Vec<Vec<Vec3>>) {
+        let mut outline = self.outline();
+        match &self.facets {
+            Some(facets) if !facets.flat.is_empty() => {
+                let side = sides_of(&facets.chains);
+                let tag = |a: u32, b: u32| *side.get(&(a.min(b), a.max(b))).unwrap_or(&INNER);
+                let tags = |c: &Vec<u32>| {
+                    (0..c.len()).map(|k| tag(c[k], c[(k + 1) % c.len()])).collect::<Vec<u32>>()
+                };
+                let of = |part: &FacetPart| {
+                    (part.loops.clone(), part.loops.iter().map(tags).collect::<Vec<_>>())
+                };
+                let all = facets.parts.iter();
+                outline.strips = all.clone().map(|own| own.iter().map(of).collect()).collect();
+                let normals = all.map(|own| own.iter().map(|part| part.normal).collect());
+                (outline, facets.flat.clone(), normals.collect())
+            }
+            _ => {
+                let points = outline.points.iter().map(|p| p.re()).collect();
+                let newell = |ring: &Vec<u32>| {
+                    let ring: Vec<Vec3> =
+                        ring.iter().map(|v| outline.points[*v as usize].re()).collect();
+                    super::combine::newell(&ring).normalized().unwrap_or_default()
+                };
+                let normals = outline.strips.iter();
+                let normals = normals.map(|own| own.iter().map(|(l, _)| newell(&l[0])).collect());
+                let normals = normals.collect();
+                (outline, points, normals)
+            }
+        }
+    }
+
     /// The facets of the body, with a chord for each 5° of round edges or, by the body's density, a part of it.
     pub(super) fn outline(&self) -> Outline<T> {
         if let Some(facets) = &self.facets {
-            let mut side: HashMap<(u32, u32), u32> = HashMap::new();
-            for (e, chain) in facets.chains.iter().enumerate() {
-                for w in chain.windows(2) {
-                    side.insert((w[0].min(w[1]), w[0].max(w[1])), e as u32);
-                }
-            }
+            let side = sides_of(&facets.chains);
             let tag = |a: u32, b: u32| *side.get(&(a.min(b), a.max(b))).unwrap_or(&INNER);
             let strip = |&[a, b, c]: &[u32; 3]| -> LoopsAndTags {
                 (vec![vec![a, b, c]], vec![vec![tag(a, b), tag(b, c), tag(c, a)]])
@@ -211,13 +316,13 @@ impl<T: Real> SketchSolid<T> {
         let mut chains: Vec<Vec<u32>> = Vec::new();
         for (e, division) in divisions.iter().enumerate() {
             let [a, b] = self.edges[e].ends.map(|v| v as u32);
-            if division.at.len() == 2 {
+            let shares = division.shares(true);
+            if shares.len() == 2 {
                 chains.push(vec![a, b]);
                 continue;
             }
             let piece = self.piece((e, true));
             let mut chain = vec![a];
-            let shares = division.shares(true);
             for &share in &shares[1..shares.len() - 1] {
                 chain.push(points.len() as u32);
                 points.push(piece.at(T::from(share)));
@@ -304,6 +409,17 @@ impl<T: Real> Outline<T> {
         }
         (points, tags)
     }
+}
+
+/// The edge of each side.
+fn sides_of(chains: &[Vec<u32>]) -> HashMap<(u32, u32), u32> {
+    let mut side: HashMap<(u32, u32), u32> = HashMap::new();
+    for (e, chain) in chains.iter().enumerate() {
+        for w in chain.windows(2) {
+            side.insert((w[0].min(w[1]), w[0].max(w[1])), e as u32);
+        }
+    }
+    side
 }
 
 /// Distance of a point from a segment.

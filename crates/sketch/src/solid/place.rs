@@ -124,7 +124,7 @@ impl<T: Real> SketchSolid<T> {
         let mut out = self.clone();
         out.curves.clear();
         let forward = |p: Vec3| place.point(Vec3::lifted(p)).re();
-        out.density.near.iter_mut().for_each(|p| p.0 = forward(p.0));
+        out.density = out.density.mapped(&forward);
         out.vertices.iter_mut().for_each(|v| v.at = place.point(v.at));
         for edge in &mut out.edges {
             edge.piece = edge.piece.as_ref().map(|p| place.piece(p));
@@ -150,6 +150,11 @@ impl<T: Real> SketchSolid<T> {
         out.trims.iter_mut().for_each(|t| t.surface = place.surface(&t.surface));
         if let Some(facets) = &mut out.facets {
             facets.points.iter_mut().for_each(|p| *p = place.point(*p));
+            facets.flat.iter_mut().for_each(|p| *p = forward(*p));
+            for part in facets.parts.iter_mut().flatten() {
+                let image = place.vector(Vec3::lifted(part.normal)).re();
+                part.normal = image.normalized().unwrap_or(part.normal);
+            }
         }
         if place.mirrors() {
             out.turn_over();

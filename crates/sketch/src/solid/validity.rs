@@ -7,7 +7,7 @@
 
 use super::combine::{CombineError, newell, resolved, unclear};
 use super::outline::Outline;
-use super::{SketchSolid, SolidFace};
+use super::{FacetPart, SketchSolid, SolidFace};
 use crate::FaceId;
 use crate::PointId;
 use moldloft_num::union_find::UnionFind;
@@ -108,6 +108,7 @@ impl<T: Real> SketchSolid<T> {
         }
         if let Some(facets) = &mut self.facets {
             facets.faces.iter_mut().flatten().for_each(|t| t.swap(1, 2));
+            facets.parts.iter_mut().flatten().for_each(FacetPart::turn_over);
         }
     }
 

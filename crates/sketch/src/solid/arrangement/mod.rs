@@ -79,6 +79,8 @@ pub struct ArrangedFace {
     pub parts: Vec<Vec<Vec<u32>>>,
     /// By part, the face that it is of.
     pub owners: Vec<(usize, u32)>,
+    /// By part, the outward normal of its facet.
+    pub normals: Vec<Vec3>,
 }
 
 /// The body of a rule.
@@ -577,6 +579,13 @@ fn join(
                 (leader.operand, leader.tag)
             };
             let owners = members.iter().map(owner).collect();
+            let outward = |&p: &usize| {
+                let (r, up) = kept[own[p]];
+                let own = frames[leader(facets, &regions[r])].normal;
+                let along = own.dot(sheets[regions[r].sheet].normal) > 0.0;
+                if along == up { own } else { -own }
+            };
+            let normals = members.iter().map(outward).collect();
             faces.push(ArrangedFace {
                 sources,
                 reversed,
@@ -585,6 +594,7 @@ fn join(
                 loops: cycles,
                 parts,
                 owners,
+                normals,
             });
         }
     }
