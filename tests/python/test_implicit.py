@@ -358,8 +358,9 @@ def test_rails_are_checked():
     corner = im.fillet(x, z, 0.5, **box)
     assert corner.degree == 2
     t = 0.5 * (1 - math.sqrt(0.5))
-    (blend,) = (leaf for leaf in corner.leaves if leaf.name == "fillet")
-    assert abs(blend.field((t, 0, t))) < 1e-15
+    # The blend and its rail have the name of the function.
+    blends = [leaf.field((t, 0, t)) for leaf in corner.leaves if leaf.name == "fillet"]
+    assert min(map(abs, blends)) < 1e-15
 
 
 def test_work_that_goes_on_unseen_does_not_end_the_interpreter_badly(tmp_path):
