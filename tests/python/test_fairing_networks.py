@@ -325,3 +325,54 @@ def test_wrong_readings_of_a_table_are_the_first_suspects(of):
     assert five >= 0.9 * draws, (first, five)
     assert first >= 0.75 * draws, (first, five)
     assert near >= 0.9 * five, (near, five)
+
+
+def crossed(seed):
+    """Stations with two more points at some tolerances from a waterline, and their buttocks."""
+    rng = np.random.default_rng(seed)
+    stations, lists, points = np.linspace(0, 12, 8), [], []
+    for x in stations:
+        z = np.linspace(0, 2, 7)
+        near = z[[2, 5]] + NOISE * np.array([1, -1]) * rng.uniform(0.5, 6, 2)
+        z = np.r_[z, near]
+        y = (1 - 0.6 * (x / 6 - 1) ** 2) * np.sqrt(0.2 + z) + rng.uniform(-NOISE, NOISE, 9)
+        lists.append((len(points) + np.argsort(z)).tolist())
+        points += [(x, b, c) for b, c in zip(y, z, strict=True)]
+    lines = np.arange(len(points)).reshape(8, 9).T.tolist()
+    names = [f"station {k}" for k in range(8)] + [f"line {k}" for k in range(9)]
+    return np.array(points), [*lists, *lines], names
+
+
+@pytest.mark.parametrize("seed", range(40 if os.environ.get("MOLDLOFT_SOAK") else 2))
+def test_curves_beyond_are_named(seed):
+    points, curves, names = crossed(seed)
+    for bound, most in (("points", 1.5), ("curve", 1.0)):
+        made = network(
+            points, curves, NOISE, names=names, motion=(0, 1, 0), goal="fairest", bound=bound
+        )
+        t = np.linspace(0, 1, 2001)
+        named = {n for n in names for note in made.notes if note.startswith(f"{n}: between")}
+        for name, before, after in zip(names, made.originals, made.curves, strict=True):
+            far = np.linalg.norm(after(t) - before(t), axis=1).max()
+            assert far <= most * NOISE * (1 + 1e-6) or name in named
+        assert bound == "points" or not named
+
+
+def test_curves_that_swing_are_named():
+    points, curves, names = crossed(1)
+    made = network(
+        points,
+        curves,
+        NOISE,
+        names=names,
+        motion=(0, 1, 0),
+        mode="sweeps",
+        measure="jumps",
+    )
+    far = {
+        name: np.linalg.norm(after.control_points - before.control_points, axis=1).max()
+        for name, before, after in zip(names, made.originals, made.curves, strict=True)
+    }
+    named = {name for name in names for note in made.notes if note.startswith(f"{name}: between")}
+    assert all(far[name] > 1.5 * NOISE for name in named)
+    assert bool(named) == (made.deviation_curves_certified > 1.5 * NOISE)

@@ -128,7 +128,7 @@ pub use interrogate::{shape, surface};
 pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
 pub use net::condition_text::NamedCurves;
-pub use net::curves::CurvePair;
+pub use net::curves::{CurvePair, CurveSwing, SWING};
 pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };

@@ -64,7 +64,7 @@ class NetworkFairing:
     """No point has moved farther than this."""
     deviation_curves: float
     """The largest distance of a curve from its original, found by sampling: between points a curve
-    may swing a little farther than they moved."""
+    may swing farther than they moved."""
     deviation_curves_certified: float
     """No curve is farther from its original than this anywhere."""
     value: float
@@ -326,9 +326,10 @@ def network(
         by curves as tolerances: ``{"": (0, 1, 0), "sheer": ("across", (1, 0, 0))}`` moves a sheer
         in the planes of the stations.
     bound
-        ``"points"``: the tolerance is that of the points, between which a curve may swing farther;
-        ``"curve"``: no curve is farther from its original than the smaller tolerance of the two
-        points next to it, all along. Of the optimum at parameters.
+        ``"points"``: the tolerance is that of the points, between which a curve may swing farther:
+        a note names those that are more than 1.5 tolerances off. ``"curve"``: no curve is farther
+        from its original than the smaller tolerance of the two points next to it, all along. Of the
+        optimum at parameters.
     keep
         ``"volume"`` and its ``"centroid"`` stay, by splines through the sections (curves in planes
         across x); where points move along one direction.
@@ -468,6 +469,11 @@ def network(
             f"{named}: more inflections than the points require; crossing curves or conditions "
             "leave no fewer within the tolerance"
         )
+    said += [
+        f"{lines.name(curve)}: between points, beside point {point + 1}, up to {share:.2f} "
+        "tolerances from its original; bound `curve` keeps it within them"
+        for curve, point, share in reported["swings"]
+    ]
     shown = faired.copy()
     shown[~hull] = np.nan
     limits = [t for k, t in enumerate(tolerances) if k not in released and uses[k]]

@@ -1,13 +1,28 @@
 //! The curves of a network: splines through its points, how far these are apart, and limits that
 //! hold all along them.
+//!
+//! Points that are near each other turn a curve when they move apart, and it then swings away from
+//! its original beyond them. Limits between the points are those of the Bézier points of the
+//! displacements, of which a curve is a convex combination.
 
 use crate::net::shapes::control_map;
-use crate::optimum::DataLimits;
+use crate::net::strand::NetworkCurve;
+use crate::optimum::{DataLimits, FAR};
 use crate::{
-    Deviation, FairError, InterpolationSpace, Job, Network, ParameterSpacing, Space, SparseRows,
-    deviation, interpolate_with_corners,
+    Bound, Deviation, FairError, InterpolationSpace, Job, Motion, Network, ParameterSpacing, Space,
+    SparseRows, deviation, interpolate_with_corners,
 };
 use moldloft_num::Vec3;
+
+/// The displacement of a curve between its points, in tolerances, from which it is named where the
+/// bound is that of the points.
+pub const SWING: f64 = 1.5;
+
+/// How many times spans are halved, so that their Bézier points are near the curve.
+const HALVINGS: usize = 2;
+
+/// Rounding of that bound, relative.
+const SWING_SLACK: f64 = 1e-6;
 
 /// A curve of a network before and after, on the same knots.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +44,43 @@ impl CurvePair {
         let job = Job::new(self.space.clone(), self.before.clone(), 0.0)?;
         Ok(deviation(&job, &self.after))
     }
+}
+
+/// Calls `f` with the Bézier points of a spline's spans, halved so many times.
+fn each_bezier(space: &Space, halvings: usize, mut f: impl FnMut(&[(usize, f64)])) {
+    if halvings == 0 {
+        space.each_bezier(None, f);
+        return;
+    }
+    for k in space.spans() {
+        let columns: Vec<usize> = space.columns(k).collect();
+        let mut parts = vec![space.bezier_of(k)];
+        for _ in 0..halvings {
+            parts = parts.into_iter().flat_map(halves).collect();
+        }
+        for (part, points) in parts.into_iter().enumerate() {
+            // A part begins where the one before ends.
+            for point in points.into_iter().skip(usize::from(part > 0)) {
+                let entries: Vec<(usize, f64)> = columns.iter().copied().zip(point).collect();
+                f(&entries);
+            }
+        }
+    }
+}
+
+/// The Bézier points of both halves of a polynomial, by de Casteljau's algorithm.
+fn halves(mut points: Vec<Vec<f64>>) -> [Vec<Vec<f64>>; 2] {
+    let (mut low, mut high) = (Vec::new(), Vec::new());
+    while let (Some(first), Some(last)) = (points.first(), points.last()) {
+        low.push(first.clone());
+        high.push(last.clone());
+        let middle = |w: &[Vec<f64>]| -> Vec<f64> {
+            w[0].iter().zip(&w[1]).map(|(x, y)| 0.5 * (x + y)).collect()
+        };
+        points = points.windows(2).map(middle).collect();
+    }
+    high.reverse();
+    [low, high]
 }
 
 impl Network {
@@ -74,44 +126,176 @@ impl Network {
         Ok(CurvePair { space: before.fit.space, before: before.points, after: after.points })
     }
 
-    /// Limits on the points and on the Bézier points of the curves' displacements: of each the
-    /// smaller tolerance of the two points that move it most, of those that may move.
-    pub(super) fn along_curves(&self) -> Result<DataLimits, FairError> {
-        let count = self.points.len();
-        let mut rows = SparseRows::identity(count);
-        let mut radii = self.limit.radii.clone();
-        for k in 0..self.strands.len() {
-            let Some(layout) = self.layout(k) else { continue };
-            let layout = layout?;
-            let own = &self.strands[k].points;
-            // The displacement is linear in the moves.
-            let control = control_map(&layout, own.len())?;
-            layout.space.each_bezier(None, |entries| {
-                let mut sum = vec![0.0; own.len()];
-                for &(c, x) in entries {
-                    for &(place, f) in &control[c] {
-                        sum[place] += x * f;
-                    }
-                }
-                let mut near: Vec<usize> = (0..own.len()).collect();
-                near.sort_by(|&a, &b| sum[b].abs().total_cmp(&sum[a].abs()));
-                let radii_of = |places: &[usize]| {
-                    let all = places.iter().map(|&place| self.limit.radii[own[place]]);
-                    all.filter(|&r| r > 0.0).reduce(f64::min)
-                };
-                // Beside a point without limit the curve has none.
-                let free =
-                    near[..2].iter().any(|&place| self.limit.radii[own[place]].is_infinite());
-                let radius = radii_of(&near[..2]).or_else(|| radii_of(&near)).filter(|_| !free);
-                // A Bézier point of one point has the limit of that.
-                let single = sum.iter().filter(|f| f.abs() > 1e-12).count() < 2;
-                if let (Some(radius), false) = (radius, single) {
-                    rows.push(own.iter().copied().zip(sum).filter(|(_, f)| *f != 0.0));
-                    radii.push(radius);
-                }
-            });
-        }
-        let reach = self.limit.radii.clone();
-        Ok(DataLimits { rows, radii, offsets: Vec::new(), reach })
+    /// True if all curves run through their points, at parameters of these.
+    pub(super) fn runs_through_points(&self) -> bool {
+        let through = |s: &NetworkCurve| s.at.is_some() && s.weights.is_none();
+        self.patches.is_empty() && self.strands.iter().all(through)
     }
+
+    /// The Bézier points of the displacement of curve `k`, linear in the moves of its points, and of
+    /// each the tolerance next to it: the smaller one of the two points that move it most, of those
+    /// that may move. Beside a point without limit there is none, nor for a Bézier point of a single
+    /// point.
+    ///
+    /// `halvings` of each span bring the Bézier points nearer to the curve.
+    fn bezier_limits(&self, k: usize, halvings: usize) -> Result<Vec<BezierLimit>, FairError> {
+        let own = &self.strands[k].points;
+        let Some(layout) = self.layout(k).transpose()? else { return Ok(Vec::new()) };
+        let control = control_map(&layout, own.len())?;
+        let (mut out, mut sum) = (Vec::new(), vec![0.0; own.len()]);
+        let mut places: Vec<usize> = Vec::new();
+        each_bezier(&layout.space, halvings, |entries| {
+            for (place, f) in entries
+                .iter()
+                .flat_map(|&(c, x)| control[c].iter().map(move |&(place, f)| (place, x * f)))
+            {
+                sum[place] += f;
+                places.push(place);
+            }
+            places.sort_unstable();
+            places.dedup();
+            let factors = places.drain(..).map(|c| (own[c], std::mem::take(&mut sum[c])));
+            let factors: Vec<(usize, f64)> = factors.filter(|(_, f)| *f != 0.0).collect();
+            let mut near: Vec<&(usize, f64)> = factors.iter().collect();
+            near.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+            let radii_of = |near: &[&(usize, f64)]| {
+                let all = near.iter().map(|(i, _)| self.limit.radii[*i]);
+                all.filter(|&r| r > 0.0).reduce(f64::min)
+            };
+            let two = &near[..near.len().min(2)];
+            let free = two.iter().any(|(i, _)| self.limit.radii[*i].is_infinite());
+            let radius = radii_of(two).or_else(|| radii_of(&near)).filter(|_| !free);
+            let single = factors.iter().filter(|(_, f)| f.abs() > 1e-12).count() < 2;
+            if let (Some(radius), false) = (radius, single) {
+                let beside = near[0].0;
+                out.push(BezierLimit { entries: factors, radius, beside });
+            }
+        });
+        Ok(out)
+    }
+
+    /// False where no Bézier point of curve `k` is displaced by more than `share` of its least
+    /// tolerance.
+    fn may_swing(&self, k: usize, moves: &[Vec3<f64>], share: f64) -> Result<bool, FairError> {
+        let own = &self.strands[k].points;
+        let moved: Vec<Vec3<f64>> = own.iter().map(|&i| moves[i]).collect();
+        if moved.iter().all(|&v| v == Vec3::zero()) {
+            return Ok(false);
+        }
+        let radii = own.iter().map(|&i| self.limit.radii[i]).filter(|&r| r > 0.0);
+        let least = radii.fold(f64::INFINITY, f64::min);
+        let Some(layout) = self.layout(k).transpose()? else { return Ok(false) };
+        let control = layout.through(&layout.data(&moved))?;
+        let mut most = 0.0f64;
+        each_bezier(&layout.space, HALVINGS, |entries| {
+            let off = entries.iter().fold(Vec3::zero(), |s, &(c, x)| s + control[c] * x);
+            most = most.max(off.norm());
+        });
+        Ok(most > share * least)
+    }
+
+    /// Limits on the points alone.
+    fn point_limits(&self) -> DataLimits {
+        let radii = self.limit.radii.clone();
+        let rows = SparseRows::identity(self.points.len());
+        // Without a bound on some there is no certificate.
+        let far = FAR * self.extent();
+        let reach = radii.iter().map(|&r| if r.is_finite() { r } else { far }).collect();
+        DataLimits { rows, reach, radii, offsets: Vec::new() }
+    }
+
+    /// Limits on the points and, all along the curves, on their displacements, of those places that
+    /// can be farther off.
+    pub(super) fn along_curves(&self) -> Result<DataLimits, FairError> {
+        let mut limits = self.point_limits();
+        let size = |limit: &BezierLimit| {
+            limit.entries.iter().map(|&(i, f)| f.abs() * self.limit.radii[i]).sum::<f64>()
+        };
+        for k in 0..self.strands.len() {
+            for limit in self.bezier_limits(k, 0)? {
+                if size(&limit) > limit.radius {
+                    limits.radii.push(limit.radius);
+                    limits.rows.push(limit.entries);
+                }
+            }
+        }
+        Ok(limits)
+    }
+
+    /// The curves that are farther from their originals than their bound, the farthest place of each.
+    ///
+    /// # Errors
+    /// [`FairError`] when a curve has no spline.
+    pub fn swings(&self, points: &[Vec3<f64>]) -> Result<Vec<CurveSwing>, FairError> {
+        let share = if self.bound == Bound::ControlPoints { SWING } else { 1.0 };
+        let share = share * (1.0 + SWING_SLACK);
+        let moves = self.moves(points);
+        let mut out = Vec::new();
+        for curve in 0..self.strands.len() {
+            if self.strands[curve].at.is_none() {
+                out.extend(self.even_swing(curve, &moves, share));
+                continue;
+            }
+            if !self.may_swing(curve, &moves, share)? {
+                continue;
+            }
+            let (mut most, mut point) = (share, None);
+            for limit in self.bezier_limits(curve, HALVINGS)? {
+                let own = limit.share(self.limit.motion, &moves);
+                if own > most {
+                    (most, point) = (own, Some(limit.beside));
+                }
+            }
+            out.extend(point.map(|point| CurveSwing { curve, point, share: most }));
+        }
+        Ok(out)
+    }
+
+    /// The same of a curve without parameters, whose spline has even ones, against its largest
+    /// tolerance; the point is the one that moves farthest.
+    fn even_swing(&self, k: usize, moves: &[Vec3<f64>], share: f64) -> Option<CurveSwing> {
+        let own = &self.strands[k].points;
+        let finite = |i: usize| Some(self.limit.radii[i]).filter(|r| r.is_finite());
+        let largest = own.iter().map(|&i| finite(i)).reduce(|a, b| Some(a?.max(b?)))??;
+        let points: Vec<Vec3<f64>> = self.points.iter().zip(moves).map(|(p, v)| *p + *v).collect();
+        let off = self.curve_pair(k, &points).ok()?.deviation().ok()?.certified;
+        let farther = |a: usize, b: usize| if moves[b].norm() > moves[a].norm() { b } else { a };
+        let point = own.iter().copied().reduce(farther)?;
+        (off > share * largest).then(|| CurveSwing { curve: k, point, share: off / largest })
+    }
+
+    fn moves(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+        points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect()
+    }
+}
+
+/// A Bézier point of a curve's displacement: its entries over the moves of the network's points, the
+/// tolerance next to it, and the point that moves it most.
+struct BezierLimit {
+    entries: Vec<(usize, f64)>,
+    radius: f64,
+    beside: usize,
+}
+
+impl BezierLimit {
+    /// Its displacement in tolerances.
+    fn share(&self, motion: Motion, moves: &[Vec3<f64>]) -> f64 {
+        let off = self.entries.iter().fold(Vec3::zero(), |s, &(i, f)| s + moves[i] * f);
+        let size = match motion {
+            Motion::Box => off.x.abs().max(off.y.abs()).max(off.z.abs()),
+            _ => off.norm(),
+        };
+        size / self.radius
+    }
+}
+
+/// A curve that is farther from its original than its bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveSwing {
+    /// The curve.
+    pub curve: usize,
+    /// The point next to the place.
+    pub point: usize,
+    /// The displacement there in tolerances: of a Bézier point, so that the curve is no farther.
+    pub share: f64,
 }

@@ -457,9 +457,7 @@ impl Network {
             conditions,
             own: 0,
             bounded: match bound {
-                Bound::Bezier if self.has_lines(measure.norm()) => {
-                    Bounded::Data(self.along_curves()?)
-                }
+                Bound::Bezier if self.runs_through_points() => Bounded::Data(self.along_curves()?),
                 Bound::Bezier => self
                     .bezier()
                     .map_or(Bounded::ControlPoints, |(rows, reach)| Bounded::Bezier(rows, reach)),

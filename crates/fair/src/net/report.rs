@@ -1,5 +1,6 @@
 //! Reports of the fairing of networks.
 
+use crate::net::curves::CurveSwing;
 use crate::optimum::certificate::gap;
 use crate::{Bound, Certificate, Condition, FairError, Goal, Measure, Network};
 use moldloft_num::Vec3;
@@ -24,6 +25,9 @@ pub struct NetworkReport {
     /// Curves with more inflections than their points within the tolerances require, under the goal
     /// [`Goal::Near`]: conditions or crossing curves leave no others.
     pub bent: Vec<usize>,
+    /// Curves that are farther from their originals than their bound: all along, or 1.5 tolerances
+    /// where it is that of the points.
+    pub swings: Vec<CurveSwing>,
 }
 
 /// Method of fairing a network.
@@ -92,6 +96,11 @@ impl Network {
             certificate,
             used,
             bent,
+            swings: if self.net_parts().is_none() && self.patches.is_empty() {
+                self.swings(&points)?
+            } else {
+                Vec::new()
+            },
             points,
         })
     }

@@ -73,6 +73,10 @@ const DEPENDENT: f64 = 1e-9;
 const MOST_PROPAGATIONS: usize = 50;
 const PROPAGATED: f64 = 1e-6;
 
+/// A factor below which a point does not move a control point of its curve: far from it, whose factor is
+/// near 1, these fall geometrically.
+const NEGLIGIBLE: f64 = 1e-18;
+
 /// By how much a condition that depends on others may contradict these, as a share of the extent:
 /// rounding of what was read.
 const AGREES: f64 = 1e-9;
@@ -755,10 +759,12 @@ pub(super) fn control_map(
 ) -> Result<Vec<Vec<(usize, f64)>>, FairError> {
     let mut map: Vec<Vec<(usize, f64)>> = vec![Vec::new(); layout.space.count()];
     for place in 0..count {
-        let mut unit = vec![Vec3::zero(); count];
+        let mut unit: Vec<Vec3<f64>> = vec![Vec3::zero(); count];
         unit[place] = Vec3::of(1.0, 0.0, 0.0);
         for (c, p) in layout.through(&layout.data(&unit))?.iter().enumerate() {
-            map[c].push((place, p.x));
+            if p.x.abs() > NEGLIGIBLE {
+                map[c].push((place, p.x));
+            }
         }
     }
     Ok(map)

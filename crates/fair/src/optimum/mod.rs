@@ -66,7 +66,7 @@ pub struct Optimum {
 }
 
 /// Reach of points without a tolerance, in extents.
-const FAR: f64 = 10.0;
+pub(crate) const FAR: f64 = 10.0;
 
 /// The gap, as a share of the measure, to which the weight of a budget is looked for.
 const WEIGHED: f64 = 1e-8;

@@ -21,4 +21,5 @@ mod option_derivatives;
 mod rational;
 mod shapes;
 mod short_lists;
+mod swings;
 mod truth;

@@ -495,6 +495,9 @@ fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, Py
     dict.set_item("sampled", r.sampled)?;
     dict.set_item("used", r.used)?;
     dict.set_item("bent", &r.bent)?;
+    let swings: Vec<(usize, usize, f64)> =
+        r.swings.iter().map(|s| (s.curve, s.point, s.share)).collect();
+    dict.set_item("swings", swings)?;
     dict.set_item("certificate", certificate(py, &r.certificate)?)?;
     Ok(dict)
 }
