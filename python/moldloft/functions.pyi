@@ -230,7 +230,7 @@ def cylinder(
 
     Parameters
     ----------
-    axis : curve
+    axis : line
         A line along the axis.
     radius : number
         Radius. At least 0.
@@ -256,7 +256,7 @@ def cone(
 
     Parameters
     ----------
-    axis : curve
+    axis : line
         A line along the axis, from the apex.
     angle : number
         Full angle at the apex, below half a turn. At least 0.
@@ -281,7 +281,7 @@ def torus(
 
     Parameters
     ----------
-    axis : curve
+    axis : line
         A line along the axis, from the centre.
     major : number
         Radius of the circle of centres. At least 0.
@@ -310,7 +310,7 @@ def cyclide(
 
     Parameters
     ----------
-    axis : curve
+    axis : line
         A line along the axis, from the centre.
     along : point
         Direction of the thin side.
@@ -486,7 +486,7 @@ def revolved(
     ----------
     curve : curve
         The closed plane curve.
-    axis : curve
+    axis : line
         A line in its plane that it does not cross.
 
     Returns
@@ -747,7 +747,7 @@ def turned(
     ----------
     shape : set
         The field or set to turn.
-    axis : curve
+    axis : line
         The axis, right-handed.
     angle : number
         The angle.
@@ -825,7 +825,7 @@ def stretched(
     ----------
     shape : set
         The field or set to stretch.
-    axis : curve
+    axis : line
         The line.
     factor : number
         The factor, not 0.
@@ -1116,7 +1116,7 @@ def smooth_union(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Shape of the blend: "quadratic" (default), "cubic" or "circular".
+        Shape of the blend: "quadratic", "cubic" or "circular". Default quadratic.
 
     Returns
     -------
@@ -1150,7 +1150,7 @@ def smooth_intersection(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Shape of the blend: "quadratic" (default), "cubic" or "circular".
+        Shape of the blend: "quadratic", "cubic" or "circular". Default quadratic.
 
     Returns
     -------
@@ -1184,7 +1184,7 @@ def smooth_difference(
     width : number
         The width of the blend. At least 0.
     blend : text, optional
-        Shape of the blend: "quadratic" (default), "cubic" or "circular".
+        Shape of the blend: "quadratic", "cubic" or "circular". Default quadratic.
 
     Returns
     -------
@@ -1317,7 +1317,7 @@ def circular_array(
     ----------
     set : set
         The set.
-    axis : curve
+    axis : line
         The axis, right-handed.
     count : integer
         Number of copies. 1 to 10000.
@@ -1336,7 +1336,7 @@ def circular_array(
     """
     ...
 def set_union(
-    sets: Sequence[_Set] | _Any,
+    *sets: _Set | Sequence[_Set] | _Any,
 ) -> SetShape:
     """The union of any number of sets, in a balanced tree, which is the fastest to evaluate for many
     sets.
@@ -1358,7 +1358,7 @@ def set_union(
     """
     ...
 def set_intersection(
-    sets: Sequence[_Set] | _Any,
+    *sets: _Set | Sequence[_Set] | _Any,
 ) -> SetShape:
     """The intersection of any number of sets, in a balanced tree.
 
@@ -1427,7 +1427,7 @@ def set_shell(
     """
     ...
 def convex_hull(
-    sets: Sequence[_Set] | _Any,
+    *sets: _Set | Sequence[_Set] | _Any,
 ) -> SetShape:
     """The convex hull of sets: the smallest convex set that holds all of them.
 
@@ -5141,7 +5141,7 @@ def format(
 ) -> AnyShape:
     """Formats numbers by C directives; the pattern repeats for the remaining values.
 
-    Called as `format(pattern, ...)`.
+    Called as `format(pattern, [values], ...)`.
 
     Parameters
     ----------
@@ -5166,7 +5166,7 @@ def open(
 ) -> AnyShape:
     """Opens a text file to read ("r"), write ("w") or append ("a"); open(7, name) chooses the unit.
 
-    Called as `open(name, mode, unit)`.
+    Called as `open(name, [mode], [unit])`.
 
     Parameters
     ----------
@@ -5216,7 +5216,7 @@ def write(
 ) -> AnyShape:
     """Writes values to a file: a point or number on each line, the first index of a grid fastest.
 
-    Called as `write(f, ...)`.
+    Called as `write(f, [values], ...)`.
 
     Parameters
     ----------
@@ -5241,7 +5241,7 @@ def read(
 ) -> AnyShape:
     """Reads numbers into variables or parts of them; a string takes the rest of the line.
 
-    Called as `read(f, ...)`.
+    Called as `read(f, variables, ...)`.
 
     Parameters
     ----------
@@ -5358,7 +5358,7 @@ def isset(
 ) -> Expr:
     """Reports whether a variable, or every element of a section, has a value.
 
-    Called as `isset(a[i])`.
+    Called as `isset(a)`.
 
     Parameters
     ----------
@@ -5381,7 +5381,7 @@ def ieee(
 ) -> AnyShape:
     """Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.
 
-    Called as `ieee(on)`.
+    Called as `ieee([on])`.
 
     Parameters
     ----------
@@ -5491,7 +5491,7 @@ def write_p3d(
 ) -> AnyShape:
     """Writes curves, surfaces or blocks as a Plot3D file.
 
-    Called as `write_p3d(name, words, s1, s2, ...)`.
+    Called as `write_p3d(name, [words], s, ...)`.
 
     Parameters
     ----------
@@ -5520,7 +5520,7 @@ def write_vts(
 ) -> AnyShape:
     """Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.
 
-    Called as `write_vts(name, s1, s2, ...)`.
+    Called as `write_vts(name, s, ...)`.
 
     Parameters
     ----------
@@ -5545,7 +5545,7 @@ def plot(
 ) -> AnyShape:
     """Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from "x", "-y", "z", "iso" ...
 
-    Called as `plot(name, s1, s2, ...)`.
+    Called as `plot(name, [view], s, ...)`.
 
     Parameters
     ----------
@@ -5572,7 +5572,7 @@ def write_stl(
 ) -> AnyShape:
     """Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; "flip" reverses the normals.
 
-    Called as `write_stl(name, words, s1, s2, ...)`.
+    Called as `write_stl(name, [words], s, ...)`.
 
     Parameters
     ----------
@@ -5599,7 +5599,7 @@ def write_cgns(
 ) -> AnyShape:
     """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.
 
-    Called as `write_cgns(name, s1, s2, ...), write_cgns(name, b1, "k1 = hull wall", b2, ...)`.
+    Called as `write_cgns(name, s, [faces], ...)`.
 
     Parameters
     ----------
@@ -5628,7 +5628,7 @@ def write_su2(
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.
 
-    Called as `write_su2(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+    Called as `write_su2(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5657,7 +5657,7 @@ def write_gmsh(
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.
 
-    Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+    Called as `write_gmsh(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5686,7 +5686,7 @@ def write_blockmesh(
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.
 
-    Called as `write_blockmesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
+    Called as `write_blockmesh(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5715,7 +5715,7 @@ def write_polymesh(
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch.
 
-    Called as `write_polymesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
+    Called as `write_polymesh(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5744,7 +5744,7 @@ def write_ugrid(
 ) -> AnyShape:
     """Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow.
 
-    Called as `write_ugrid(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+    Called as `write_ugrid(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5773,7 +5773,7 @@ def write_nmf(
 ) -> AnyShape:
     """Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name.
 
-    Called as `write_nmf(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+    Called as `write_nmf(name, b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5802,7 +5802,7 @@ def interfaces(
 ) -> AnyShape:
     """The connections and boundaries of blocks, or of surfaces in one plane, as the writers use them, a line for each; folded and left-handed cells, faces that are not joined and symmetry that is not plane are reported.
 
-    Called as `interfaces(b1, "k1 = hull wall", b2, ...)`.
+    Called as `interfaces(b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5829,7 +5829,7 @@ def write_csv(
 ) -> AnyShape:
     """Writes points as lines of x,y,z under a heading, with all digits.
 
-    Called as `write_csv(name, c1, c2, ...)`.
+    Called as `write_csv(name, c, ...)`.
 
     Parameters
     ----------
@@ -5854,7 +5854,7 @@ def read_p3d(
 ) -> AnyShape:
     """A surface or block of a Plot3D file of any variant.
 
-    Called as `read_p3d(name, block)`.
+    Called as `read_p3d(name, [block])`.
 
     Parameters
     ----------
@@ -5879,7 +5879,7 @@ def iblank_p3d(
 ) -> AnyShape:
     """The blanking of a surface or block of a Plot3D file, a whole number for each point.
 
-    Called as `iblank_p3d(name, block)`.
+    Called as `iblank_p3d(name, [block])`.
 
     Parameters
     ----------
@@ -5927,7 +5927,7 @@ def read_cgns(
 ) -> AnyShape:
     """A structured zone of a CGNS file (HDF5) as a surface or block.
 
-    Called as `read_cgns(name, zone)`.
+    Called as `read_cgns(name, [zone])`.
 
     Parameters
     ----------

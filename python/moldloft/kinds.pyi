@@ -419,7 +419,7 @@ def RotatPoint(
         The name of the object.
     point : point
         The point to turn.
-    line : curve
+    line : line
         The axis, from the line's first end to its last.
     angle : number
         The angle.
@@ -2307,7 +2307,7 @@ def Helix(
         The name of the object.
     point : point
         Start.
-    line : curve
+    line : line
         Its axis, from the line's first end to its last.
     angle : number
         Angle by which it turns.
@@ -2665,7 +2665,7 @@ def RotatCurve(
         The name of the object.
     curve : curve
         The curve to turn.
-    line : curve
+    line : line
         The axis, from the line's first end to its last.
     angle : number
         The angle.
@@ -4248,7 +4248,7 @@ def CLoftSurf(
         Slope dX/dv at the first master, the same all along it, for clamped ends.
     end : vector, optional
         Slope dX/dv at the last master, the same all along it, for clamped ends.
-    about : curve, optional
+    about : line, optional
         A line about which the loft is made in cylinder coordinates, r, theta (within half a
         turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
@@ -4305,7 +4305,7 @@ def XLoftSurf(
         Master curves, two or more, in order of v.
     ends : text, optional
         End conditions: "notaknot", "natural", "bessel" or "quadratic". Default notaknot.
-    about : curve, optional
+    about : line, optional
         A line about which the loft is made in cylinder coordinates, r, theta (within half a
         turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
@@ -4614,7 +4614,7 @@ def RevSurf(
         The name of the object.
     curve : curve
         Generating curve.
-    line : curve
+    line : line
         Axis of rotation.
     a1 : number, optional
         Angle at v = 0, in radians (degrees in model files). Default 0.
@@ -5414,7 +5414,7 @@ def RotatSurf(
         The name of the object.
     surface : surface
         The surface to turn.
-    line : curve
+    line : line
         Axis of rotation.
     angle : number
         The angle, in radians (degrees in model files).
@@ -7378,7 +7378,7 @@ def CylinderContours(
     ----------
     name : str
         The name of the object.
-    line : curve
+    line : line
         The common axis: the line through the ends of a curve.
     first : integer
         First index i.
@@ -7437,7 +7437,7 @@ def AngleContours(
     ----------
     name : str
         The name of the object.
-    line : curve
+    line : line
         The common axis: the line through the ends of a curve.
     first : integer
         First index i.

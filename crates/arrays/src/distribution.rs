@@ -10,7 +10,7 @@ pub const MOST_NUMBERS: u32 = 1_000_000;
 
 /// The arguments that limits and spacings of a distribution come from.
 #[derive(Clone, Copy)]
-pub struct Arguments {
+pub struct DistributionArguments {
     /// The first limit, or the length.
     pub limits: FieldId,
     /// The first spacing; of a distribution without spacings, which cannot be wrong in them, as `limits`.
@@ -18,7 +18,7 @@ pub struct Arguments {
 }
 
 /// The fault of a distribution made of these arguments.
-pub fn fault(error: DistributionError, of: Arguments) -> CallError {
+pub fn fault(error: DistributionError, of: DistributionArguments) -> CallError {
     let fault = CallError::new("no-distribution", error.to_string());
     match error {
         DistributionError::TooFew { expected, actual } => {
@@ -51,7 +51,7 @@ fn row<T: Real>(
     row: Result<Vec<T>, DistributionError>,
     [limits, spacings]: [FieldId; 2],
 ) -> Result<Value<T>, CallError> {
-    row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
+    row.map(farray).map_err(|error| fault(error, DistributionArguments { limits, spacings }))
 }
 
 /// The row with a number more in each interval, the others to the bit. Both parts of an interval grow as the intervals
@@ -307,8 +307,8 @@ pub struct Redist<T: Scalar> {
 impl<T: Scalar> Build<T> for Redist<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let given = self.given.row().map_err(|fault| fault.in_field(Self::GIVEN))?;
-        distribution::redist(&given, self.n as usize)
-            .map(farray)
-            .map_err(|error| fault(error, Arguments { limits: Self::GIVEN, spacings: Self::GIVEN }))
+        distribution::redist(&given, self.n as usize).map(farray).map_err(|error| {
+            fault(error, DistributionArguments { limits: Self::GIVEN, spacings: Self::GIVEN })
+        })
     }
 }

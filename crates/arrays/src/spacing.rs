@@ -1,6 +1,6 @@
 //! Inverse functions of distributions: number of points, spacing.
 
-use crate::distribution::{Arguments, MOST_NUMBERS, fault};
+use crate::distribution::{DistributionArguments, MOST_NUMBERS, fault};
 use crate::value::{Numbers, VectorArray};
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Scalar, Value};
@@ -37,7 +37,7 @@ pub struct CountFor<T: Real> {
 impl<T: Real> Build<T> for CountFor<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [length, a, b, most] = [self.length, self.ds1, self.ds2, self.growth].map(T::re);
-        let of = Arguments { limits: Self::LENGTH, spacings: Self::DS1 };
+        let of = DistributionArguments { limits: Self::LENGTH, spacings: Self::DS1 };
         let n = count_for(length, a, b, most, MOST_NUMBERS as usize);
         let n = n.map_err(|error| fault(error, of))?;
         n.map(|n| Value::Number(T::from(n as f64))).ok_or_else(|| {
