@@ -16,3 +16,4 @@ mod surfaces;
 mod table;
 mod third_derivatives;
 mod trimmed;
+mod wrappers;
