@@ -21,7 +21,7 @@ __all__ = ["Limits", "limits", "parsed", "within_limits"]
 
 _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
 
-#: Without so much nothing can be run at all.
+#: Minimum without which nothing runs.
 _LEAST_MEMORY = 16 << 20
 _MOST_COUNT = (1 << 63) - 1
 

@@ -480,7 +480,7 @@ def _boundaries(
         edge = zone.edge(side)
         if len(set(edge.tolist())) < 2:
             continue
-        # What lies between the interfaces of an edge, and before and behind them.
+        # Parts between the interfaces of an edge, before the first and after the last.
         at = 0
         ends = sorted((joint.first, joint.last) for joint in own if joint.side == side)
         for first, last in [*ends, (len(edge) - 1, len(edge) - 1)]:

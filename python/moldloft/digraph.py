@@ -49,7 +49,7 @@ def layers(nodes: Sequence[Node]) -> list[list[Node]]:
     for node in nodes:
         above = [depth[parent] for parent in node.parents if parent in depth]
         depth[node.name] = max(above, default=-1) + 1
-    # An object without parents stands just above its first child.
+    # An object without parents is directly above its first child.
     children: dict[str, list[str]] = {name: [] for name in known}
     for node in nodes:
         for parent in node.parents:

@@ -278,7 +278,7 @@ class Stability:
         most = self._afloat(most)
         heels = self.grid(0.0, most)
         low = heels[1]
-        # A small angle of loll lies before the first heel of the grid.
+        # A small angle of loll is below the first heel of the grid.
         while self.gz(low) >= 0 and low > 1e-6:
             low /= 4
         if self.gz(low) >= 0:

@@ -186,7 +186,7 @@ class Writable:
                 format, name, lids, immersed, list(tags), tolerance, angle, whole, triangles
             )
         except ModelError as error:
-            # The format is at fault, or what is asked of it, and not the model.
+            # The fault is in the format or its options, not in the model.
             if not {d.id for d in error.diagnostics} <= _OF_FORMATS:
                 raise
             raise FormatError(str(error), format, diagnostics=error.diagnostics) from None

@@ -1,4 +1,4 @@
-// What is asked about a shape and drawn over it: colours by numbers with their legend, combs of curves.
+// Analyses drawn over a shape: colours by numbers with their legend, combs of curves.
 
 import { ink, ramp, type Scale } from './colour'
 import { h, shown } from './dom'

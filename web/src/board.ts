@@ -174,7 +174,7 @@ export class Board {
     on('pointercancel', (e) => this.cancel(e))
     on('pointerleave', () => this.aim(null))
     on('contextmenu', (e) => e.preventDefault())
-    // The focus goes where the gesture puts it, such as into a dimension's box.
+    // The gesture sets the focus, for instance into a dimension's box.
     on('mousedown', (e) => e.preventDefault())
     on('wheel', (e: WheelEvent) => {
       e.preventDefault()
@@ -582,7 +582,7 @@ export class Board {
     if (pressed.kind === 'move' && pressed.moved) this.drop(pressed.what!, at)
     if (pressed.kind !== 'draw') return
     const free = e.shiftKey
-    // What is drawn while the hand goes on may move the page.
+    // A drawing during the gesture may scroll the page.
     if (pressed.moved) void this.stroke(this.page.from(pressed.from), this.page.from(at), free)
     else void this.click(this.page.from(at), free)
   }

@@ -1,4 +1,4 @@
-// The box of a dimension, where it stands: a value, an expression, or Enter for what the picture suggests.
+// The box of a dimension at its place: a value, an expression, or Enter for what the picture suggests.
 
 import type { Mark, Page } from './board_paint'
 import { h, shown } from './dom'

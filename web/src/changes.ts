@@ -1,4 +1,4 @@
-// What hands change: values that are set while they move, and what is written into the text when they rest.
+// Changes by hand: values set during a move, and the text written when it rests.
 
 import { shown } from './dom'
 import type { Editor } from './editor'

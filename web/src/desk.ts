@@ -31,7 +31,7 @@ const [GROWTH, LIGHTEST, HEAVIEST] = [60, 0.01, 1000]
 const [REACH, CLICK] = [12, 4]
 /** How long a hand rests on a slider before the curve is finished, ms. */
 const REST = 140
-/** The slider goes so many decades each way from the first tolerance. */
+/** Range of the slider in decades to each side of the first tolerance. */
 const DECADES = 1.5
 const LARGEST = 8 << 20
 
@@ -208,7 +208,7 @@ export class Desk {
     const session = this.session
     const own = session ? { log: this.log, line: this.shownLine, key: session.key } : {}
     let found = await this.link.tell({ kind, ...own, ...fields })
-    // A process that was lost knows nothing: it is told the whole.
+    // A new process has no state: it is sent the whole.
     if (found.unknown && session)
       found = await this.link.tell({ kind, ...own, source: session.source, tolerance: session.tolerance, ...fields })
     this.times.push({ kind, ms: performance.now() - from })

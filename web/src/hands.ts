@@ -19,7 +19,7 @@ export interface Handlers {
   open(name: string): void
   /** A place that was clicked where nothing is dragged; true when it was wanted. */
   place(at: Vector3, grain: number): Promise<boolean>
-  /** True when a click was for what lies in the corner of the picture. */
+  /** True for a click on a control in the corner of the picture. */
   corner(e: MouseEvent): boolean
 }
 
@@ -379,7 +379,7 @@ export class Hands {
         snapped = near.object
       }
     }
-    // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
+    // The move before the lock is undone: the place itself is on the axis or in the plane.
     if (drag.axis !== null || drag.plane !== null) basis = [unit(0), unit(1), unit(2)]
     const target = drag.target.clone()
     const grain = camera.grain(this.view.height)

@@ -41,7 +41,7 @@ const NEWEST = new Set([
   'blocks',
 ])
 
-/** What a new engine must hear before it is asked anything else. */
+/** Requests that a new engine gets before all others. */
 const STATE = ['show', 'watch']
 
 export class LivingLink implements Link {
@@ -221,7 +221,7 @@ export class LivingLink implements Link {
     this.onMessage({ kind: 'updates', from, updates, dirty: this.dirty })
     const changes = updates.map((u) => u.changes)
     if (this.running) {
-      // The text goes before everything that waits: places count in it.
+      // The text precedes all waiting requests: their places refer to it.
       const waiting = this.jobs.find((j) => j.kind === 'splice')
       if (waiting) {
         waiting.request.changes.push(...changes)

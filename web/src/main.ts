@@ -540,7 +540,7 @@ async function begin(hello: any): Promise<void> {
   if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
   saving.show()
   try {
-    // A file's own scene is there at once; a server's is asked for with all that is to be drawn.
+    // The scene of a file is loaded at once; that of a server is requested with all it draws.
     if (link.local) await link.ask('open')
     if (hello.watched) {
       const immersed = hello.watched.find((w: Watched) => w.expression === IMMERSED)?.value

@@ -8,7 +8,7 @@ export interface Item {
   run: () => void
 }
 
-/** Opens a menu; the focus goes back to where it came from. */
+/** Opens a menu; the focus returns to its former element. */
 export function openMenu(label: string, items: Item[], x: number, y: number): void {
   const before = document.activeElement as HTMLElement | null
   const close = (back: boolean) => {

@@ -24,7 +24,7 @@ export function tablesOf(editor: Editor): WrittenArray[][] {
   const { state } = editor.view
   if (known?.doc === state.doc) return known.tables
   const tree = ensureSyntaxTree(state, state.doc.length, PARSING)
-  // Without it, what is in a comment cannot be told from the program.
+  // Without it, comments cannot be distinguished from the program.
   if (!tree) return []
   const skipped = (at: number) => /comment|string/.test(tree.resolveInner(at, 1).name)
   known = { doc: state.doc, tables: grouped(arraysOf(editor.text, skipped)) }

@@ -93,9 +93,9 @@ function answered(by: Engine, request: string): ArrayBuffer {
 // A browser optimises a function when it has run some times: the first changes of a model would be ten times slower than
 // those after them. While nobody asks, another instance of the same module goes through changes of its parameters.
 
-/** A change that takes longer than this, in ms, is not tried before it is asked for; nor is a model that opens more slowly. */
+/** A change that takes longer than this, in ms, is not tried in advance; nor is a model that opens more slowly. */
 const QUICK = 60
-/** How long it goes on, and how long nobody must have asked. */
+/** Length of this work, and the idle time before it. */
 const [LONGEST, REST] = [1500, 150]
 /** How long the model took to begin. */
 let begins = 0

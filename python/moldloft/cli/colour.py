@@ -23,7 +23,7 @@ _RULES = (
         _GREEN,
     ),
 )
-#: The margin of source lines, with its number or without, and what stands right of it.
+#: The margin of source lines, with or without a number, and the text to the right of it.
 _MARGIN = re.compile(r"^( *(\d*) *\|)(.*)$")
 _PLACE = re.compile(r"^( *(?:-->|:::) )(.*)$")
 

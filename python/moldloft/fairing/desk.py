@@ -113,7 +113,7 @@ class Desk:
         tolerance
             As for :class:`Desk`.
         data
-            The bytes of the file, where they are at hand.
+            The bytes of the file, if they are in memory.
         """
         return Desk(DeskSource.of_file(str(path), data), tolerance)
 

@@ -168,7 +168,7 @@ class DeskResult:
     points: tuple[Place, ...]
     """Positions of the points."""
     suspects: tuple[DeskSuspect, ...]
-    """What stands out."""
+    """Suspects and notes of the lines."""
     parts: tuple[Fairing | NetworkFairing | SurfaceFairing, ...]
     """The fairings: one for each curve, or the one of the network or surface."""
 

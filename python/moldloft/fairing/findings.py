@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-#: A list whose steps are so many times longer than the distances to the nearest points is shuffled.
+#: Ratio of steps to distances between nearest points from which a list counts as shuffled.
 _SHUFFLED = 3.0
 
 #: Share of its points at which a shuffled list turns back.
@@ -25,14 +25,14 @@ _TURNS_BACK = 0.25
 #: Another order is proposed where the way through the points is shorter by a tenth or more.
 _SHORTER = 0.9
 
-#: A jump is a step of so many times the median one, and of this share of the extent.
+#: A jump is a step of at least this multiple of the median step, and of this share of the extent.
 _JUMP = 4.0
 _WIDE = 0.25
 
 #: Jumps that are looked at, at most.
 _MOST_JUMPS = 8
 
-#: A seam is smooth where it turns by at most so many times the largest turn beside it.
+#: Largest turn of a smooth seam, as a multiple of the largest turn beside it.
 _SMOOTH = 1.5
 
 #: Cosine of the largest turn at which a way runs on.

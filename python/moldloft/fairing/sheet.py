@@ -233,10 +233,10 @@ def _facts(
 
     moved = int((lines.off > 1e-12 * max(float(np.abs(lines.data).max()), 1e-300)).sum())
     most = int(np.argmax(lines.off))
-    told = f"{moved} of {len(lines.data)} points"
+    moved_text = f"{moved} of {len(lines.data)} points"
     if moved:
-        told += f"; the largest move is {lines.off[most]:.4g} {details.unit or ''}".rstrip()
-        told += f" at {lines.point_names[most]}"
+        moved_text += f"; the largest move is {lines.off[most]:.4g} {details.unit or ''}".rstrip()
+        moved_text += f" at {lines.point_names[most]}"
     before = sum(a.inflections() for a, _ in lines.pairs)
     after = sum(b.inflections() for _, b in lines.pairs)
     proved = "no optimum is claimed"
@@ -254,7 +254,7 @@ def _facts(
         *details.facts,
         ("tolerance", _tolerance(lines, details.unit)),
         ("options", f"mode {result.mode}, goal {result.goal}, measure {result.measure}"),
-        ("moved", told),
+        ("moved", moved_text),
         ("bends", f"{before} before, {after} after, over all curves"),
         ("certified", f"{far}; {proved}"),
         ("program", f"Moldloft {__version__}"),

@@ -47,7 +47,7 @@ _BEYOND = 2.0
 #: Two neighbours are swapped where this share of the measure beside them is gone so.
 _SWAPPED = 0.9
 
-#: Suspects whose deviation is below so many errors are not listed.
+#: Smallest deviation of a listed suspect, in errors.
 _WORTH = 0.8
 
 #: Cost of a slip beside the squared deviation, in squared errors: less of likelier ones.

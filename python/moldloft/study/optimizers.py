@@ -32,7 +32,7 @@ LEAST_SLOPE = 1e-3
 #: The curvature at the start is that of a step of this fraction of the ranges.
 PROBE = 1e-2
 
-#: Points that Optuna is asked for at a time.
+#: Number of points requested from Optuna at a time.
 BATCH = 4
 
 
