@@ -123,10 +123,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Departure::Condition { to, site } => {
                     self.interpreted_condition(region, machine, to, site)
                 }
-                Departure::Kernel(kernel) => match self.pass(region, machine, kernel) {
-                    Some(outcome) => outcome,
-                    None => self.fault(region, machine),
-                },
+                Departure::Kernel(kernel) => {
+                    // Steps that do not suffice are found by the pass.
+                    let due = self.usage.steps >= look_at && self.usage.cost() < most;
+                    if due && self.may_not_go_on(region, machine) {
+                        CodeOutcome::Stop
+                    } else {
+                        match self.pass(region, machine, kernel) {
+                            // Passes do not put off the next look.
+                            Some(CodeOutcome::Next) if !due => continue,
+                            Some(outcome) => outcome,
+                            None => self.fault(region, machine),
+                        }
+                    }
+                }
             };
             let rest = most.saturating_sub(self.usage.cost());
             look_at = self.usage.steps + 1 + rest.min(STEPS_BETWEEN_LOOKS);
