@@ -569,6 +569,11 @@ impl<'a> Crossing<'a> {
                     since = 0;
                     continue;
                 }
+                // The start may be between the last station and the edge.
+                if all.len() > 2 && self.passes(&start, [&last, &station], sign, step) {
+                    self.close(&mut all, &lines, start, sign);
+                    return (all, BranchEnd::Closed);
+                }
                 if station.x.distance(last.x) > 1e-12 * self.size {
                     all.push(station);
                 }
@@ -589,30 +594,9 @@ impl<'a> Crossing<'a> {
                 }
                 continue;
             }
-            if all.len() > 2 {
-                let (before, after) = (
-                    (last.x - start.x).dot(start.tangent) * sign,
-                    (next.x - start.x).dot(start.tangent) * sign,
-                );
-                let near = start.x.distance(last.x) <= 1.01 * step && {
-                    let (away, way) = (start.x - last.x, next.x - last.x);
-                    let share = away.dot(way) / way.norm_sq();
-                    away.distance(way * share) <= 0.1 * way.norm()
-                };
-                if before < 0.0 && after >= 0.0 && near && last.tangent.dot(start.tangent) > 0.5 {
-                    // Near a pole one step spans a large part of the turn.
-                    let same = (0..n).all(|k| {
-                        let spanned = (next.q[k] - last.q[k]).abs();
-                        (last.q[k] - start.q[k]).abs() < f64::max(0.3, spanned)
-                    });
-                    if same {
-                        if let Some(both) = self.crease(&lines, &last, start.q, sign) {
-                            self.extend_over_crease(&mut all, both);
-                        }
-                        all.push(start);
-                        return (all, BranchEnd::Closed);
-                    }
-                }
+            if all.len() > 2 && self.passes(&start, [&last, &next], sign, step) {
+                self.close(&mut all, &lines, start, sign);
+                return (all, BranchEnd::Closed);
             }
             if let Some(both) = self.crease(&lines, &last, next.q, sign) {
                 // A bend within the step: the continuation is on one side of it.
@@ -626,6 +610,46 @@ impl<'a> Crossing<'a> {
             step = (step * (TURN / turn).clamp(0.5, 1.5)).min(longest);
         }
         (all, BranchEnd::Lost)
+    }
+
+    /// True if the branch passes its start between two stations, a step apart at most.
+    fn passes(
+        &self,
+        start: &TracePoint,
+        [last, next]: [&TracePoint; 2],
+        sign: f64,
+        step: f64,
+    ) -> bool {
+        let [before, after] =
+            [last, next].map(|station| (station.x - start.x).dot(start.tangent) * sign);
+        if !(before < 0.0 && after >= 0.0 && start.x.distance(last.x) <= 1.01 * step) {
+            return false;
+        }
+        let (away, way) = (start.x - last.x, next.x - last.x);
+        let share = away.dot(way) / way.norm_sq();
+        // Near a pole one step spans a large part of the turn.
+        let same = |k: usize| {
+            let spanned = (next.q[k] - last.q[k]).abs();
+            (last.q[k] - start.q[k]).abs() < f64::max(0.3, spanned)
+        };
+        away.distance(way * share) <= 0.1 * way.norm()
+            && last.tangent.dot(start.tangent) > 0.5
+            && (0..self.unknowns()).all(same)
+    }
+
+    /// Ends a branch with its start, after a crease on the way.
+    fn close(
+        &self,
+        branch: &mut Vec<TracePoint>,
+        lines: &[(usize, f64)],
+        start: TracePoint,
+        sign: f64,
+    ) {
+        let last = *branch.last().expect("it begins with the start");
+        if let Some(both) = self.crease(lines, &last, start.q, sign) {
+            self.extend_over_crease(branch, both);
+        }
+        branch.push(start);
     }
 
     /// The joints of the surfaces: numbers of unknowns and their values there.

@@ -390,3 +390,30 @@ fn a_section_of_a_ball_is_followed_once() {
         moldloft_testing::close_relative(chords.sum::<f64>(), circle, 0.01);
     }
 }
+
+#[test]
+fn a_branch_that_begins_beside_the_seam_is_followed_once() {
+    let mut random = Random::new(2_025);
+    for _ in 0..moldloft_testing::rounds(300, 50_000) {
+        let radius = random.between(0.5, 3.0);
+        let angle = random.between(-1.4, 1.4);
+        let offset = random.between(-0.8, 0.8) * radius * angle.cos();
+        let [normal, along] = [v(angle.cos(), angle.sin(), 0.0), v(-angle.sin(), angle.cos(), 0.0)];
+        // The section meets the plane of the seam at this x; the seam is at positive ones.
+        let x = (offset / angle.cos()).abs();
+        let ball = Sphere { centre: Vec3::zero(), radius };
+        let own = (radius * radius - offset * offset).sqrt();
+        let at_seam = (radius * radius - x * x).sqrt().atan2(-x * angle.sin());
+        let away = 10.0_f64.powf(random.between(-12.0, -0.5)) * (random.signed()).signum();
+        let turn = at_seam + away;
+        let p = normal * offset.abs() + (along * turn.cos() + v(0.0, 0.0, turn.sin())) * own;
+        let u = (p.y.atan2(p.x) / std::f64::consts::TAU).rem_euclid(1.0);
+        let w = (p.z / radius).asin() / std::f64::consts::PI + 0.5;
+        let crossing = Crossing::with_plane(&ball, plane(normal * offset.abs(), normal));
+        let branch = crossing.branch([u, w, 0.0, 0.0]).expect("a branch");
+        assert!(branch.closed(), "{radius} {offset} {angle} {away}");
+        let chords = branch.stations.windows(2).map(|s| s[0].x.distance(s[1].x));
+        let circle = std::f64::consts::TAU * own;
+        moldloft_testing::close_relative(chords.sum::<f64>(), circle, 0.01);
+    }
+}
