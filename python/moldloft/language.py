@@ -198,18 +198,19 @@ def signature(row: dict[str, Any]) -> inspect.Signature:
     fields = [f for f in row["fields"] if f["name"].isidentifier()]
     if not fields and not row["is_kind"]:
         return inspect.Signature([parameter("args", parameter.VAR_POSITIONAL)])
-    optional = False
+    optional = variadic = False
     by_name = []
     for field in fields:
-        # After an argument that may be left out all others are named, or may be left out too.
+        # After an argument that may be left out all others are named, or may be left out too; after
+        # one of any number all are named.
         optional = optional or not field["required"]
         default = parameter.empty if field["required"] else field["default"]
-        kind = parameter.KEYWORD_ONLY if optional and field["required"] else None
         name = python_name(field["name"])
         if field["variadic"]:
+            variadic = True
             found.append(parameter(name, parameter.VAR_POSITIONAL))
-        elif kind is not None:
-            by_name.append(parameter(name, kind, default=default))
+        elif variadic or (optional and field["required"]):
+            by_name.append(parameter(name, parameter.KEYWORD_ONLY, default=default))
         else:
             found.append(parameter(name, parameter.POSITIONAL_OR_KEYWORD, default=default))
     if row["is_kind"]:
