@@ -102,6 +102,11 @@ pub struct IntSnake<T: Real> {
     point: Option<Point<T>>,
 }
 
+impl<T: Real> IntSnake<T> {
+    /// The arguments of the two shapes.
+    pub const SHAPES: [FieldId; 2] = [Self::SURFACE, Self::TARGET];
+}
+
 impl<T: Real> Build<T> for IntSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, target, start, end, point } = self;

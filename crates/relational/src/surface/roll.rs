@@ -123,10 +123,9 @@ fn spine<T: Scalar>(
 ) -> Result<CurveRef<T>, CallError> {
     let row = <IntSnake<f64> as StaticRow>::row();
     let mut args = vec![Value::Unset; row.fields.len()];
-    for (k, name) in ["surface", "target"].into_iter().enumerate() {
+    for (k, shape) in IntSnake::<T>::SHAPES.into_iter().enumerate() {
         let beside = parallel(onto[k].surface.clone(), distances[k], context);
-        let at = row.field(name).expect("an intersection is of a surface and a target");
-        args[at] = match onto[k].start {
+        args[shape.position()] = match onto[k].start {
             Some([u, v]) => Value::Point(Box::new(Point::on_surface(beside, u, v))),
             None => Value::Surface(beside),
         };
