@@ -393,8 +393,8 @@ class Floating:
         sets = faceted(cast("Model", self))
         images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
         partial = self._document.partial() and not self._document.is_whole()
-        doubts = [*self._document.inner_skins(), *self._document.folded_surfaces()]
-        doubts = [found.message for found in doubts]
+        found = [*self._document.inner_skins(), *self._document.folded_surfaces()]
+        doubts = [diagnostic.message for diagnostic in found]
         for answer in answers:
             if answer["open_edges"] and not self._document.partial():
                 lost = (k for k in set(answer) - _WHEN_FLOODED if isinstance(answer[k], float))
