@@ -46,7 +46,7 @@ impl CurvePair {
     }
 }
 
-/// Calls `f` with the Bézier points of a spline's spans, halved so many times.
+/// Calls `f` with the Bézier points of a spline's spans, each halved `halvings` times.
 fn each_bezier(space: &Space, halvings: usize, mut f: impl FnMut(&[(usize, f64)])) {
     if halvings == 0 {
         space.each_bezier(None, f);

@@ -151,7 +151,7 @@ impl FacetPlan {
         made
     }
 
-    /// The facets that an object needs by itself.
+    /// The facets that an object needs apart from its operands.
     fn plain_facets<T: Real>(
         &self,
         object: &Arc<SketchObject>,

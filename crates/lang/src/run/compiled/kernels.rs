@@ -239,7 +239,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.emit(ScalarOp::Kernel { kernel }).map(drop)
     }
 
-    /// The operand that an expression is when the interpreter evaluates it by itself: its value counts as steps.
+    /// The operand of an expression that the interpreter evaluates separately, so that its value counts as steps.
     fn evaluated(
         &mut self,
         stmt: StmtId,
