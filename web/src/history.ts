@@ -47,8 +47,11 @@ export function keptSteps(): Extension {
   ]
 }
 
+/** Annotation after which a step begins, as after saving. */
+export const stepEnds = isolateHistory.of('full')
+
 /** Annotations of a step of its own. */
-export const stepOf = (name: string) => [isolateHistory.of('full'), called.of(name)]
+export const stepOf = (name: string) => [stepEnds, called.of(name)]
 
 function word(tr: Transaction): string {
   const given = tr.annotation(called)

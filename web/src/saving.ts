@@ -3,6 +3,7 @@
 import type { Changes } from './changes'
 import { h, store, stored } from './dom'
 import type { Editor } from './editor'
+import { stepEnds } from './history'
 import type { Host } from './host'
 import type { Link } from './link'
 import type { Shell } from './shell'
@@ -53,6 +54,7 @@ export class Saving {
     if (this.host) return this.host.save()
     try {
       await this.changes.settled()
+      this.editor.view.dispatch({ annotations: stepEnds })
       const answer = await this.link.tell({ kind: 'save', force })
       if (this.link.local) return this.give(new Blob([answer.text], { type: 'text/plain' }), model.name)
       if (answer.kind === 'conflict') this.conflict(answer.theirs)

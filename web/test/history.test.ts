@@ -1,7 +1,7 @@
 import { redo, undo, undoDepth } from '@codemirror/commands'
 import { EditorState } from '@codemirror/state'
 import { expect, test } from 'vitest'
-import { keptSteps } from '../src/history'
+import { keptSteps, stepEnds } from '../src/history'
 
 test('typing and its deletion are two steps, which are taken back and done again', () => {
   let state = EditorState.create({ doc: 'ab\n', extensions: keptSteps() })
@@ -21,4 +21,19 @@ test('typing and its deletion are two steps, which are taken back and done again
     redo({ state, dispatch })
     expect(state.doc.toString()).toBe(text)
   }
+})
+
+test('what is typed after saving is a step of its own, however soon', () => {
+  let state = EditorState.create({ extensions: keptSteps() })
+  const dispatch = (tr: { state: EditorState }) => (state = tr.state)
+  const type = (insert: string) =>
+    dispatch(state.update({ changes: { from: state.doc.length, insert }, userEvent: 'input.type' }))
+  type('a')
+  type('b')
+  dispatch(state.update({ annotations: stepEnds }))
+  type('c')
+  undo({ state, dispatch })
+  expect(state.doc.toString()).toBe('ab')
+  undo({ state, dispatch })
+  expect(state.doc.toString()).toBe('')
 })
