@@ -193,46 +193,22 @@ impl<T: Real> Implicit<T, 1> for FootOnCurve<'_, T> {
     }
 }
 
-/// S_u . (S - P) = 0 and S_v . (S - P) = 0; an unknown that is held at an edge or a joint stays there.
+/// S_u . (S - P) = 0 and S_v . (S - P) = 0, to the first order; an unknown that is held at an edge or a joint stays there.
 pub struct FootOnSurface<'a, T: Real> {
     pub surface: &'a SurfaceRef<T>,
     pub point: &'a Moving<T>,
     pub held: [Option<T>; 2],
 }
 
-/// Step of the differences that give third derivatives of a surface, which no jet has: with the
-/// five-point formula, exact for polynomials up to the fourth power, some ten digits remain.
-const THIRD: f64 = 1.0 / 1024.0;
-
-/// Third derivatives uuu, uuv, uvv, vvv.
-fn third<T: Real>(surface: &SurfaceRef<T>, u: T, v: T) -> [Vec3<T>; 4] {
-    let along = |du: f64, dv: f64, part: fn(&SurfJet<T>) -> Vec3<T>| {
-        let at = |k: f64| part(&surface.jet(u + du * k * THIRD, v + dv * k * THIRD, Order::Second));
-        ((at(1.0) - at(-1.0)) * T::from(8.0) - (at(2.0) - at(-2.0))) / T::from(12.0 * THIRD)
-    };
-    [
-        along(1.0, 0.0, |j| j.uu),
-        along(0.0, 1.0, |j| j.uu),
-        along(1.0, 0.0, |j| j.vv),
-        along(0.0, 1.0, |j| j.vv),
-    ]
-}
-
 impl<T: Real> Implicit<T, 2> for FootOnSurface<'_, T> {
     fn at<J: Jet<T>>(&self, [u, v]: [J; 2], t: J) -> [J; 2] {
-        let (u0, v0) = (u.value(), v.value());
-        let s = self.surface.jet(u0, v0, Order::Second);
+        let s = self.surface.jet(u.value(), v.value(), Order::Second);
         let away = lift_surface(&s, u, v) - self.point.at(t);
-        // The tangents as surfaces of their own, as far as derivatives are known.
-        let mut along = [
+        // The tangents as surfaces of their own, to the first order, as far as derivatives are known.
+        let along = [
             SurfJet { p: s.u, u: s.uu, v: s.uv, ..SurfJet::default() },
             SurfJet { p: s.v, u: s.uv, v: s.vv, ..SurfJet::default() },
         ];
-        if J::ORDER == Order::Second {
-            let [uuu, uuv, uvv, vvv] = third(self.surface, u0, v0);
-            (along[0].uu, along[0].uv, along[0].vv) = (uuu, uuv, uvv);
-            (along[1].uu, along[1].uv, along[1].vv) = (uuv, uvv, vvv);
-        }
         let value = |k: usize, q: J| {
             if let Some(place) = self.held[k] {
                 return q - J::fixed(place);

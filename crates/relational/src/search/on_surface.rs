@@ -1,5 +1,6 @@
 //! Curves in the parameter plane of a surface: their jets in space, and where they cross its breaks.
 
+use moldloft_num::period::breaks_between;
 use moldloft_num::{CurveJet, Order, Real, find_root};
 use moldloft_registry::SurfaceRef;
 
@@ -15,30 +16,30 @@ pub(super) fn on_surface_jet<T: Real>(
     jet
 }
 
-/// The parameters at which a path in the parameter plane of a surface crosses its breaks, together
-/// with the path's own breaks, ascending. The nodes are close enough for the path to cross a line
-/// at most once between two of them.
+/// The parameters at which a path in a parameter plane crosses lines u = const and v = const, which recur with each turn
+/// where the plane is closed. The nodes are close enough for the path to cross a line at most once between two of them.
 pub(super) fn crossings(
     lines: &[Vec<f64>; 2],
-    own: Vec<f64>,
+    closed: [bool; 2],
     nodes: &[(f64, [f64; 2])],
     at: impl Fn(f64) -> [f64; 2],
 ) -> Vec<f64> {
-    let mut breaks = own;
-    for pair in nodes.windows(2) {
-        let ((a, p), (b, q)) = (pair[0], pair[1]);
-        for (axis, lines) in lines.iter().enumerate() {
-            for &line in lines {
+    let mut found = Vec::new();
+    for axis in 0..2 {
+        let range = nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (_, w)| {
+            [a.min(w[axis]), b.max(w[axis])]
+        });
+        for line in breaks_between(&lines[axis], closed[axis], range[0], range[1]) {
+            for pair in nodes.windows(2) {
+                let ((a, p), (b, q)) = (pair[0], pair[1]);
                 if (p[axis] - line) * (q[axis] - line) < 0.0 {
-                    breaks.extend(find_root(|t| at(t)[axis] - line, a, b).ok());
+                    found.extend(find_root(|t| at(t)[axis] - line, a, b).ok());
                 } else if p[axis] == line && q[axis] != line {
-                    breaks.push(a);
+                    found.push(a);
                 }
             }
         }
     }
-    breaks.retain(|t| *t > 0.0 && *t < 1.0);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    breaks
+    found.retain(|t| *t > 0.0 && *t < 1.0);
+    found
 }

@@ -6,7 +6,7 @@ use super::magnets::{foot, on_ray, rays};
 use super::points::MirrorOrSurface;
 use super::table::Table;
 use crate::arguments::Magnet;
-use moldloft_locate::implicit::{Implicit, jets, solve};
+use moldloft_locate::implicit::{jets, solve};
 use moldloft_locate::{OUTSIDE, PlainSurface, UnknownBounds, newton};
 use moldloft_num::period::within;
 use moldloft_num::trace::{Key, Trace};
@@ -27,6 +27,18 @@ const LONGEST_MOVE: f64 = 0.15;
 /// Length of a Newton step, relative to the size, after which the error (its square) is below
 /// rounding.
 const CLOSE: f64 = 1e-8;
+
+/// Step along the curve of the differences that give second derivatives of a path of feet, for which third ones of the
+/// surface would be needed: with five points some ten digits remain.
+const FOOT_STEP: f64 = 1.0 / 1024.0;
+
+/// Distance from a break at which both sides of a path are compared, and the distance of feet, relative to the size, from
+/// which it jumps.
+const BESIDE: f64 = 1e-9;
+const JUMP: f64 = 1e-6;
+
+/// Distance of these points from the breaks of the path, which are known to rounding only.
+const ASIDE: f64 = 1e-7;
 
 /// Maximum error of positions from a table, relative to the size.
 const TABLE_ACCURACY: f64 = 1e-13;
@@ -227,8 +239,9 @@ struct ProjectedPath<T: Real> {
     rays: Option<Rays<T>>,
     size: f64,
     nodes: Vec<ProjectionSample>,
-    /// Computed on first use.
+    /// Computed on first use, as the breaks are.
     table: OnceLock<Table<3>>,
+    breaks: OnceLock<Vec<f64>>,
 }
 
 /// Follows the projection of the curve from its start to its end.
@@ -257,6 +270,7 @@ fn projected<T: Real>(
         size,
         nodes: Vec::new(),
         table: OnceLock::new(),
+        breaks: OnceLock::new(),
     };
     let closed = path.surface.closed();
     let uv = uv.map(|x| x.re());
@@ -290,6 +304,9 @@ fn projected<T: Real>(
             }
         }
     }
+    if let Some(t) = path.jump() {
+        return Err(jumps(t, on));
+    }
     found.advice = "to choose another one, give a magnet near the start of the snake";
     Ok((path, found))
 }
@@ -308,6 +325,19 @@ fn grazes(t: f64, field: FieldId) -> CallError {
         .found(format!("a line tangent to it at t = {t:.6} of the curve"))
         .help("project away from a point, along another direction, or from nearer to the surface")
         .in_field(field)
+}
+
+fn jumps(t: f64, field: FieldId) -> CallError {
+    CallError::new(
+        "grazing-projection",
+        "the projection jumps from one part of the surface to another",
+    )
+    .expected("a curve whose feet on the surface move continuously")
+    .found(format!(
+        "two feet at t = {t:.6} of the curve, beside a line where derivatives of the surface jump"
+    ))
+    .help("project along a direction or away from a point, or from nearer to the surface")
+    .in_field(field)
 }
 
 impl<T: Real> ProjectedPath<T> {
@@ -397,16 +427,93 @@ impl<T: Real> ProjectedPath<T> {
     fn derived(&self, q: [f64; 3], t: T, order: Order) -> Option<[[T; 3]; 3]> {
         match self.rays {
             None => {
-                let system =
-                    FootOnSurface { surface: &self.surface, point: &self.point, held: [None; 2] };
-                let all = two(&system, [q[0], q[1]], t, order)?;
-                Some(all.map(|[u, v]| [u, v, T::zero()]))
+                let mut all = self.foot(q, t)?;
+                if order == Order::Second {
+                    all[2] = self.foot_bend(t)?;
+                }
+                Some(all)
             }
             Some(rays) => {
                 let system = OnRay { surface: &self.surface, point: &self.point, rays };
                 jets(&system, q, t, order)
             }
         }
+    }
+
+    /// The foot and its rate.
+    fn foot(&self, [u, v, _]: [f64; 3], t: T) -> Option<[[T; 3]; 3]> {
+        let system = FootOnSurface { surface: &self.surface, point: &self.point, held: [None; 2] };
+        let all: [[T; 2]; 3] = jets(&system, [u, v], t, Order::First)?;
+        Some(all.map(|[u, v]| [u, v, T::zero()]))
+    }
+
+    /// The second derivative of the foot: that of the polynomial through the rates at five points on the smooth stretch
+    /// of the path.
+    fn foot_bend(&self, t: T) -> Option<[T; 3]> {
+        let breaks = self.breaks();
+        let next = breaks.partition_point(|b| *b <= t.re());
+        let from = if next == 0 { 0.0 } else { breaks[next - 1] };
+        let until = breaks.get(next).copied().unwrap_or(1.0);
+        let aside = ASIDE.min(1e-3 * (until - from));
+        let (low, high) = (from + aside, until - aside);
+        let step = FOOT_STEP.min((high - low) / 4.0);
+        let middle = t.re().clamp(low + 2.0 * step, high - 2.0 * step);
+        let weights = slope_weights((t.re() - middle) / step);
+        let mut bend = [T::zero(); 3];
+        for (k, weight) in weights.into_iter().enumerate() {
+            let at = t + (middle + (k as f64 - 2.0) * step - t.re());
+            let [_, rate, _] = self.foot(self.unknowns(at.re()), at)?;
+            for (sum, x) in bend.iter_mut().zip(rate) {
+                *sum += x * (weight / step);
+            }
+        }
+        Some(bend)
+    }
+
+    /// The parameters at which a derivative of the path up to the second may jump: breaks of the curve, and crossings with
+    /// lines of the surface. A foot is given by first derivatives of the surface, so that third ones count.
+    fn breaks(&self) -> &[f64] {
+        self.breaks.get_or_init(|| {
+            let own = match &self.point {
+                Moving::Curve(curve) => curve.breaks(),
+                Moving::Fixed(_) => Vec::new(),
+            };
+            let surface = &self.surface;
+            let lines = if self.rays.is_none() { surface.joints() } else { surface.breaks() };
+            let at = |t: f64| {
+                let ([u, v, _], _) = self.sought(t);
+                [u, v]
+            };
+            let closed = surface.closed();
+            let nodes: Vec<(f64, [f64; 2])> =
+                self.nodes.iter().map(|n| (n.t, [n.q[0], n.q[1]])).collect();
+            let mut all = super::on_surface::crossings(&lines, closed, &nodes, at);
+            for plane in surface.inner_planes() {
+                let inside = |w: [f64; 2]| (plane.place)(within(closed, w));
+                let nodes: Vec<_> = nodes.iter().map(|&(t, w)| (t, inside(w))).collect();
+                let at = |t: f64| inside(at(t));
+                all.extend(super::on_surface::crossings(&plane.joints, plane.closed, &nodes, at));
+            }
+            all.extend(own);
+            all.retain(|t| *t > BESIDE && *t < 1.0 - BESIDE);
+            all.sort_by(f64::total_cmp);
+            all.dedup_by(|next, kept| *next - *kept <= BESIDE);
+            all
+        })
+    }
+
+    /// A parameter at which the path of feet is not continuous: at a line of the surface the foot may end.
+    fn jump(&self) -> Option<f64> {
+        if self.rays.is_some() {
+            return None;
+        }
+        self.breaks().iter().copied().find(|t| {
+            let [a, b] = [-1.0, 1.0].map(|side| {
+                let ([u, v, _], _) = self.sought(t + side * BESIDE);
+                self.surface.jet(T::from(u), T::from(v), Order::Zero).p.re()
+            });
+            a.distance(b) > JUMP * self.size
+        })
     }
 
     /// The unknowns at plain `t` by the iteration, from the cubic of the nodes on both sides, which is
@@ -436,11 +543,13 @@ impl<T: Real> ProjectedPath<T> {
 
     fn unknowns(&self, t: f64) -> [f64; 3] {
         let table = self.table.get_or_init(|| {
-            let mut ends = vec![0.0];
+            let mut ends = vec![0.0, 1.0];
             if let Moving::Curve(curve) = &self.point {
                 ends.extend(curve.joints().into_iter().filter(|t| *t > 0.0 && *t < 1.0));
             }
-            ends.push(1.0);
+            ends.extend(self.breaks());
+            ends.sort_by(f64::total_cmp);
+            ends.dedup();
             let plain = PlainSurface(&*self.surface);
             Table::new(
                 &ends,
@@ -477,8 +586,17 @@ impl<T: Real> ProjectedPath<T> {
     }
 }
 
-fn two<T: Real, F: Implicit<T, 2>>(f: &F, q: [f64; 2], t: T, order: Order) -> Option<[[T; 2]; 3]> {
-    jets(f, q, t, order)
+/// The weights of values at -2, -1, 0, 1 and 2 in the derivative at `x` of the polynomial through them.
+fn slope_weights(x: f64) -> [f64; 5] {
+    let node = |k: usize| k as f64 - 2.0;
+    std::array::from_fn(|k| {
+        let others = || (0..5).filter(move |&m| m != k);
+        let without = |m: usize| {
+            let rest = others().filter(move |&n| n != m);
+            rest.map(|n| (x - node(n)) / (node(k) - node(n))).product::<f64>()
+        };
+        others().map(|m| without(m) / (node(k) - node(m))).sum()
+    })
 }
 
 /// X(t) = S(w(t)).
@@ -500,19 +618,8 @@ impl<T: Real> Curve<T> for Projected<T> {
         }
     }
 
-    /// Breaks of the curve, and crossings of the projection with those of the surface.
     fn breaks(&self) -> Vec<f64> {
-        let own = match &self.path.point {
-            Moving::Curve(curve) => curve.breaks(),
-            Moving::Fixed(_) => Vec::new(),
-        };
-        let nodes: Vec<(f64, [f64; 2])> =
-            self.path.nodes.iter().map(|n| (n.t, [n.q[0], n.q[1]])).collect();
-        let at = |t: f64| {
-            let w = self.path.run_on(T::from(t), Order::Zero)[0].re();
-            [w.x, w.y]
-        };
-        super::on_surface::crossings(&self.path.surface.breaks(), own, &nodes, at)
+        self.path.breaks().to_vec()
     }
 
     fn trace(&self) -> Trace<T> {

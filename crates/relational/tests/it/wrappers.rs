@@ -242,7 +242,7 @@ fn nested(lists: [&[f64]; 3], which: &str, wrong: &mut Vec<String>) {
     }
 }
 
-fn check_curve(curve: &CurveRef<f64>, orders: usize, random: &mut Random, wrong: &mut Vec<String>) {
+fn check_curve(curve: &CurveRef<f64>, random: &mut Random, wrong: &mut Vec<String>) {
     let (kinks, breaks, joints) = (curve.kinks(), curve.breaks(), curve.joints());
     nested([&kinks, &breaks, &joints], "lists", wrong);
     let ts: Vec<f64> = [0.0, 1.0].into_iter().chain((0..9).map(|_| random.unit())).collect();
@@ -259,20 +259,19 @@ fn check_curve(curve: &CurveRef<f64>, orders: usize, random: &mut Random, wrong:
         wrong.push("it is closed, and its ends differ".into());
     }
     let speed = curve.jet(0.37, Order::First)[1].norm();
-    for (order, stated) in [(1, &kinks), (2, &breaks)].into_iter().take(orders) {
+    for (order, stated) in [(1, &kinks), (2, &breaks)] {
         let f = |t: f64| curve.jet(t, Order::Second)[order];
         for t in beyond(&jumps(&f, speed, rounds(7, 61)), stated) {
             wrong.push(format!("derivative {order} jumps at {t}"));
         }
     }
-    difference(&|t| curve.jet(t, Order::Second), &breaks, orders, random, wrong);
+    difference(&|t| curve.jet(t, Order::Second), &breaks, random, wrong);
 }
 
 /// Derivatives against differences of points at a parameter away from breaks.
 fn difference(
     jet: &dyn Fn(f64) -> [Vec3; 3],
     breaks: &[f64],
-    orders: usize,
     random: &mut Random,
     wrong: &mut Vec<String>,
 ) {
@@ -282,7 +281,7 @@ fn difference(
         return;
     }
     let [before, here, after] = [t - h, t, t + h].map(jet);
-    for k in 0..orders {
+    for k in 0..2 {
         let found = (after[k] - before[k]) * (0.5 / h);
         // The error of the difference is h² / 6 times a third derivative, which differences bound.
         let bend = (after[k + 1] - here[k + 1] * 2.0 + before[k + 1]).norm();
@@ -389,7 +388,7 @@ fn check_lines(surface: &SurfaceRef<f64>, random: &mut Random, size: f64, wrong:
                 wrong.push(format!("derivative {order} jumps along {name} {from:?} {to:?} at {t}"));
             }
         }
-        difference(&jet, &breaks, 2, random, wrong);
+        difference(&jet, &breaks, random, wrong);
     }
 }
 
@@ -416,10 +415,7 @@ fn facts_and_batches_of_wrappers_agree_with_their_points() {
                 let mut found = Vec::new();
                 match &object.value {
                     Value::Curve(curve) => {
-                        // A projection may rest on a knuckle of its surface, and its second
-                        // derivative there is not that of its points: a known fault.
-                        let orders = if row.name == "ProjSnake" { 1 } else { 2 };
-                        check_curve(curve, orders, &mut random, &mut found);
+                        check_curve(curve, &mut random, &mut found);
                     }
                     Value::Surface(surface) => check_surface(surface, &mut random, &mut found),
                     _ => {}
