@@ -409,11 +409,14 @@ class Floating:
                 _add_misses(answer, off, images, water or 1.0)
             if sets or answer["open_edges"]:
                 answer["bounds"] = {}
+            if names or not answer["bounds"]:
+                answer["derivative_bounds"] = {}
             if water is None:
                 for name in massive:
                     answer.pop(name, None)
                     answer["derivatives"].pop(name, None)
                     answer["bounds"].pop(name, None)
+                    answer["derivative_bounds"].pop(name, None)
             answer["units"] = units if density is None else units.complete()
             answer["accuracy"] = accuracy
             # The core multiplies masses by gravity in the model's own units.
@@ -423,8 +426,9 @@ class Floating:
                     answer[name] *= force
                     if name in answer["bounds"]:
                         answer["bounds"][name] *= force
-                    for by_name in answer["derivatives"].get(name, {}):
-                        answer["derivatives"][name][by_name] *= force
+                    for key in ("derivatives", "derivative_bounds"):
+                        for by_name in answer[key].get(name, {}):
+                            answer[key][name][by_name] *= force
         return [Hydrostatics(**answer) for answer in answers]
 
     @property

@@ -232,6 +232,9 @@ class Hydrostatics:
     """
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, for the requested parameters."""
+    derivative_bounds: dict[str, dict[str, float]] = field(default_factory=dict)
+    """Estimates of the errors of :attr:`derivatives`: the difference from those of cells for a
+    hundredfold ``accuracy``, and ``accuracy`` as a share. Empty where ``bounds`` is."""
 
     @property
     def floods(self) -> bool:
@@ -286,6 +289,8 @@ class Hydrostatics:
         del kept["units"]
         if not self.derivatives:
             del kept["derivatives"]
+        if not self.derivative_bounds:
+            del kept["derivative_bounds"]
         if not self.on_triangles:
             del kept["on_triangles"]
         if not self.faceted:
@@ -435,10 +440,11 @@ class Hydrostatics:
                 changed[name] = value * self.units.factor(name, to)
         scale = {name: self.units.factor(name, to) for name in self.bounds}
         changed["bounds"] = {name: bound * scale[name] for name, bound in self.bounds.items()}
-        changed["derivatives"] = {
-            name: {by: x * self.units.factor(name, to) for by, x in row.items()}
-            for name, row in self.derivatives.items()
-        }
+        for key in ("derivatives", "derivative_bounds"):
+            changed[key] = {
+                name: {by: x * self.units.factor(name, to) for by, x in row.items()}
+                for name, row in getattr(self, key).items()
+            }
         mine = self.units
         changed["units"] = Units(
             to.length or mine.length, to.mass or mine.mass, to.force or mine.force, mine.angle
@@ -449,7 +455,16 @@ class Hydrostatics:
 _NUMBERS = [
     f.name
     for f in fields(Hydrostatics)
-    if f.name not in ("sides", "status", "derivatives", "bounds", "units", "accuracy")
+    if f.name
+    not in (
+        "sides",
+        "status",
+        "derivatives",
+        "derivative_bounds",
+        "bounds",
+        "units",
+        "accuracy",
+    )
 ]
 
 

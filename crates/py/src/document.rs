@@ -888,17 +888,20 @@ fn float_facts<'py>(
         bounds.set_item(name, bound)?;
     }
     dict.set_item("bounds", bounds)?;
-    let derivatives = PyDict::new(py);
-    if !by.is_empty() {
-        for ((name, _), row) in answer.figures.iter().zip(&answer.derivatives) {
+    for (key, rows) in
+        [("derivatives", &answer.derivatives), ("derivative_bounds", &answer.derivative_bounds)]
+    {
+        let all = PyDict::new(py);
+        let rows = answer.figures.iter().zip(rows).filter(|_| !by.is_empty());
+        for ((name, _), row) in rows {
             let one = PyDict::new(py);
             for (parameter, slope) in by.iter().zip(row) {
                 one.set_item(parameter, slope + 0.0)?;
             }
-            derivatives.set_item(name, one)?;
+            all.set_item(name, one)?;
         }
+        dict.set_item(key, all)?;
     }
-    dict.set_item("derivatives", derivatives)?;
     Ok(dict)
 }
 

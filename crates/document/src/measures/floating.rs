@@ -67,6 +67,9 @@ pub struct FlotationOptions {
     pub accuracy: f64,
 }
 
+/// Accuracy of the cells that bound the errors of derivatives, relative to that of the figures.
+const COARSER: f64 = 100.0;
+
 /// One answer: figures by name, and the state of the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatAnswer {
@@ -74,6 +77,8 @@ pub struct FloatAnswer {
     pub figures: Vec<(&'static str, f64)>,
     /// Derivatives of each figure with respect to the requested parameters.
     pub derivatives: Vec<Vec<f64>>,
+    /// Estimates of the errors of these, from coarser cells; empty where water enters.
+    pub derivative_bounds: Vec<Vec<f64>>,
     /// Bounds of the errors of the main figures, by name.
     pub bounds: Vec<(&'static str, f64)>,
     /// `given`, `converged` or `not-converged`.
@@ -132,18 +137,36 @@ impl Document {
         self.passes(by, |document, evaluation, count| {
             let panelled = document.panelled().map_err(|d| vec![d])?;
             let graph = &evaluation.graph;
-            let body = bodied.skin.body(&panelled.panelling, graph, options.accuracy);
-            let body: Body<Dual4> = body.ok_or_else(|| vec![not_finite()])?;
             let carried = document.carried(graph, options)?;
-            let all = self::answers(&body, &symmetry, requests, options, carried, &budget)?;
-            for (answer, solved) in answers.iter_mut().zip(all) {
+            let all = |accuracy: f64| {
+                let body = bodied.skin.body(&panelled.panelling, graph, accuracy);
+                let body: Body<Dual4> = body.ok_or_else(|| vec![not_finite()])?;
+                self::answers(&body, &symmetry, requests, options, carried, &budget)
+            };
+            let rough = all(COARSER * options.accuracy)?;
+            for ((answer, solved), rough) in
+                answers.iter_mut().zip(all(options.accuracy)?).zip(rough)
+            {
                 let figures = solved.map_err(cannot_float)?.0.flotation.figures();
-                for (column, (_, x)) in answer.derivatives.iter_mut().zip(figures) {
+                // Coarser cells that do not float tell nothing.
+                let rough = rough.map_or_else(|_| Vec::new(), |s| s.0.flotation.figures());
+                let columns = answer.derivatives.iter_mut().zip(&mut answer.derivative_bounds);
+                for ((column, bounds), (name, x)) in columns.zip(figures) {
                     column.extend((0..count).map(|k| x.eps[k]));
+                    let other = rough.iter().find(|(other, _)| *other == name);
+                    bounds.extend((0..count).map(|k| match other {
+                        Some((_, y)) => {
+                            (x.eps[k] - y.eps[k]).abs() + options.accuracy * x.eps[k].abs()
+                        }
+                        None => f64::INFINITY,
+                    }));
                 }
             }
             Ok(())
         })?;
+        for answer in answers.iter_mut().filter(|a| a.open_edges > 0) {
+            answer.derivative_bounds.clear();
+        }
         Ok(answers)
     }
 }
@@ -305,6 +328,7 @@ fn answer((solved, sought, sides): &(Equilibrium<f64>, bool, &'static str)) -> F
     let figures = solved.flotation.figures();
     FloatAnswer {
         derivatives: vec![Vec::new(); figures.len()],
+        derivative_bounds: vec![Vec::new(); figures.len()],
         figures,
         status: match (sought, solved.status) {
             (false, _) => "given",
