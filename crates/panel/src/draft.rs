@@ -1,7 +1,7 @@
 //! Participants of a panelling: visible surfaces, hidden originals of images, borders of sheets.
 
 use crate::border_curves::{self, BorderCounts};
-use crate::knuckles::knuckles;
+use crate::knuckles::Knuckles;
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Fineness, Order, SurfJet};
@@ -44,19 +44,19 @@ pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
     at.head.own_divisions()
 }
 
-/// The parameters u and v of the knuckles of a surface.
-pub(crate) type Knuckles = Arc<[Vec<f64>; 2]>;
+/// The knuckles of a surface, which its images share.
+pub(crate) type SharedKnuckles = Arc<Knuckles>;
 
 /// The knuckles of surfaces; an image breaks where its original does.
 struct KnuckleFinder<'g> {
     graph: &'g Graph<f64>,
     /// Those of an earlier state, with the graph's last change at that time.
-    before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
-    found: HashMap<Key, Knuckles>,
+    before: Option<(&'g HashMap<Key, SharedKnuckles>, u64)>,
+    found: HashMap<Key, SharedKnuckles>,
 }
 
 impl<'g> KnuckleFinder<'g> {
-    fn of(&mut self, object: &'g Object<f64>, surface: &SurfaceRef<f64>) -> Knuckles {
+    fn of(&mut self, object: &'g Object<f64>, surface: &SurfaceRef<f64>) -> SharedKnuckles {
         // Down to the surface that is no image; a ring of images ends where it began.
         let (mut at, mut shape, mut steps) = (object, surface, 0);
         while let Some((key, _)) = shape.image_of()
@@ -71,7 +71,7 @@ impl<'g> KnuckleFinder<'g> {
         }
         let earlier = self.before.filter(|(_, clock)| at.changed_at <= *clock);
         let earlier = earlier.and_then(|(known, _)| known.get(&at.key));
-        let made = earlier.cloned().unwrap_or_else(|| Arc::new(knuckles(&**shape)));
+        let made = earlier.cloned().unwrap_or_else(|| Arc::new(Knuckles::of(&**shape)));
         self.found.insert(at.key, made.clone());
         made
     }
@@ -83,8 +83,7 @@ pub(crate) struct Draft<'g> {
     pub surface: SurfaceRef<f64>,
     pub border_curve: Option<BorderCounts>,
     pub edges: Edges<f64>,
-    /// The parameters u and v of its knuckles.
-    pub knuckles: Knuckles,
+    pub knuckles: SharedKnuckles,
     /// The draft of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
     /// False for a hidden surface with a visible image.
@@ -131,7 +130,7 @@ impl Draft<'_> {
 /// When the accuracy takes too many triangles.
 pub(crate) fn drafts<'g>(
     graph: &'g Graph<f64>,
-    before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
+    before: Option<(&'g HashMap<Key, SharedKnuckles>, u64)>,
     fineness: Option<&Fineness>,
 ) -> Result<Vec<Draft<'g>>, CallError> {
     let mut drafts: Vec<Draft> = Vec::new();

@@ -1,8 +1,10 @@
 //! Parameters of a patch's divisions: along each edge separately, so that points marked by
 //! neighbours are among them, and between the edges along straight lines of the parameter square.
 
+use crate::conformal::conform;
 use crate::identity::on_part;
 use crate::roots::{AliasId, EdgeParameter, MarkSource, on_its_root, pieces};
+use crate::topology::PatchTopology;
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_parallel::prelude::*;
@@ -49,9 +51,8 @@ pub(crate) trait PatchLookup<T: Real> {
     fn point(&self, key: Key) -> Option<&Point<T>>;
     /// The parameters, on its representative, of the ends of a root with that alias.
     fn alias_ends(&self, alias: AliasId) -> Option<[T; 2]>;
-    /// The derivatives of the parameter of a knuckle along u (0) or v (1) of a draft, with a real
-    /// part of 0.
-    fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T>;
+    /// The derivatives of the parameter of a knuckle on edge `k` of a draft, with a real part of 0.
+    fn knuckle_rate(&self, draft: u32, k: usize, at: f64) -> Option<T>;
 }
 
 /// The parameters of the divisions of edge `k` of a draft, from 0 to 1.
@@ -135,7 +136,7 @@ fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Optio
                 T::from(share)
             } else {
                 let at = begin.re() + reach.re() * share;
-                let moved = places.knuckle_rate(draft, k % 2, at)? - begin - reach * share;
+                let moved = places.knuckle_rate(draft, k, at)? - begin - reach * share;
                 let moved = moved / reach;
                 moved - moved.re() + share
             };
@@ -144,18 +145,20 @@ fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Optio
     }
 }
 
-/// The points of a patch whose edges have their divisions at `edges`; that of (i, j) at
-/// `[i * (nv + 1) + j]`.
-pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4]) -> Vec<Vec3<T>> {
-    let mut points = vec![Vec3::zero(); edges[0].len() * edges[3].len()];
-    match PatchParameters::of(edges) {
-        PatchParameters::Grid(us, vs) => surface.grid(&us, &vs, &mut points, None),
+/// The points of a patch; that of (i, j) at `[i * (nv + 1) + j]`.
+pub(crate) fn evaluated<T: Scalar>(
+    surface: &SurfaceRef<T>,
+    parameters: &PatchParameters<T>,
+) -> Vec<Vec3<T>> {
+    let mut points = vec![Vec3::zero(); parameters.count()];
+    match parameters {
+        PatchParameters::Grid(us, vs) => surface.grid(us, vs, &mut points, None),
         PatchParameters::Fixed(uv) => {
             // In chunks on all threads: one patch may be most of a model.
             let parts = points.par_chunks_mut(PART).zip(uv.par_chunks(PART));
             parts.for_each(|(points, uv)| surface.scattered(uv, points));
         }
-        PatchParameters::Moving(uv) => at_moving(surface, &uv, &mut points),
+        PatchParameters::Moving(uv) => at_moving(surface, uv, &mut points),
     }
     points
 }
@@ -164,7 +167,7 @@ pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
 /// the index of its first.
 pub(crate) fn evaluated_in_parts<T: Scalar>(
     surface: &SurfaceRef<T>,
-    edges: &[Vec<T>; 4],
+    parameters: &PatchParameters<T>,
     most: usize,
     wanted: impl Fn(Range<usize>) -> bool,
     mut each: impl FnMut(usize, &[Vec3<T>]),
@@ -177,13 +180,13 @@ pub(crate) fn evaluated_in_parts<T: Scalar>(
             each(range.start, &points);
         }
     };
-    match PatchParameters::of(edges) {
+    match parameters {
         PatchParameters::Grid(us, vs) => {
             let (rows, nv) = ((most / vs.len()).max(1), vs.len());
             for (k, us) in us.chunks(rows).enumerate() {
                 let first = k * rows * nv;
                 let range = first..first + us.len() * nv;
-                part(range, &|points| surface.grid(us, &vs, points, None));
+                part(range, &|points| surface.grid(us, vs, points, None));
             }
         }
         PatchParameters::Fixed(uv) => {
@@ -202,7 +205,7 @@ pub(crate) fn evaluated_in_parts<T: Scalar>(
 }
 
 /// The parameters of the points of a patch.
-enum PatchParameters<T> {
+pub(crate) enum PatchParameters<T> {
     /// All u with all v.
     Grid(Vec<f64>, Vec<f64>),
     /// Pairs that no parameter of the model moves.
@@ -212,18 +215,27 @@ enum PatchParameters<T> {
 }
 
 impl<T: Scalar> PatchParameters<T> {
-    fn of(edges: &[Vec<T>; 4]) -> Self {
+    /// Those of a patch whose edges have their divisions at `edges`.
+    pub fn of(surface: &SurfaceRef<T>, frame: &PatchTopology, edges: &[Vec<T>; 4]) -> Self {
         let [south, east, north, west] = edges;
         let even =
             |a: &[T], b: &[T]| a.iter().zip(b).all(|(x, y)| x.bits_eq(*y) && x.is_constant());
-        if even(south, north) && even(west, east) {
+        if !frame.conformal && even(south, north) && even(west, east) {
             let real = |x: &[T]| x.iter().map(|t| t.re()).collect::<Vec<f64>>();
             return Self::Grid(real(south), real(west));
         }
-        let uv = parameters(edges);
+        let uv = net(surface, frame, edges);
         match uv.iter().flatten().all(|x| x.is_constant()) {
             true => Self::Fixed(uv.iter().map(|p| p.map(T::re)).collect()),
             false => Self::Moving(uv),
+        }
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Self::Grid(us, vs) => us.len() * vs.len(),
+            Self::Fixed(uv) => uv.len(),
+            Self::Moving(uv) => uv.len(),
         }
     }
 }
@@ -234,7 +246,22 @@ fn at_moving<T: Scalar>(surface: &SurfaceRef<T>, uv: &[[T; 2]], points: &mut [Ve
     }
 }
 
-/// The parameters of the points of a patch whose edges have their divisions at `edges`.
+/// The parameters of the points of a patch whose edges have their divisions at `edges`: of the net of straight lines between
+/// these, or one with knuckles as rows.
+pub(crate) fn net<T: Scalar>(
+    surface: &SurfaceRef<T>,
+    frame: &PatchTopology,
+    edges: &[Vec<T>; 4],
+) -> Vec<[T; 2]> {
+    let mut uv = parameters(edges);
+    if let Some(knuckles) = frame.knuckles.as_deref().filter(|_| frame.conformal) {
+        // A net that is not displaced is that of straight lines.
+        let _ = conform(surface, knuckles, edges, &mut uv);
+    }
+    uv
+}
+
+/// The parameters of the points of the net of straight lines.
 pub(crate) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> Vec<[T; 2]> {
     let mut uv = Vec::with_capacity(south.len() * west.len());
     for i in 0..south.len() {

@@ -12,6 +12,7 @@
 
 mod blocks;
 mod border_curves;
+mod conformal;
 mod contour;
 mod contour_integrals;
 mod counts;

@@ -97,6 +97,8 @@ pub enum PanelNote {
         uv: [f64; 2],
         /// Position.
         at: Vec3,
+        /// The area of the panels and that of the surface.
+        area: Option<[f64; 2]>,
     },
     /// Panels are farther from their surface than the tolerance.
     Coarse {
@@ -294,11 +296,18 @@ impl std::fmt::Display for PanelNote {
                     counts.join(" + ")
                 )
             }
-            PanelNote::Knuckle { patch, uv: [u, v], at } => write!(
-                f,
-                "a knuckle runs across the panels of `{patch}` at (u, v) = ({u:.6}, {v:.6}), ({}, {}, {}): they cut it off",
-                at.x, at.y, at.z
-            ),
+            PanelNote::Knuckle { patch, uv: [u, v], at, area } => {
+                write!(
+                    f,
+                    "a knuckle runs across the panels of `{patch}` at (u, v) = ({u:.6}, {v:.6}), ({}, {}, {}): they cut it off",
+                    at.x, at.y, at.z
+                )?;
+                let Some([panels, surface]) = area else { return Ok(()) };
+                write!(
+                    f,
+                    "; the area of the panels is {panels:.9}, that of the surface {surface:.9}"
+                )
+            }
             PanelNote::Coarse { patch, distance, tolerance } => write!(
                 f,
                 "panels of `{patch}` are {distance:.2e} from the surface, farther than the tolerance {tolerance:.2e}"

@@ -9,18 +9,19 @@
 //! the same stretch, or at the same point object ([`crate::join`]); never by proximity. The
 //! position of a shared vertex is computed once, by the first patch in the order of declaration.
 
-use crate::draft::{Draft, Knuckles, drafts, indices};
-use crate::edges::{self, EdgePlan, along_edge};
+use crate::conformal::{conform, is_sound};
+use crate::draft::{Draft, SharedKnuckles, drafts, indices};
+use crate::edges::{EdgePlan, along_edge, net, parameters};
 use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
-use crate::knuckles::knuckle_across;
 use crate::notes::PanelNote;
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
 use crate::triangle_bodies::{self, MeshedBody};
 use moldloft_budget::Spent;
-use moldloft_mesh::{Mesh, Topology};
+use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
+use moldloft_mesh::{Mesh, Panel, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
 use moldloft_num::{Box3, Fineness, Order, Real, Vec3};
@@ -87,7 +88,7 @@ pub struct Panelling {
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<PanelNote>,
     measured: bool,
-    knuckles: HashMap<Key, Knuckles>,
+    knuckles: HashMap<Key, SharedKnuckles>,
     /// The graph's last change at that time.
     clock: u64,
 }
@@ -180,9 +181,8 @@ impl Panelling {
         let identities = Identities::new(graph, &drafts);
         identities.collapse(&mut drafts);
         let roots = RootTable::new(graph, &drafts, identities);
-        let made = topology::solve(graph, roots, &drafts, nominal);
-        let across = drafts.iter().filter(|d| d.meshed && d.border_curve.is_none());
-        let across: Vec<PanelNote> = across.filter_map(knuckle_note).collect();
+        let mut made = topology::solve(graph, roots, &drafts, nominal);
+        let cut_off = settle_nets(graph, &mut made.structure, &drafts);
         let knuckles = drafts.iter().filter(|d| d.border_curve.is_none());
         let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
@@ -232,7 +232,9 @@ impl Panelling {
             }
         };
         let mut remarks = made.remarks;
-        remarks.extend(across);
+        remarks.extend(cut_off.into_iter().map(|(patch, uv)| {
+            knuckle_note(&drafts[patch], structure.patches[patch].divisions, &points[patch], uv)
+        }));
         remarks.extend(joined.apart(&structure, &points, size.diagonal()));
         {
             let known = if bodies.iter().any(MeshedBody::has_border) {
@@ -326,7 +328,9 @@ impl Panelling {
             .map(|patch| {
                 let edge = |k: usize| along_edge(k, patch as u32, &known);
                 let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
-                Some((known.surfaces[patch].clone()?, edges::parameters(&edges)))
+                let surface = known.surfaces[patch].clone()?;
+                let uv = net(&surface, &self.structure.patches[patch], &edges);
+                Some((surface, uv))
             })
             .collect()
     }
@@ -392,11 +396,52 @@ impl Panelling {
     }
 }
 
-/// The note about a patch whose panels are crossed by a knuckle.
-fn knuckle_note(draft: &Draft<'_>) -> Option<PanelNote> {
-    let [u, v] = knuckle_across(&*draft.surface, &draft.knuckles)?;
-    let at = draft.surface.jet(u, v, Order::Zero).p;
-    Some(PanelNote::Knuckle { patch: draft.object.name.to_string(), uv: [u, v], at })
+/// Leaves the nets with knuckles as rows that have no folds. Patches of which a knuckle is no row, each with a point of it.
+fn settle_nets(
+    graph: &Graph<f64>,
+    structure: &mut PanelTopology,
+    drafts: &[Draft<'_>],
+) -> Vec<(usize, [f64; 2])> {
+    let unsound: Vec<usize> = if structure.patches.iter().any(|frame| frame.conformal) {
+        let names = names(graph, structure);
+        let known = PatchValues::new(graph, structure, &names);
+        let sound = |patch: usize, frame: &PatchTopology| {
+            let edge = |k: usize| along_edge(k, patch as u32, &known);
+            let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+            let mut uv = parameters(&edges);
+            conform(known.surfaces[patch].as_ref()?, frame.knuckles.as_deref()?, &edges, &mut uv)?;
+            is_sound(frame.divisions, &uv).then_some(())
+        };
+        let patches = structure.patches.iter().enumerate();
+        let nets = patches.filter(|(_, frame)| frame.conformal);
+        nets.filter(|(patch, frame)| sound(*patch, frame).is_none()).map(|(k, _)| k).collect()
+    } else {
+        Vec::new()
+    };
+    unsound.iter().for_each(|&patch| structure.patches[patch].conformal = false);
+    let meshed = drafts.iter().enumerate().filter(|(_, d)| d.meshed && d.border_curve.is_none());
+    let cut_off = meshed.filter_map(|(patch, draft)| {
+        let line = unsound.contains(&patch).then(|| draft.knuckles.across.first()).flatten();
+        let place = draft.knuckles.loose.or(line.map(|line| line.middle()))?;
+        Some((patch, place))
+    });
+    cut_off.collect()
+}
+
+/// The note about a patch of which a knuckle is no row.
+fn knuckle_note(
+    draft: &Draft<'_>,
+    [nu, nv]: [usize; 2],
+    points: &[Vec3],
+    uv: [f64; 2],
+) -> PanelNote {
+    let at = draft.surface.jet(uv[0], uv[1], Order::Zero).p;
+    let corners = (0..nu).flat_map(|i| (0..nv).map(move |j| i * (nv + 1) + j));
+    let corners = corners.map(|k| [k, k + nv + 1, k + nv + 2, k + 1]);
+    let panels = corners.map(|c| Panel::Quad(c.map(|k| points[k])).area()).sum();
+    let surface = surface_measures(&*draft.surface, USUAL_ACCURACY);
+    let area = surface.map(|measures| [panels, measures.area]);
+    PanelNote::Knuckle { patch: draft.object.name.to_string(), uv, at, area }
 }
 
 /// The parts of patches that are in a coordinate plane except for rounding.

@@ -3,9 +3,9 @@
 
 use crate::border_curves;
 use crate::draft::surface_of;
-use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
+use crate::edges::{EdgePlan, PatchLookup, PatchParameters, along_edge, evaluated};
 use crate::identity::{AliasStep, PartEnd, on_part};
-use crate::knuckles::ASIDE;
+use crate::knuckles::{ASIDE, rate_across};
 use crate::roots::{AliasId, EdgeParameter, MarkSource, on_its_root};
 use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_model::Graph;
@@ -38,7 +38,8 @@ pub(crate) fn evaluated_all<T: Scalar>(
         }
         let edge = |k: usize| along_edge(k, patch as u32, &known);
         let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
-        Some(Arc::new(evaluated(surface, &edges)))
+        let parameters = PatchParameters::of(surface, &structure.patches[patch], &edges);
+        Some(Arc::new(evaluated(surface, &parameters)))
     };
     let count = structure.patches.len();
     let points = |f: &PatchTopology| (f.divisions[0] + 1) * (f.divisions[1] + 1);
@@ -177,8 +178,18 @@ impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
         Some(ends)
     }
 
-    fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T> {
+    fn knuckle_rate(&self, draft: u32, k: usize, at: f64) -> Option<T> {
         let surface = self.surfaces[draft as usize].as_ref()?;
-        Some(crease_rate(&**surface, along, at, [ASIDE; 2]))
+        let knuckles = self.structure.patches[draft as usize].knuckles.as_deref();
+        if !knuckles.is_some_and(|knuckles| knuckles.is_across(k, at)) {
+            return Some(crease_rate(&**surface, k % 2, at, [ASIDE; 2]));
+        }
+        let across = if k == 1 || k == 2 { 1.0 } else { 0.0 };
+        let (place, along) = if k.is_multiple_of(2) {
+            ([at, across], [1.0, 0.0])
+        } else {
+            ([across, at], [0.0, 1.0])
+        };
+        Some(rate_across(&**surface, place.map(T::from), along.map(T::from)))
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! So a tape holds the graph, and of the vertices a few thousand at a time.
 
-use crate::edges::{along_edge, evaluated_in_parts};
+use crate::edges::{PatchParameters, along_edge, evaluated_in_parts};
 use crate::panelling::Panelling;
 use crate::patch_values::PatchValues;
 use moldloft_model::Graph;
@@ -31,14 +31,17 @@ impl Panelling {
         }
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let owned = self.owned(weights);
-        let edges = |patch: usize| {
+        let parameters = |patch: usize| {
             let edge = |k: usize| along_edge(k, patch as u32, &known);
-            Some([edge(0)?, edge(1)?, edge(2)?, edge(3)?])
+            let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+            let surface = known.surfaces[patch].as_ref()?;
+            Some(PatchParameters::of(surface, &self.structure.patches[patch], &edges))
         };
         // Marks on edges are nodes that several parts of a patch refer to.
-        let edges: Option<Vec<_>> = owned.iter().map(|(patch, _)| edges(*patch)).collect();
+        let parameters: Option<Vec<_>> =
+            owned.iter().map(|(patch, _)| parameters(*patch)).collect();
         DerivativeTape::keep();
-        for ((patch, owned), edges) in owned.iter().zip(edges?) {
+        for ((patch, owned), parameters) in owned.iter().zip(parameters?) {
             graph.budget().poll().ok()?;
             let plain = self.own_points(*patch);
             let of = |range: Range<usize>| {
@@ -48,7 +51,7 @@ impl Panelling {
             let mut same = true;
             let wanted = |range: Range<usize>| !of(range).is_empty();
             let surface = known.surfaces[*patch].as_ref()?;
-            evaluated_in_parts(surface, &edges, PART, wanted, |first, points| {
+            evaluated_in_parts(surface, &parameters, PART, wanted, |first, points| {
                 same &= points.iter().zip(&plain[first..]).all(|(p, plain)| p.re() == *plain);
                 for (weights, adjoints) in weights.iter().zip(adjoints.iter_mut()) {
                     for &(at, vertex) in of(first..first + points.len()) {

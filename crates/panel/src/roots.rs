@@ -132,7 +132,7 @@ impl RootTable {
                         raw.push(RawMark { root, t: mark.t + 0.0, point: mark.point, source });
                     }
                 }
-                for &at in &draft.knuckles[k % 2] {
+                for at in draft.knuckles.on_edge(k) {
                     let Some((p, share)) = share_of(&pieces, at) else { continue };
                     let (piece, alias) = all.identities.piece(&pieces[p]);
                     let alias = all.alias_id(alias);

@@ -5,6 +5,7 @@ use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
 use crate::edges::{DivisionRun, EdgePlan, Shares, reversed, shares_of};
 use crate::identity::Alias;
+use crate::knuckles::Knuckles;
 use crate::notes::{ChainStep, PanelNote};
 use crate::roots::{EdgeInterval, EdgeParameter, IntervalId, RootTable};
 use moldloft_model::Graph;
@@ -71,6 +72,10 @@ pub(crate) struct PatchTopology {
     pub corners: [Option<Key>; 4],
     /// The patch of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
+    /// Its knuckles, if some are those of the whole that cross it.
+    pub knuckles: Option<Arc<Knuckles>>,
+    /// True if these are rows.
+    pub conformal: bool,
     /// True if its panels are opposite to its natural normal, by the declaration of its surface.
     pub reversed: bool,
     /// False for a hidden surface with a visible image, and for a hem.
@@ -219,7 +224,7 @@ impl TopologySolver<'_, '_> {
                     self.link(whole, side(patch, usize::from(other) % 2), false);
                 }
                 let Some(spans) = &self.spans[patch][k] else { continue };
-                if !self.drafts[patch].knuckles[k % 2].is_empty() {
+                if !self.drafts[patch].knuckles.rows(k % 2).is_empty() {
                     self.state_stretches(patch, k);
                     continue;
                 }
@@ -284,12 +289,12 @@ impl TopologySolver<'_, '_> {
     /// add up to the count of the patch, and the intervals of an edge in each of them to its count.
     fn state_stretches(&mut self, patch: usize, k: usize) {
         let direction = k % 2;
-        let knuckles = &self.drafts[patch].knuckles[direction];
+        let knuckles = self.drafts[patch].knuckles.rows(direction);
         if self.stretches[patch][direction].is_empty() {
             let nodes: Vec<Node> =
                 (0..=knuckles.len()).map(|_| self.divider.node(None, None)).collect();
             let mut ends = vec![0.0];
-            ends.extend(knuckles);
+            ends.extend(knuckles.iter().map(|[a, b]| 0.5 * (a + b)));
             ends.push(1.0);
             let sides = if direction == 0 { [0, 2] } else { [3, 1] };
             // Pieces divide by length. Within one curve, equal steps of the parameter are kept.
@@ -308,7 +313,7 @@ impl TopologySolver<'_, '_> {
         for (span, stop) in spans.iter().zip(stops.windows(2)) {
             let Some(interval) = span.interval else { continue };
             let middle = 0.5 * (stop[0] + stop[1]);
-            let at = knuckles.partition_point(|&b| b <= middle);
+            let at = knuckles.partition_point(|row| row[usize::from(k == 1 || k == 2)] <= middle);
             within[at].push((interval, span.backwards, [stop[0], stop[1]]));
         }
         for (at, intervals) in within.into_iter().enumerate() {
@@ -608,6 +613,7 @@ impl TopologySolver<'_, '_> {
                     }
                 }
             }
+            let across = !draft.knuckles.across.is_empty();
             patches.push(PatchTopology {
                 key: draft.object.key,
                 name: draft.object.name.clone(),
@@ -619,6 +625,8 @@ impl TopologySolver<'_, '_> {
                 plans,
                 corners: draft.edges.corners.map(|c| c.map(|c| self.roots.point(c))),
                 image: draft.image,
+                knuckles: across.then(|| draft.knuckles.clone()),
+                conformal: across,
                 reversed: draft.reversed,
                 meshed: draft.meshed,
                 border_curve: draft.border_curve.as_ref().map(|h| h.index),
