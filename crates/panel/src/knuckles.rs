@@ -348,7 +348,7 @@ fn edge_at([u, v]: [f64; 2]) -> Option<(u8, f64)> {
 }
 
 /// An edge of a grid of samples: from node (i, j) along u or v.
-type GridEdge = (usize, usize, bool);
+type SampleEdge = (usize, usize, bool);
 
 /// Places of an inner plane at a grid of points of the part.
 struct SampleGrid {
@@ -398,7 +398,7 @@ impl SampleGrid {
     ) -> (Vec<Vec<[f64; 2]>>, Option<[f64; 2]>) {
         let below = self.below(axis, at);
         let side = |i: usize, j: usize| below[i * (STEPS + 1) + j];
-        let mut crossings: BTreeMap<GridEdge, [f64; 2]> = BTreeMap::new();
+        let mut crossings: BTreeMap<SampleEdge, [f64; 2]> = BTreeMap::new();
         for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
             for (along_u, next) in [(true, [i + 1, j]), (false, [i, j + 1])] {
                 if next[0] > STEPS || next[1] > STEPS || side(i, j) == side(next[0], next[1]) {
@@ -420,9 +420,9 @@ impl SampleGrid {
 }
 
 /// Crossings of grid edges as chains from border to border, and a point of what is none.
-fn linked(crossings: &BTreeMap<GridEdge, [f64; 2]>) -> (Vec<Vec<[f64; 2]>>, Option<[f64; 2]>) {
+fn linked(crossings: &BTreeMap<SampleEdge, [f64; 2]>) -> (Vec<Vec<[f64; 2]>>, Option<[f64; 2]>) {
     // The cells beside an edge, by their lowest node.
-    let cells = |&(i, j, along_u): &GridEdge| {
+    let cells = |&(i, j, along_u): &SampleEdge| {
         let before = if along_u { (i, j.wrapping_sub(1)) } else { (i.wrapping_sub(1), j) };
         [before, (i, j)].into_iter().filter(|&(i, j)| i < STEPS && j < STEPS)
     };
@@ -431,7 +431,7 @@ fn linked(crossings: &BTreeMap<GridEdge, [f64; 2]>) -> (Vec<Vec<[f64; 2]>>, Opti
         edges.into_iter().filter(move |e| crossings.contains_key(e))
     };
     let (mut chains, mut lost) = (Vec::new(), None);
-    let mut seen: HashSet<GridEdge> = HashSet::new();
+    let mut seen: HashSet<SampleEdge> = HashSet::new();
     for first in crossings.keys().filter(|e| cells(e).count() == 1) {
         if !seen.insert(*first) {
             continue;
