@@ -325,5 +325,5 @@ def test_nothing_is_lost_beside_stalled_pages_when_the_server_is_killed(
             for connection in stalled:
                 connection.close()
         again = Hub(path)
-        assert again.text == accepted
-        again.draft.close(keep=False)
+        assert again.main.text == accepted
+        again.main.draft.close(keep=False)
