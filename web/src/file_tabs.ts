@@ -169,6 +169,7 @@ export class FileTabs {
     const files = [...new Set(['', ...model.files, ...this.sheets.keys()])]
     const focus = this.element.contains(document.activeElement)
     this.element.hidden = this.link.local || files.length < 2
+    if (this.element.hidden) return this.element.replaceChildren()
     const faulty = new Set(model.faults.filter((f) => f.severity === 'error' && f.file).map((f) => f.file))
     this.element.replaceChildren(
       ...files.map((file) => {
