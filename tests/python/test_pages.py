@@ -371,8 +371,9 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     drawn = runpy.run_path(str(DOCS / "pictures.py"))
     names = {f"{name}.png" for kind in ("MODELS", "PLOTS", "STUDIES") for name in drawn[kind]}
     names.add("deformation.png")
-    desk = (DOCS / "desk_pictures.py").read_text(encoding="utf-8")
-    names |= {f"{name}.png" for name in re.findall(r'picture\(page, "([\w-]+)"\)', desk)}
+    for script in ("desk_pictures.py", "making_pictures.py"):
+        text = (DOCS / script).read_text(encoding="utf-8")
+        names |= {f"{name}.png" for name in re.findall(r'picture\(page, "([\w-]+)"\)', text)}
     for folder in ("implicit", "sketch"):
         script = (ROOT / "examples" / folder / "pictures.py").read_text(encoding="utf-8")
         stems = {path.stem for path in (ROOT / "examples" / folder).glob("*.s*")}

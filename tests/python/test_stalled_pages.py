@@ -165,7 +165,7 @@ def test_no_page_waits_for_another(
             for k in range(40):
                 assert (await page.append(f"# edit {k} {'z' * 20_000}"))["ok"]
                 await page.ask("set", values={"w": 1 + k / 40})
-            assert json.loads(hub.draft.path.read_text())["text"] == page.text
+            assert json.loads(hub.main.draft.path.read_text())["text"] == page.text
             assert (await page.ask("save"))["kind"] == "saved"
             assert path.read_text() == page.text
             # Of the engine's answers a few wait, and of each state the newest.
@@ -325,5 +325,5 @@ def test_nothing_is_lost_beside_stalled_pages_when_the_server_is_killed(
             for connection in stalled:
                 connection.close()
         again = Hub(path)
-        assert again.text == accepted
-        again.draft.close(keep=False)
+        assert again.main.text == accepted
+        again.main.draft.close(keep=False)

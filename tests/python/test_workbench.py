@@ -106,7 +106,7 @@ class Page:
         else:
             message = json.loads(data)
             self.said.append(message)
-            if message["kind"] == "updates":
+            if message["kind"] == "updates" and not message["file"]:
                 for update in message["updates"]:
                     self.text = applied(self.text, update["changes"])
                 self.version = message["from"] + len(message["updates"])
@@ -159,7 +159,7 @@ def test_what_is_typed_is_on_disk_before_the_page_hears_so(model_file: Callable[
         assert (await page.ask("open"))["params"][0]["value"] == 2.0
         reply = await page.type(LINE.replace("w = 2", "w = 2.5"))
         assert reply["ok"] and page.version == 1
-        kept = json.loads(hub.draft.path.read_text())
+        kept = json.loads(hub.main.draft.path.read_text())
         assert "w = 2.5" in kept["text"]
         await page.until(lambda: [h for h in page.heads if h.get("version") == 1])
         # Old versions are refused, and the page brings itself up to date.
@@ -167,7 +167,7 @@ def test_what_is_typed_is_on_disk_before_the_page_hears_so(model_file: Callable[
         assert stale["ok"] is False and stale["version"] == 1
         assert (await page.ask("pull", version=0))["updates"][0]["clientID"] == "page"
         assert (await page.ask("save"))["kind"] == "saved"
-        assert "w = 2.5" in path.read_text() and not hub.dirty
+        assert "w = 2.5" in path.read_text() and not hub.main.dirty
 
     workbench(path, play)
     assert [p.name for p in path.parent.iterdir()] == [path.name]
@@ -192,10 +192,10 @@ def test_sliders_do_not_wait_for_a_slow_disk(
             head = await page.ask("set", values={"w": width})
             assert head["params"][0]["value"] == width
         # The text is in the model, and not on disk: the page does not count it as kept.
-        assert page.version == 0 and not typing.done() and not hub.draft.path.exists()
+        assert page.version == 0 and not typing.done() and not hub.main.draft.path.exists()
         ready.set()
         assert (await typing)["ok"] and page.version == 1
-        assert "C(0, 1, 0)" in json.loads(hub.draft.path.read_text())["text"]
+        assert "C(0, 1, 0)" in json.loads(hub.main.draft.path.read_text())["text"]
 
     monkeypatch.setattr(Draft, "keep", slow)
     workbench(path, play)
@@ -216,7 +216,7 @@ def test_a_draft_that_cannot_be_written_is_reported(
             reply = await page.type(LINE + "# one\n")
             assert reply["ok"] and "draft cannot be written: [Errno 28]" in reply["error"]
         assert "error" not in await page.type(LINE + "# one\n# two\n")
-        assert json.loads(hub.draft.path.read_text())["text"].endswith("# two\n")
+        assert json.loads(hub.main.draft.path.read_text())["text"].endswith("# two\n")
 
     workbench(path, play)
 
@@ -236,7 +236,7 @@ def test_two_tabs_see_the_same(model_file: Callable[..., Path]) -> None:
         assert sorted(i["name"] for i in head["items"]) == ["B", "l"]
         await one.type(LINE + "AbsPoint C(0, 1, 0);\n")
         await two.until(lambda: any(o["name"] == "C" for o in two.objects))
-        assert one.text == two.text == hub.text
+        assert one.text == two.text == hub.main.text
 
     workbench(model_file(LINE), play)
 
@@ -250,7 +250,7 @@ def test_a_file_that_changes_outside_is_followed_or_asked_about(
         page = Page(hub)
         path.write_text(LINE + "# outside\n")
         await page.until(lambda: page.text.endswith("# outside\n"))
-        assert not hub.dirty
+        assert not hub.main.dirty
         await page.type("# mine\n" + page.text)
         path.write_text(LINE + "# again\n")
         conflict = await page.until(lambda: [m for m in page.said if m["kind"] == "conflict"])
@@ -280,7 +280,7 @@ def test_an_engine_that_is_killed_loses_nothing(
             text += f"AbsPoint P{k}(0, 0, {k});\n"
             assert (await page.type(text))["ok"]
             await page.until(lambda k=k: any(o["name"] == f"P{k}" for o in page.objects))
-            assert hub.text == text
+            assert hub.main.text == text
         assert not [h for h in page.heads if h.get("internal")]
 
     workbench(model_file(LINE), play)
@@ -303,11 +303,11 @@ def test_a_model_without_bounds_takes_nothing_with_it(
         await page.ask("open")
         bad = f"{page.text}{bomb}\n"
         assert (await page.type(bad))["ok"]
-        assert hub.text == bad and json.loads(hub.draft.path.read_text())["text"] == bad
+        assert hub.main.text == bad and json.loads(hub.main.draft.path.read_text())["text"] == bad
         good = LINE + "AbsPoint P(1, 2, 3);\n"
         assert (await page.type(good))["ok"]
         await page.until(lambda: any(o["name"] == "P" for o in page.objects), 60)
-        assert hub.text == good
+        assert hub.main.text == good
 
     workbench(model_file(LINE), play, memory=300 << 20, budget=3.0)
 
@@ -385,7 +385,7 @@ def test_a_model_without_end_is_stopped_and_the_text_can_be_changed(
         assert said
         await page.type(LINE)
         await page.until(
-            lambda: page.heads[-1].get("version") == hub.version and page.heads[-1].get("rev")
+            lambda: page.heads[-1].get("version") == hub.main.version and page.heads[-1].get("rev")
         )
         assert (await page.ask("evaluate", expressions=["l.length"]))["values"][0]["value"] == 2.0
 
@@ -404,11 +404,11 @@ def test_a_server_that_is_killed_keeps_the_draft(model_file: Callable[..., Path]
 
     async def second(hub: Hub) -> None:
         page = Page(hub)
-        assert hub.recovered and page.text.endswith("# unsaved\n")
+        assert hub.main.recovered and page.text.endswith("# unsaved\n")
         # The page is given the file's text, and makes it a step of its history.
         reply = await page.ask("revert")
         await page.type(reply["text"])
-        assert hub.text == LINE and not hub.dirty
+        assert hub.main.text == LINE and not hub.main.dirty
 
     workbench(path, second)
 
@@ -426,7 +426,7 @@ def test_requests_that_are_none_are_refused(model_file: Callable[..., Path]) -> 
         ):
             reply = await page.ask("push", version=0, updates=updates)
             assert reply["ok"] is False
-        assert hub.text == LINE
+        assert hub.main.text == LINE
         files = await page.ask("export", format="stl", stem="../../etc/passwd")
         assert "error" in files or all("/" not in f["name"] for f in files["files"])
 
@@ -610,7 +610,7 @@ def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
         assert request(app, "POST", "/token", token, origin=HOME, cookie=value)[0] == 204
         assert request(app, "POST", "/token", server._token.encode(), origin=HOME)[0] == 204
     finally:
-        hub.draft.close(keep=False)
+        hub.main.draft.close(keep=False)
 
 
 def test_pages_of_the_last_server_are_known_by_their_secret(
@@ -623,7 +623,7 @@ def test_pages_of_the_last_server_are_known_by_their_secret(
         server_app(hub)
         mine = hub.secret
     finally:
-        hub.draft.close(keep=False)
+        hub.main.draft.close(keep=False)
     kept = next((tmp_path / "state").rglob("addresses.json"))
     assert kept.stat().st_mode & 0o077 == 0 and mine in kept.read_text(encoding="utf-8")
     hub = Hub(path)
@@ -652,7 +652,7 @@ def test_pages_of_the_last_server_are_known_by_their_secret(
         assert request(app, path="/challenge")[2].decode() != challenge
         assert request(app, path="/challenge", cookie=value)[2] == b""
     finally:
-        hub.draft.close(keep=False)
+        hub.main.draft.close(keep=False)
 
 
 def test_the_page_says_what_it_may_do(model_file: Callable[..., Path]) -> None:
@@ -681,7 +681,7 @@ def test_the_page_says_what_it_may_do(model_file: Callable[..., Path]) -> None:
         assert status == 200 and "immutable" in head["cache-control"]
         assert len(data) < 1_200_000
     finally:
-        hub.draft.close(keep=False)
+        hub.main.draft.close(keep=False)
 
 
 HOSTILE = '<img src=x onerror="document.title=1">'

@@ -342,7 +342,7 @@ def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHan
     page.get_by_role("tab", name="Model").click()
     page.get_by_role("button", name="Add an object (Shift+A)").click()
     panel = page.get_by_role("region", name="add an object")
-    panel.get_by_role("listitem").filter(has_text="CLoftSurf").first.click()
+    panel.get_by_role("button").filter(has_text="CLoftSurf").first.click()
     for station in range(0, 21, 2):
         page.get_by_role("treeitem", name=f"hull_station_{station} NetCurve").click()
     panel.get_by_role("button", name="Add", exact=True).click()

@@ -227,7 +227,7 @@ def test_models_that_were_opened_before_are_opened_again(
 ) -> None:
     first = bench(POINTS, "first.sdl")
     b = bench("", "empty.sdl")
-    entry = b.page.get_by_role("listitem", name=re.compile("first.sdl"))
+    entry = b.page.get_by_role("button", name=re.compile("first.sdl"))
     entry.click()
     b.page.locator(".status").get_by_text("is open in another workbench").wait_for()
     first.process.terminate()
@@ -282,3 +282,109 @@ def test_sets_are_combined_by_the_pointer(bench: Callable[..., Bench]) -> None:
         b.page.keyboard.press("Control+z")
     b.until(lambda: b.text() == SETS)
     assert not b.faults
+
+
+class Maker:
+    """A hand that makes a model from the start page: forms, clicks and numbers, no statement."""
+
+    def __init__(self, bench: Callable[..., Bench], name: str, unit: str, *, half: bool) -> None:
+        self.b = bench("", name)
+        start = self.b.page.get_by_role("region", name="start")
+        start.get_by_role("combobox", name="unit of length").select_option(unit)
+        if half:
+            start.get_by_role("checkbox").check()
+        start.get_by_role("button", name="Begin with points").click()
+        self.panel = self.b.page.get_by_role("region", name="add an object")
+
+    def points(self, *places: tuple[float, float, float]) -> None:
+        """Points by their numbers, Enter after each; the form is open after the last one."""
+        for place in places:
+            before = self.b.text()
+            for axis, value in zip("xyz", place, strict=True):
+                self.panel.get_by_role("textbox", name=axis, exact=True).fill(f"{value:g}")
+            self.panel.get_by_role("textbox", name="z", exact=True).press("Enter")
+            self.b.until(lambda before=before: self.b.text() != before)
+
+    def make(self, kind: str, *parents: str, **given: str) -> str:
+        """An object of a kind on parents that are picked in the list; its name."""
+        self.b.page.keyboard.press("Escape")
+        panel = form(self.b, kind)
+        panel.get_by_text(kind, exact=True).wait_for()
+        folded = self.b.page.locator('.tree [data-key=":Points"][aria-expanded=false]')
+        if folded.count():
+            folded.click()
+        for parent in parents:
+            row = self.b.page.get_by_role("treeitem", name=re.compile(rf"^{re.escape(parent)} "))
+            row.click()
+        hidden = [n for n in given if not panel.get_by_role("textbox", name=n).is_visible()]
+        if hidden and (options := panel.get_by_text("Options")).count():
+            options.click()
+        for name, value in given.items():
+            panel.get_by_role("textbox", name=name, exact=True).fill(value)
+        before = {o["name"] for o in self.b.hand("model.objects")}
+        panel.get_by_role("button", name="Add", exact=True).click()
+
+        def new() -> list[str]:
+            return [o["name"] for o in self.b.hand("model.objects") if o["name"] not in before]
+
+        [made] = self.b.until(new)
+        self.b.page.keyboard.press("Escape")
+        return str(made)
+
+    def done(self, seen: int) -> None:
+        """All that was made is there, without errors, and is taken back by as many steps."""
+        b = self.b
+        patches = b.until(lambda: [i for i in b.hand("items()") if i["kind"] == "patch"])
+        assert len(patches) == seen
+        assert not [f for f in b.hand("model.faults") if f["severity"] == "error"]
+        assert not b.faults
+        for _ in b.hand("steps().done"):
+            b.page.keyboard.press("Control+z")
+        b.until(lambda: b.text() == "")
+
+
+def test_a_hull_with_a_keel_is_made_from_the_start_page(bench: Callable[..., Bench]) -> None:
+    m = Maker(bench, "boat.sdl", "m", half=True)
+    sections = []
+    for x, beam, keel in ((0, 0.02, 0.5), (4, 1.4, -0.5), (8, 1.5, -0.45), (11, 1.0, 0.2)):
+        m.points((x, beam, 1.2), (x, beam, 0.3), (x, beam / 2, keel), (x, 0, keel))
+    for k in range(4):
+        names = [f"P{4 * k + j}" for j in (1, 2, 3, 4)]
+        sections.append(m.make("BCurve", *names, degree="2"))
+    hull = m.make("CLoftSurf", *sections)
+    # The keel is hung below: a root and a tip, each a foil of three points, and a surface between.
+    form(m.b, "AbsPoint")
+    m.points((5, 0, -0.4), (6, 0.12, -0.4), (7.5, 0, -0.4), (5.6, 0, -1.8), (6.3, 0.1, -1.8))
+    m.points((7.3, 0, -1.8))
+    root = m.make("BCurve", "P17", "P18", "P19", degree="2")
+    tip = m.make("BCurve", "P20", "P21", "P22", degree="2")
+    m.make("RuledSurf", root, tip)
+    assert hull in m.b.text()
+    m.done(2)
+
+
+def test_a_bottle_is_made_from_the_start_page(bench: Callable[..., Bench]) -> None:
+    m = Maker(bench, "bottle.sdl", "mm", half=False)
+    m.points((0, 0, 0), (30, 0, 0), (34, 0, 60), (33, 0, 130), (12, 0, 160), (12, 0, 200))
+    m.points((0, 0, 200))
+    side = m.make("BCurve", *(f"P{k}" for k in range(1, 7)), degree="3")
+    axis = m.make("Line", "P1", "P7")
+    m.make("RevSurf", side, axis)
+    m.done(1)
+
+
+def test_a_propeller_is_made_from_the_start_page(bench: Callable[..., Bench]) -> None:
+    m = Maker(bench, "propeller.sdl", "mm", half=False)
+    # The shaft's ends, the hub's side, and two edges of a blade.
+    m.points((-60, 0, 0), (60, 0, 0), (-60, 0, 40), (60, 0, 40))
+    m.points((-30, -22, 34), (-50, -80, 110), (-40, -60, 190), (0, 0, 240))
+    m.points((30, 22, 34), (45, 70, 110), (35, 60, 190))
+    shaft = m.make("Line", "P1", "P2")
+    side = m.make("Line", "P3", "P4")
+    m.make("RevSurf", side, shaft)
+    leading = m.make("CCurve", "P5", "P6", "P7", "P8")
+    trailing = m.make("CCurve", "P9", "P10", "P11", "P8")
+    blade = m.make("RuledSurf", leading, trailing)
+    for k in range(1, 5):
+        m.make("RotatSurf", blade, shaft, angle=f"{72 * k}")
+    m.done(6)

@@ -17,6 +17,8 @@ export interface AnalysisActions {
   other(): { scale: Scale; name: string } | null
 }
 
+const end = (name: string, x: number) => h('span', { class: `mono ${name}` }, shown(x, 3))
+
 export class Analysis {
   /** The field that colours show, and its parameter. */
   field = ''
@@ -41,6 +43,7 @@ export class Analysis {
   paint(paint: Paint, field = '', by = ''): void {
     const { view } = this
     view.paint = paint
+    if (field !== this.field || by !== this.by) view.fixed = null
     ;[this.field, this.by] = [field, by]
     this.legend()
     if (field !== 'derivative') view.overlay('arrows', null)
@@ -74,9 +77,30 @@ export class Analysis {
     this.legendHost.replaceChildren(
       h('span', { class: 'key' }, found.name),
       bar,
-      h('span', { class: 'mono low' }, shown(s.low, 3)),
-      h('span', { class: 'mono high' }, shown(s.high, 3)),
+      ...(view.paint === 'field' ? this.ends(s) : [end('low', s.low), end('high', s.high)]),
     )
+  }
+
+  /** The ends of the scale as fields; an empty one gives back what nearly all values have. */
+  private ends(s: Scale): HTMLElement[] {
+    const { view } = this
+    const one = (name: 'low' | 'high') => {
+      const field = h('input', { type: 'text', class: `number ${name}`, 'aria-label': `${name} end of the scale` })
+      field.value = shown(s[name], 4)
+      field.addEventListener('change', () => {
+        const typed = field.value.trim().replace('−', '-')
+        const x = Number(typed)
+        const other = name === 'low' ? s.high : s.low
+        if (!typed) view.fixed = null
+        else if (Number.isFinite(x) && x !== other) {
+          const [low, high] = name === 'low' ? [x, other] : [other, x]
+          view.fixed = { low: Math.min(low, high), high: Math.max(low, high) }
+        } else this.act.say(`${typed} is no end of a scale whose other end is ${shown(other, 4)}`)
+        this.colouring.push(undefined)
+      })
+      return field
+    }
+    return [one('low'), one('high')]
   }
 
   /** Shows or removes the comb of a curve. */

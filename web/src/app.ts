@@ -6,6 +6,7 @@ import type { Standard } from './camera'
 import type { Changes } from './changes'
 import type { SheetName } from './commands'
 import type { Editor } from './editor'
+import type { FileTabs } from './file_tabs'
 import type { Foreign } from './foreign'
 import type { Hands } from './hands'
 import type { Host } from './host'
@@ -28,6 +29,7 @@ export interface App {
   host: Host | null
   view: View
   editor: Editor
+  files: FileTabs
   hands: Hands
   making: Making
   analysis: Analysis

@@ -1,10 +1,10 @@
 // The drawing board: a rough picture by mouse, pen, finger or keys, each gesture a command in the text.
 
-import { redo, undo } from '@codemirror/commands'
 import './board.css'
 import { BoardBox } from './board_box'
 import { dimensioned, duplicated, labels } from './board_edit'
 import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter } from './board_paint'
+import { type Shape, shapes } from './board_shapes'
 import { BoardSolid, type SolidFacts } from './board_solid'
 import { Underlay } from './board_underlay'
 import { h, s } from './dom'
@@ -66,6 +66,8 @@ export class Board {
   private readonly painter = new Painter(this.svg, this.page)
   private readonly underlay = new Underlay(this.page, () => (this.buttons(), this.paint()))
   private readonly solid = new BoardSolid((n) => void this.make(n))
+  /** What was chosen when the buttons were built. */
+  private buttoned = ''
   private readonly bar = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
   private readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
   private readonly line = h('input', {
@@ -292,6 +294,9 @@ export class Board {
 
   private paint(): void {
     this.measurePage()
+    const buttoned = [...this.chosen].join()
+    if (buttoned !== this.buttoned) this.buttons()
+    this.buttoned = buttoned
     this.underlay.draw()
     this.painter.draw(this.drawn, {
       chosen: this.chosen,
@@ -360,15 +365,13 @@ export class Board {
     const confirm = this.toConfirm()
     const complete = d.lines.length > 2 && d.next.length === 0 && !d.faces
     const action =
-      d.section && d.lines.length > 2
-        ? h(
-            'span',
-            { class: 'extrude' },
-            button('Extrude', '', () => void this.extrude(), { class: complete ? 'primary' : '' }),
-          )
-        : complete && this.last?.exact && this.last.vertices
-          ? button('Make the solid', 'Enter', () => void this.make(), { class: 'primary' })
-          : ''
+      !d.section && complete && this.last?.exact && this.last.vertices
+        ? button('Make the solid', 'Enter', () => void this.make(), { class: 'primary' })
+        : ''
+    const shape = (one: Shape) =>
+      button(one.words, one.key.toUpperCase(), () => this.askShape(one), {
+        class: one.words === 'Extrude' && complete ? 'primary' : '',
+      })
     this.bar.replaceChildren(
       button('Draw', 'D', () => this.use('draw'), {
         'aria-pressed': this.tool === 'draw',
@@ -405,6 +408,7 @@ export class Board {
         : []),
       h('span', { class: 'grow' }),
       ...this.underlay.controls(this.say),
+      ...(d.lines.length > 1 ? shapes(d, this.chosen) : []).map(shape),
       action,
       button('Fit', '0', () => this.fit()),
     )
@@ -836,10 +840,11 @@ export class Board {
       this.say('The body is in the model, exact.')
   }
 
-  private async extrude(): Promise<void> {
+  /** Asks for the number of a shape, and makes it. */
+  private askShape(shape: Shape): void {
     const mark: Mark = {
-      name: 'EXTRUDE',
-      text: 'depth',
+      name: shape.words,
+      text: shape.asks,
       value: null,
       reference: false,
       axis: null,
@@ -853,7 +858,7 @@ export class Board {
       '',
       [],
       (value) =>
-        void this.act([{ do: 'run', command: `EXTRUDE ${value}`, last: true }]).then((fine) =>
+        void this.act([{ do: 'run', command: shape.command(value), last: shape.last }]).then((fine) =>
           fine ? (this.box.close(), this.fit(), this.svg.focus()) : this.box.refuse(),
         ),
     )
@@ -876,7 +881,7 @@ export class Board {
       done()
       this.endChain()
       void this.later(async () => {
-        ;(key === 'y' || e.shiftKey ? redo : undo)(this.editor.view)
+        this.editor.steps.go(key === 'y' || e.shiftKey ? -1 : 1)
         setTimeout(() => this.refresh(), 0)
       })
       return
@@ -909,6 +914,8 @@ export class Board {
     else if (key === 'c') this.confirmNext()
     else if (key === 't') void this.acceptProposed()
     else if (key === 'n') this.walk(e.shiftKey ? -1 : 1)
+    else if (shapes(this.drawn, this.chosen).some((one) => one.key === key))
+      this.askShape(shapes(this.drawn, this.chosen).find((one) => one.key === key)!)
     else if (key === '0') this.fit()
     else if (key === 'delete' || key === 'backspace') this.remove()
     else if (key === 'enter') {

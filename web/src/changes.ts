@@ -1,7 +1,8 @@
 // Changes by hand: values set during a move, and the text written when it rests.
 
 import { shown } from './dom'
-import type { Editor } from './editor'
+import { type Editor, fileName } from './editor'
+import type { FileTabs } from './file_tabs'
 import type { Hands } from './hands'
 import type { Held } from './history'
 import type { Host } from './host'
@@ -22,6 +23,7 @@ export function valuesInWords(list: Record<string, number>): string {
 
 export class Changes {
   editor!: Editor
+  files!: FileTabs
   hands!: Hands
   /** For tests: when frames came, how long they took. */
   readonly stamps: { kind: string; from: number; to: number }[] = []
@@ -140,9 +142,9 @@ export class Changes {
     void this.after(async () => {
       await this.hands.settled()
       const back = count > 0
-      const { steps, view } = this.editor
+      const { steps } = this.editor
       const step = (back ? steps.done : steps.undone).at(-1)
-      const gone = steps.go(view, count)
+      const gone = steps.go(count)
       const words = `${back ? 'Undone' : 'Redone'}: ${gone > 1 ? `${gone} steps` : step}`
       this.say(gone ? words : `Nothing to ${back ? 'undo' : 'redo'}`)
     })
@@ -152,9 +154,15 @@ export class Changes {
     void this.rested()
     void this.after(async () => {
       await this.hands.settled()
-      await this.editor.synced()
-      const { text } = await this.link.tell({ kind: 'revert' })
-      this.editor.replace(text, false, false, 'Revert to the saved file')
+      const { current } = this.files
+      await current.synced()
+      const { text } = await this.link.tell({ kind: 'revert', file: current.file })
+      current.replace(
+        text,
+        false,
+        false,
+        current.file ? `Revert ${fileName(current.file)}` : 'Revert to the saved file',
+      )
       this.say('Reverted to the saved file; Ctrl+Z takes it back')
       this.warn('')
     })
@@ -163,7 +171,7 @@ export class Changes {
   async settled(): Promise<void> {
     await this.rested()
     await this.hands.settled()
-    await this.editor.synced()
+    for (const editor of this.files.all) await editor.synced()
     await this.setting.settled()
     await this.writing
   }

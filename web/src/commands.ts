@@ -2,6 +2,7 @@
 
 import type { App } from './app'
 import type { Standard } from './camera'
+import { fileName } from './editor'
 import { chooseLaid } from './files'
 import { type Command, help } from './palette'
 import { model } from './state'
@@ -109,6 +110,14 @@ function viewCommands(app: App): Command[] {
         app.buildToolbar()
       },
     },
+    {
+      name: 'One view or four: profile, body plan, plan and the turned one',
+      keys: 'Q',
+      run: () => {
+        view.four = !view.four
+        app.buildToolbar()
+      },
+    },
     ...STYLES.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(app, n) })),
     ...LAYERS.map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => toggleLayer(app, k) })),
     {
@@ -188,6 +197,7 @@ function analysisCommands(app: App): Command[] {
       name: 'Remove what lies over the model',
       run: () => void foreign.remove().catch((e: Error) => shell.say(e.message)),
     },
+    { name: 'Compare: keep the shape as it is now, to lay it over what comes', run: () => void foreign.keepShape() },
     {
       name: 'Curvature comb of the selected curve',
       keys: 'K',
@@ -225,6 +235,13 @@ function placeCommands({ editor, shell, view }: App): Command[] {
   ]
 }
 
+function fileCommands({ files }: App): Command[] {
+  const one = (file: string) => ({ name: `File: ${fileName(file)}`, run: () => void files.show(file) })
+  return model.files.length
+    ? [{ name: `File: ${model.name}`, run: () => void files.show('') }, ...model.files.map(one)]
+    : []
+}
+
 export function commands(app: App): Command[] {
   return [
     ...textCommands(app),
@@ -233,6 +250,7 @@ export function commands(app: App): Command[] {
     ...objectCommands(app),
     ...analysisCommands(app),
     ...placeCommands(app),
+    ...fileCommands(app),
     { name: 'Export: picture as it is seen (PNG)', run: () => void app.download('picture') },
     ...app.formats.map(([f, about]) => ({ name: `Export: ${f}, ${about}`, run: () => void app.download(f) })),
     { name: 'Export: print what is shown, or save it as PDF', run: () => print() },

@@ -57,7 +57,7 @@ export class Desk {
   private readonly bar = h('div', { class: 'desk-bar', role: 'toolbar', 'aria-label': 'fairing' })
   private readonly lines = h('div', { class: 'desk-lines', role: 'listbox', tabindex: 0, 'aria-label': 'lines' })
   private readonly suspects = h('div', { class: 'desk-suspects', role: 'log', 'aria-label': 'suspects' })
-  private readonly marks = h('div', { class: 'desk-marks', 'aria-label': 'marks' })
+  private readonly marks = h('div', { class: 'desk-marks', role: 'group', 'aria-label': 'marks' })
   private readonly top = h('div', { class: 'desk-views' })
   private readonly below = h('div', { class: 'desk-strips' })
   private readonly start = h('div', { class: 'desk-start' })
@@ -129,11 +129,11 @@ export class Desk {
     const side = h(
       'div',
       { class: 'desk-side' },
-      h('h3', {}, 'Lines'),
+      h('h2', {}, 'Lines'),
       this.lines,
-      h('h3', {}, 'Suspects'),
+      h('h2', {}, 'Suspects'),
       this.suspects,
-      h('h3', {}, 'Marks'),
+      h('h2', {}, 'Marks'),
       this.marks,
     )
     this.element.append(
@@ -570,7 +570,7 @@ export class Desk {
       : ''
     this.start.replaceChildren(
       again,
-      h('h3', {}, 'Fair a curve, a surface or a table'),
+      h('h2', {}, 'Fair a curve, a surface or a table'),
       h(
         'p',
         { class: 'quiet' },
@@ -623,7 +623,6 @@ export class Desk {
       h('span', { class: 'tol' }, 'Tolerance', this.slider, this.value),
       button(f?.goal === 'fairest' ? 'Fairest' : 'Nearest', 'G', () => this.switchGoal(), {
         'aria-pressed': f?.goal === 'fairest',
-        'aria-label': 'goal: nearest or fairest',
       }),
       tool(['select', 'v', 'Select']),
       ...TOOLS.map(tool),

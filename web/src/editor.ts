@@ -70,8 +70,6 @@ const marks = StateField.define<DecorationSet>({
 
 export class Editor {
   readonly view: EditorView
-  /** What was done, to be taken back. */
-  readonly steps = new Steps()
   private readonly language = new Compartment()
   private readonly shared = new Compartment()
   private pushing = false
@@ -83,6 +81,8 @@ export class Editor {
   private base: Text = Text.empty
   /** The hub's version of the text less that of the history. */
   private ahead = 0
+  /** Whether the text differs from its file. */
+  dirty = false
   /** Called when what is typed is not yet with the hub, or is again. */
   onPending: (pending: boolean) => void = () => {}
   onCursor: (offset: number) => void = () => {}
@@ -90,12 +90,18 @@ export class Editor {
   /** What a hand on the page changed: places in the text before it, and what is there now. */
   onEdit: (before: Text, changes: Edit[]) => void = () => {}
   onShow: (place: [number, number], focus: boolean) => void = () => {}
+  /** A declaration is in another file. */
+  onElsewhere: (file: string, place: [number, number]) => void = () => {}
 
   constructor(
     host: HTMLElement,
     private readonly link: Link,
     nonce: string,
     private readonly keys: { key: string; run: () => boolean }[],
+    /** What was done, to be taken back; of all texts. */
+    readonly steps = new Steps(),
+    /** The file beside the model whose text this is; none for the model's own. */
+    readonly file = '',
   ) {
     this.view = new EditorView({ parent: host, state: this.state('', nonce) })
   }
@@ -113,7 +119,7 @@ export class Editor {
         indentOnInput(),
         bracketMatching(),
         closeBrackets(),
-        autocompletion({ override: [(c) => this.complete(c)] }),
+        autocompletion({ override: this.file ? [] : [(c) => this.complete(c)] }),
         highlightActiveLine(),
         highlightSelectionMatches(),
         search({ top: true }),
@@ -126,18 +132,23 @@ export class Editor {
         this.shared.of([]),
         EditorState.readOnly.of(this.link.still),
         EditorView.contentAttributes.of({
-          'aria-label': 'program',
+          'aria-label': this.file ? `text of ${fileName(this.file)}` : 'program',
           spellcheck: 'false',
+          tabindex: '0',
           autocorrect: 'off',
           autocapitalize: 'off',
         }),
-        hoverTooltip((_, pos) => this.hover(pos), { hoverTime: 350 }),
+        this.file ? [] : hoverTooltip((_, pos) => this.hover(pos), { hoverTime: 350 }),
         keymap.of([
           ...this.keys,
           { key: 'Tab', run: (v) => acceptCompletion(v) || indentMore(v), shift: indentLess },
-          { key: 'F12', run: () => (void this.definition(), true) },
-          { key: 'F2', run: () => (void this.rename(), true) },
-          { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
+          ...(this.file
+            ? []
+            : [
+                { key: 'F12', run: () => (void this.definition(), true) },
+                { key: 'F2', run: () => (void this.rename(), true) },
+                { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
+              ]),
           { key: 'Mod-/', run: toggleComment },
           ...closeBracketsKeymap,
           ...defaultKeymap,
@@ -160,7 +171,7 @@ export class Editor {
         }),
         EditorView.domEventHandlers({
           mousedown: (event, view) => {
-            if (!(event.ctrlKey || event.metaKey)) return false
+            if (this.file || !(event.ctrlKey || event.metaKey)) return false
             const pos = view.posAtCoords({ x: event.clientX, y: event.clientY })
             if (pos !== null) void this.definition(pos)
             return true
@@ -177,8 +188,10 @@ export class Editor {
   words(words: Record<string, string[]>): void {
     const sets: Words = {}
     for (const [kind, list] of Object.entries(words)) sets[kind] = new Set(list)
-    const sketch = /\.skt$/i.test(model.name)
-    const language = sketch ? StreamLanguage.define(sketchParser) : StreamLanguage.define(programParser(sets))
+    const name = this.file || model.name
+    const program = !this.file || /\.sdl$/i.test(name)
+    const of = program ? StreamLanguage.define(programParser(sets)) : []
+    const language = /\.skt$/i.test(name) ? StreamLanguage.define(sketchParser) : of
     this.view.dispatch({ effects: this.language.reconfigure(language) })
   }
 
@@ -281,7 +294,7 @@ export class Editor {
 
   private async catchUp(): Promise<void> {
     try {
-      const answer = await this.link.tell({ kind: 'pull', version: this.version })
+      const answer = await this.link.tell({ kind: 'pull', file: this.file, version: this.version })
       if (typeof answer.text === 'string') this.rejoin(answer.text, answer.version)
       else this.received(answer.updates, answer.from)
     } catch {
@@ -305,7 +318,7 @@ export class Editor {
     this.pushing = true
     try {
       const sent = updates.map((u) => ({ changes: u.changes.toJSON(), clientID: u.clientID }))
-      const answer = await this.link.tell({ kind: 'push', version: this.version, updates: sent })
+      const answer = await this.link.tell({ kind: 'push', file: this.file, version: this.version, updates: sent })
       if (!answer.ok && typeof answer.text === 'string') this.rejoin(answer.text, answer.version)
       else if (!answer.ok && answer.version > this.version) await this.catchUp()
       if (answer.error) this.onTrouble(answer.error)
@@ -353,9 +366,10 @@ export class Editor {
     const size = this.view.state.doc.length
     const shown: Diagnostic[] = []
     for (const d of all) {
-      if (!d.place) continue
-      const from = Math.min(d.place[0], size)
-      const to = Math.min(Math.max(d.place[1], from), size)
+      const place = this.file ? d.elsewhere : d.place
+      if (!place) continue
+      const from = Math.min(place[0], size)
+      const to = Math.min(Math.max(place[1], from), size)
       const found = d.found ? `\nfound ${d.found}` : ''
       const expected = d.expected ? `\nexpected ${d.expected}` : ''
       const help = (d.help ?? []).map((t: string) => `\n${t}`).join('')
@@ -430,6 +444,7 @@ export class Editor {
     try {
       const { head } = await this.link.ask('definition', { offset: at })
       if (head.place) this.show(head.place, true)
+      else if (head.elsewhere) this.onElsewhere(head.elsewhere.file, head.elsewhere.place)
     } catch {
       // Nothing there.
     }
@@ -458,6 +473,9 @@ export class Editor {
     }
   }
 }
+
+/** The name of a file without its folders. */
+export const fileName = (path: string) => path.split(/[/\\]/).pop() ?? path
 
 /** The least replacement that makes one text of another. */
 function difference(old: string, text: string): Edit {

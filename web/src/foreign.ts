@@ -5,7 +5,7 @@ import { shown } from './dom'
 import type { Frame } from './frame'
 import { type Link, Newest } from './link'
 import { model } from './state'
-import type { View } from './view'
+import type { Drawn, View } from './view'
 
 interface ForeignMesh {
   name: string
@@ -24,6 +24,25 @@ export function inBase64(name: string, bytes: Uint8Array): string {
   let raw = ''
   for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
   return btoa(raw)
+}
+
+/** Triangles as a binary STL file; null for none. */
+export function asStl(all: Pick<Drawn, 'position' | 'triangle' | 'origin'>[]): Uint8Array | null {
+  const count = all.reduce((n, i) => n + i.triangle.length / 3, 0)
+  if (!count) return null
+  const data = new DataView(new ArrayBuffer(84 + 50 * count))
+  data.setUint32(80, count, true)
+  let at = 84
+  for (const { position, triangle, origin } of all)
+    for (let k = 0; k < triangle.length; k += 3) {
+      // The normal is left as zero: readers find it from the corners.
+      at += 12
+      for (let c = 0; c < 3; c++)
+        for (let axis = 0; axis < 3; axis++, at += 4)
+          data.setFloat32(at, position[3 * triangle[k + c] + axis] + origin.getComponent(axis), true)
+      at += 2
+    }
+  return new Uint8Array(data.buffer)
 }
 
 export class Foreign {
@@ -77,6 +96,13 @@ export class Foreign {
     const data = inBase64(name, bytes)
     this.laid(await this.link.ask('overlay', { name, data }))
     this.files.set(name, data)
+  }
+
+  /** Lays the shape as it is now over what it becomes: colours show how far the two are apart. */
+  async keepShape(): Promise<void> {
+    const bytes = asStl([...this.view.items.values()].filter((i) => i.kind === 'patch' && this.view.seen(i)))
+    if (!bytes) return this.act.say('There is no surface to keep')
+    await this.lay('shape before.stl', bytes).catch((error: Error) => this.act.say(error.message))
   }
 
   async remove(): Promise<void> {

@@ -52,8 +52,8 @@ interface Drag {
   begun: Promise<boolean>
   /** True when the pointer has been followed since the drag was ready. */
   aimed: boolean
-  /** True when it was over before the drag was ready. */
-  flick: boolean
+  /** True when it is over and counts. */
+  committed: boolean
   /** True for a drag by the keys of the keyboard. */
   keys: boolean
   last: [number, number]
@@ -140,6 +140,7 @@ export class Hands {
     this.view.canvas.setPointerCapture(e.pointerId)
     const [x, y] = this.at(e)
     if (this.drag?.keys) void this.finish(this.drag.moved)
+    if (!this.pointers.size && !this.drag) this.view.enter(x, y)
     this.pointers.set(e.pointerId, [x, y])
     this.pressed = { x, y, button: e.button, shift: e.shiftKey, moved: false }
     if (e.button !== 0 || e.shiftKey || this.measuring || this.pointers.size > 1 || this.link.still) return
@@ -194,7 +195,7 @@ export class Hands {
       ready: false,
       begun: Promise.resolve(false),
       aimed: false,
-      flick: false,
+      committed: false,
       keys,
       last: [x, y],
       offset: [0, 0],
@@ -307,8 +308,8 @@ export class Hands {
     if (!other) return
     const from = Math.hypot(before[0] - other[0], before[1] - other[1])
     const to = Math.hypot(now[0] - other[0], now[1] - other[1])
-    const box = this.view.canvas.getBoundingClientRect()
-    const middle = [(now[0] + other[0]) / 2 - box.width / 2, (now[1] + other[1]) / 2 - box.height / 2]
+    const [cx, cy] = this.view.middle
+    const middle = [(now[0] + other[0]) / 2 - cx, (now[1] + other[1]) / 2 - cy]
     this.view.camera.zoom(from / Math.max(1, to), middle[0], middle[1], this.view.height)
     this.view.camera.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2, this.view.height)
     this.pointers.set(id, now)
@@ -328,6 +329,7 @@ export class Hands {
   }
 
   private hover(x: number, y: number): void {
+    if (!this.drag) this.view.enter(x, y)
     const point = this.view.near(x, y, 10)
     this.view.canvas.style.cursor = point ? 'grab' : this.measuring ? 'crosshair' : ''
     const hit = point ? { object: point.object, point: this.view.place(point), value: undefined } : this.view.pick(x, y)
@@ -351,7 +353,10 @@ export class Hands {
     const { camera } = this.view
     const [x, y] = [drag.last[0] - drag.offset[0], drag.last[1] - drag.offset[1]]
     const { ray } = this.view.ray(x, y)
-    let basis = [camera.right, camera.up]
+    // Across the line of sight, which in perspective is not that of the picture's middle: how far away the place is does
+    // not count.
+    const sideways = camera.right.addScaledVector(ray.direction, -ray.direction.dot(camera.right)).normalize()
+    let basis = [sideways, sideways.clone().cross(ray.direction)]
     let snapped = ''
     if (drag.onSurface) {
       // At the silhouette the last place stays: never on to what is behind.
@@ -391,8 +396,8 @@ export class Hands {
           names: drag.chosen,
           grain,
         })
-        // A flick is over already; where it came to is stated all the same.
-        if (this.drag !== drag && !drag.flick) return
+        // A drag that is over already: where it came to is stated all the same, until the next one.
+        if (this.drag !== drag && (this.drag || !drag.committed)) return
         const values = head.values as Record<string, number>
         drag.names = Object.keys(values)
         if (this.drag === drag) {
@@ -462,6 +467,7 @@ export class Hands {
     const drag = this.drag
     if (!drag) return this.ended
     this.drag = null
+    drag.committed = commit
     this.chooser.hidden = this.entry.hidden = this.tip.hidden = true
     this.view.overlay('moved', null)
     this.view.ghost(false)
@@ -473,8 +479,7 @@ export class Hands {
   private async end(drag: Drag, commit: boolean): Promise<void> {
     if (!(await drag.begun)) return
     // A flick that was over before the engine was ready counts as well.
-    drag.flick = commit && drag.moved && !drag.aimed
-    if (drag.flick) this.aim(drag, false)
+    if (commit && drag.moved && !drag.aimed) this.aim(drag, false)
     await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })
@@ -493,18 +498,14 @@ export class Hands {
   private wheel(e: WheelEvent): void {
     e.preventDefault()
     const [x, y] = this.at(e)
-    const box = this.view.canvas.getBoundingClientRect()
+    if (!this.pressed && !this.drag) this.view.enter(x, y)
+    const [cx, cy] = this.view.middle
     const lines = e.deltaMode === 1 ? 16 : 1
     const fine =
       e.deltaMode === 0 && Math.abs(e.deltaY) < 60 && !e.ctrlKey && (e.deltaX !== 0 || !Number.isInteger(e.deltaY))
     if (fine) this.view.camera.pan(-e.deltaX, -e.deltaY, this.view.height)
     else
-      this.view.camera.zoom(
-        Math.exp(e.deltaY * lines * (e.ctrlKey ? 0.01 : 0.0015)),
-        x - box.width / 2,
-        y - box.height / 2,
-        this.view.height,
-      )
+      this.view.camera.zoom(Math.exp(e.deltaY * lines * (e.ctrlKey ? 0.01 : 0.0015)), x - cx, y - cy, this.view.height)
     this.view.draw()
   }
 

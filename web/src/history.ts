@@ -1,10 +1,10 @@
-// One history of all that a hand changes: typing, slides, drags, forms, reverts.
+// One history of all that a hand changes: typing, slides, drags, forms, reverts; in all texts of the model.
 //
-// Each step is a step of the program's own history, because each becomes text; what it changes besides, a value that the
+// Each step is a step of a text's own history, because each becomes text; what it changes besides, a value that the
 // text does not state, travels with it as an effect.
 
 import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands'
-import { Annotation, type Extension, StateEffect, StateField, type Transaction } from '@codemirror/state'
+import { Annotation, type Extension, StateEffect, StateField, Transaction } from '@codemirror/state'
 import type { EditorView, ViewUpdate } from '@codemirror/view'
 import { h } from './dom'
 import { icon } from './icons'
@@ -68,10 +68,27 @@ function word(tr: Transaction): string {
   return `${what}, line ${line}`
 }
 
-/** The names of the steps, beside the editor's own record of them. */
+/** A step, and the text that it is in. */
+interface Step {
+  name: string
+  of: EditorView
+}
+
+const count = (list: Step[], of: EditorView) => list.filter((s) => s.of === of).length
+
+/** Drops so many steps of a text, the first ones. */
+function drop(list: Step[], of: EditorView, many: number): void {
+  for (let k = 0; many > 0 && k < list.length; )
+    if (list[k].of === of) {
+      list.splice(k, 1)
+      many--
+    } else k++
+}
+
+/** The steps in their order over all texts, beside the record that each text has of its own. */
 export class Steps {
-  done: string[] = []
-  undone: string[] = []
+  private readonly past: Step[] = []
+  private readonly ahead: Step[] = []
   onChange: () => void = () => {}
   /** The text is another one, whoever changed it. */
   onText: () => void = () => {}
@@ -79,32 +96,67 @@ export class Steps {
   private idle = false
   /** A value that is held goes with a step that was taken back or done again. */
   onHeld: (held: Held) => void = () => {}
+  /** A step of this text was taken back or done again. */
+  onTurned: (of: EditorView) => void = () => {}
+
+  /** Whether a text has steps. */
+  has(of: EditorView): boolean {
+    return count(this.past, of) + count(this.ahead, of) > 0
+  }
+
+  /** The names of the steps, the last one last. */
+  get done(): string[] {
+    return this.past.map((s) => s.name)
+  }
+
+  /** The names of those that were taken back, the next one last. */
+  get undone(): string[] {
+    return this.ahead.map((s) => s.name)
+  }
 
   follow(update: ViewUpdate): void {
     if (!update.transactions.length) return
+    const of = update.view
     if (update.docChanged) this.onText()
     let name = 'Edit'
     for (const tr of update.transactions) {
       const back = tr.isUserEvent('undo')
       if (back || tr.isUserEvent('redo')) {
-        const step = (back ? this.done : this.undone).pop()
+        const list = back ? this.past : this.ahead
+        const [step] = list.splice(
+          list.findLastIndex((s) => s.of === of),
+          count(list, of) && 1,
+        )
         this.idle = !tr.docChanged && !tr.effects.some((e) => e.is(holding))
-        if (step !== undefined && !this.idle) (back ? this.undone : this.done).push(step)
+        if (step !== undefined && !this.idle) (back ? this.ahead : this.past).push(step)
         for (const e of tr.effects) if (e.is(holding)) this.onHeld(e.value)
-      } else if (tr.docChanged || tr.effects.some((e) => e.is(holding))) name = word(tr)
+      } else if (tr.docChanged || tr.effects.some((e) => e.is(holding))) {
+        name = word(tr)
+        // What was taken back of any text cannot be done again after a change of one.
+        if (tr.annotation(Transaction.addToHistory) !== false) this.ahead.length = 0
+      }
     }
-    const [depth, ahead] = [undoDepth(update.state), redoDepth(update.state)]
-    while (this.done.length < depth) this.done.push(name)
-    this.done.splice(0, this.done.length - depth)
-    this.undone.splice(0, this.undone.length - ahead)
+    while (count(this.past, of) < undoDepth(update.state)) {
+      const last = this.past.at(-1)?.of
+      // What is typed into that text from now on comes after this step.
+      if (last && last !== of) last.dispatch({ annotations: stepEnds })
+      this.past.push({ name, of })
+    }
+    drop(this.past, of, count(this.past, of) - undoDepth(update.state))
+    drop(this.ahead, of, count(this.ahead, of) - redoDepth(update.state))
     this.onChange()
   }
 
   /** Takes steps back, or does them again when the count is negative; how many there were. A single one changes something. */
-  go(view: EditorView, count: number): number {
-    const single = Math.abs(count) === 1
+  go(many: number): number {
+    const single = Math.abs(many) === 1
     let gone = 0
-    while (gone < Math.abs(count) && (count > 0 ? undo : redo)(view)) if (!(single && this.idle)) gone++
+    while (gone < Math.abs(many)) {
+      const of = (many > 0 ? this.past : this.ahead).at(-1)?.of
+      if (!of || !(many > 0 ? undo : redo)(of)) break
+      this.onTurned(of)
+      if (!(single && this.idle)) gone++
+    }
     return gone
   }
 }

@@ -10,6 +10,7 @@ import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
 import { Editor } from './editor'
+import { FileTabs } from './file_tabs'
 import { copyLink, download, give, installDrop, openFiles, openLink } from './files'
 import { Foreign } from './foreign'
 import type { Frame } from './frame'
@@ -60,7 +61,7 @@ const selection = h('span', { class: 'sr', id: 'selection' })
 shell.view.append(selection)
 view.covered = () => (shell.toolbar.hidden ? 0 : shell.toolbar.offsetTop + shell.toolbar.offsetHeight)
 const orientation = new Orientation(
-  view.camera,
+  () => view.camera,
   (name) => app.look(name),
   () => view.height,
 )
@@ -106,7 +107,7 @@ const actions: App['actions'] = {
     if (from !== 'text') void locate(name, false)
   },
   locate: (name) => locate(name, true),
-  show: (place) => editor.show(place, true),
+  show: (place, file) => void (file ? files.show(file, place) : files.show('').then(() => editor.show(place, true))),
   apply: (list, version, name) => editor.apply(list, version, name),
   async rewrite(kind, fields, name) {
     await changes.rested()
@@ -166,6 +167,8 @@ async function locate(name: string, focus: boolean): Promise<void> {
   if (!name || link.still) return editor.show(null)
   try {
     const { head } = await link.ask('locate', { name })
+    if (focus && head.elsewhere) return void files.show(head.elsewhere.file, head.elsewhere.place)
+    if (focus) await files.show('')
     editor.show(head.place ?? null, focus)
   } catch {
     editor.show(null)
@@ -187,14 +190,29 @@ async function fair(object: string): Promise<void> {
 
 // The parts.
 
-const editor = new Editor(shell.editor, link, nonce.startsWith('__') ? '' : nonce, [
+const editorNonce = nonce.startsWith('__') ? '' : nonce
+const editorKeys = [
   { key: 'Mod-s', run: () => (void saving.save(), true) },
   { key: 'Mod-k', run: () => (app.openPalette(), true) },
   { key: 'Mod-z', run: () => (changes.turn(1), true) },
   { key: 'Mod-Shift-z', run: () => (changes.turn(-1), true) },
   { key: 'Mod-y', run: () => (changes.turn(-1), true) },
-])
-changes.editor = saving.editor = editor
+]
+const editor = new Editor(shell.editor, link, editorNonce, editorKeys)
+let words: Record<string, string[]> = {}
+const files = new FileTabs(shell.editor, link, editor, {
+  say,
+  make(place, file) {
+    const made = new Editor(place, link, editorNonce, editorKeys, editor.steps, file)
+    made.words(words)
+    made.onTrouble = say
+    made.onPending = () => saving.show()
+    return made
+  },
+  saved: () => saving.show(),
+})
+changes.editor = editor
+changes.files = saving.files = files
 editor.steps.onHeld = (held) => changes.holds(held)
 shell.historyPlace.replaceWith(link.still ? '' : historyButtons(editor.steps, (n) => changes.turn(n), !host))
 editor.onTrouble = say
@@ -289,6 +307,7 @@ const app: App = {
     view,
     editor,
     hands,
+    files,
     making,
     analysis,
     section,
@@ -387,6 +406,7 @@ function take(frame: Frame): void {
   const facts: [string, keyof typeof model, Parameters<typeof changed>[0]][] = [
     ['params', 'params', 'params'],
     ['objects', 'objects', 'objects'],
+    ['reads', 'files', 'files'],
     ['diagnostics', 'faults', 'faults'],
     ['printed', 'printed', 'printed'],
     ['watched', 'watched', 'watched'],
@@ -399,7 +419,7 @@ function take(frame: Frame): void {
     ;(model as any)[name] = head[key]
     changed(topic)
   }
-  if (head.diagnostics) editor.diagnose(model.faults)
+  if (head.diagnostics) files.diagnose()
   if (scene && !fitted && !view.box.isEmpty()) {
     fitted = true
     view.fit()
@@ -457,7 +477,7 @@ link.onFrame = take
 link.onState = (state) => {
   saving.online = state === 'up'
   if (!saving.online) {
-    editor.offline()
+    for (const one of files.all) one.offline()
     if (!link.still) warn('The server does not answer. What you type is kept here and sent when it is back.')
   }
   saving.show()
@@ -468,18 +488,21 @@ link.onMessage = (message) => {
       void begin(message)
       break
     case 'updates':
-      saving.dirty = message.dirty
-      editor.received(message.updates, message.from)
-      rooms.refresh()
-      cell?.changed()
-      saving.show()
+      saving.is(message.file, message.dirty)
+      files.of(message.file)?.received(message.updates, message.from)
+      if (!message.file) {
+        rooms.refresh()
+        cell?.changed()
+      }
       break
     case 'saved':
-      saving.dirty = !!message.dirty
-      saving.show()
+      saving.is(message.file, !!message.dirty)
       break
     case 'conflict':
-      saving.conflict(message.theirs)
+      saving.conflict(message.theirs, message.file)
+      break
+    case 'unsaved':
+      void files.load(message.file).catch(() => undefined)
       break
     case 'engine':
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
@@ -510,6 +533,12 @@ async function watchUsual(): Promise<void> {
   await link.ask('watch', { expressions }).catch(() => (watching = false))
 }
 
+/** The words of the language, for all texts. */
+function spell(all: Record<string, string[]>): void {
+  words = all
+  for (const one of files.all) one.words(words)
+}
+
 async function begin(hello: any): Promise<void> {
   warn('')
   const before = instance
@@ -518,7 +547,7 @@ async function begin(hello: any): Promise<void> {
   model.name = hello.name
   shell.file.textContent = hello.name
   document.title = `${hello.name} · Moldloft`
-  saving.dirty = hello.dirty
+  editor.dirty = hello.dirty
   hidden.clear()
   for (const name of stored<string[]>(`hidden.${hello.name}`, [])) hidden.add(name)
   if (!again) editor.begin(hello.text, hello.version)
@@ -526,7 +555,7 @@ async function begin(hello: any): Promise<void> {
   else editor.rejoin(hello.text, hello.version)
   editor.steps.onText()
   if (inCell) cell ??= new Cell(editor)
-  if (hello.words) editor.words(hello.words)
+  if (hello.words) spell(hello.words)
   const has = (name: string) => shell.tabs.querySelector(`[data-sheet=${name}]`) !== null
   if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'))
   if (!link.local && /\.skt$/i.test(hello.name) && !has('board')) {
@@ -552,10 +581,11 @@ async function begin(hello: any): Promise<void> {
     if (again) await changes.holdAgain()
     if (!link.still) await link.ask('show', { contours })
     if (!link.local) await link.ask('open')
+    if (!link.local) files.begin(hello.unsaved ?? [])
     watching = false
     await watchUsual()
     if (!again && !link.still) app.formats = (await link.ask('formats')).head.formats
-    if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
+    if (!again && !hello.words && !link.still) spell((await link.ask('words')).head.words)
     if (!again) await askRecent()
     if (!again) await openLink(app)
   } catch (error) {
@@ -569,7 +599,7 @@ shell.linkButton.addEventListener('click', () => void app.copyLink())
 shell.helpButton.addEventListener('click', () => help(commands(app)))
 shell.saveButton.addEventListener('click', () => void saving.save())
 addEventListener('beforeunload', (e) => {
-  if (editor.pending) e.preventDefault()
+  if (files.all.some((one) => one.pending)) e.preventDefault()
 })
 installKeys(app)
 installDrop(app, shell.view)
@@ -607,7 +637,7 @@ Object.assign(window, {
       })),
     positions: (object: string) =>
       [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
-    text: () => editor.text,
+    text: (file = '') => files.of(file)?.text,
     over: (name: string) => view.drawnOver(name),
     get board() {
       return rooms.loaded.board

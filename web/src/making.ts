@@ -5,7 +5,7 @@ import type { Vector3 } from 'three'
 import { h } from './dom'
 import type { Edit } from './editor'
 import type { Link } from './link'
-import { model } from './state'
+import { model, on } from './state'
 
 interface Field {
   name: string
@@ -143,6 +143,8 @@ export class Making {
   /** The field that is given what is picked. */
   private active: Field | null = null
   private adding: Promise<void> = Promise.resolve()
+  /** Names of objects that are being added. */
+  private readonly coming = new Set<string>()
   private inputs = new Map<string, HTMLInputElement | HTMLSelectElement>()
   private readonly panel = h('section', { class: 'making', 'aria-label': 'add an object', hidden: true })
   private readonly fault = h('p', { class: 'bad', role: 'alert', hidden: true })
@@ -154,6 +156,9 @@ export class Making {
     private readonly act: MakingActions,
   ) {
     host.prepend(this.panel)
+    on('objects', () => {
+      for (const { name } of model.objects) this.coming.delete(name)
+    })
     this.panel.addEventListener('keydown', (e) => {
       if (e.key === 'Escape') this.close()
       else if (e.key === 'Enter' && this.kind && e.target instanceof HTMLInputElement) void this.add()
@@ -209,7 +214,7 @@ export class Making {
   private list(): void {
     this.kind = this.active = null
     const search = h('input', { type: 'search', placeholder: 'Search kinds', 'aria-label': 'search kinds' })
-    const rows = h('div', { class: 'kinds', role: 'list' })
+    const rows = h('div', { class: 'kinds', role: 'group', 'aria-label': 'kinds' })
     const order = (k: Kind) => (GROUPS.includes(k.class) ? GROUPS.indexOf(k.class) : GROUPS.length)
     const build = () => {
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean)
@@ -227,7 +232,7 @@ export class Making {
         ...found.map((k) =>
           h(
             'button',
-            { role: 'listitem', title: k.about, onclick: () => this.form(k) },
+            { title: k.about, onclick: () => this.form(k) },
             h('span', {}, k.made ? `${k.name} (${k.made.toLowerCase()})` : k.name),
             h('span', { class: 'quiet' }, k.about),
           ),
@@ -252,7 +257,7 @@ export class Making {
 
   private free(kind: Kind): string {
     const stem = STEMS[kind.class] ?? kind.name.toLowerCase()
-    const taken = new Set([...model.objects.map((o) => o.name), ...model.params.map((p) => p.name)])
+    const taken = new Set([...model.objects.map((o) => o.name), ...model.params.map((p) => p.name), ...this.coming])
     for (let k = 1; ; k++) if (!taken.has(`${stem}${k}`)) return `${stem}${k}`
   }
 
@@ -360,7 +365,6 @@ export class Making {
   /** A place that was clicked: a point is made there. */
   async place(at: Vector3, grain: number): Promise<boolean> {
     if (!this.isOpen || !this.places()) return false
-    await this.adding
     const digits = Math.max(0, Math.min(12, Math.ceil(-Math.log10(grain || 1))))
     at.toArray().forEach((x, k) => (this.inputs.get('xyz'[k])!.value = String(Number(x.toFixed(digits)) + 0)))
     await this.add()
@@ -401,34 +405,54 @@ export class Making {
     return kind.made ? `${kind.made} ${name}(${kind.name}${call});` : `${kind.name} ${name}${call};`
   }
 
-  /** One after the other: a click comes before the form is ready for the next object. */
+  /** Writes the object of the form; what is typed from now on is the next one's. */
   private add(): Promise<void> {
-    this.adding = this.adding.then(() => this.added())
+    const { kind } = this
+    if (!kind) return this.adding
+    let statement: string
+    try {
+      statement = this.statement(kind)
+    } catch (error) {
+      this.refuse((error as Error).message)
+      return this.adding
+    }
+    const name = this.named.value.trim()
+    const given = [...this.inputs].map(([field, input]): [string, string] => [field, input.value])
+    this.coming.add(name)
+    this.form(kind)
+    const next = this.named
+    // One after the other: the engine has each before the next.
+    this.adding = this.adding.then(() => this.added(statement, name, given, next))
     return this.adding
   }
 
-  private async added(): Promise<void> {
-    const { kind, named } = this
-    if (!kind) return
+  private refuse(words: string): void {
+    this.fault.textContent = words
+    this.fault.hidden = false
+    this.act.say(words)
+  }
+
+  private async added(
+    statement: string,
+    name: string,
+    given: [string, string][],
+    next: HTMLInputElement,
+  ): Promise<void> {
     try {
-      const statement = this.statement(kind)
       await this.act.synced()
       const { head } = await this.link.ask('add', { statement })
-      const name = named.value.trim()
       this.act.apply(head.edits ?? [], head.version, `Add ${name}`)
       await this.act.synced()
-      // Meanwhile the form may have been closed, or another one opened.
-      if (this.named === named && this.kind === kind) {
-        this.act.select(name)
-        this.form(kind)
-        // The next one has a name that is free: the scene with this one may still be under way.
-        if (this.named.value === name) this.named.value = name.replace(/\d+$/, (n) => String(Number(n) + 1))
-      }
+      if (this.named === next) this.act.select(name)
       this.act.say(`${statement} was added`)
     } catch (error) {
-      this.fault.textContent = (error as Error).message
-      this.fault.hidden = false
-      this.act.say((error as Error).message)
+      this.coming.delete(name)
+      // It is in the form again, to be mended, unless another one is begun there.
+      if (this.named === next && [...this.inputs.values()].every((input) => !input.value)) {
+        next.value = name
+        for (const [field, value] of given) this.inputs.get(field)!.value = value
+      }
+      this.refuse((error as Error).message)
     }
   }
 }

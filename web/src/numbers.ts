@@ -65,7 +65,7 @@ export class GivenNumbers {
       'button',
       {
         class: 'value mono give',
-        'aria-label': `give ${expression} a value`,
+        'aria-label': `${shown(value)}, give ${expression} a value`,
         title: 'Drag, or click to type a value: parameters follow',
       },
       shown(value),
@@ -209,12 +209,12 @@ export class GivenNumbers {
     const others = model.watched.map((w) => w.expression).filter((e) => e !== expression)
     this.paid.replaceChildren()
     this.panel.replaceChildren(
-      h('h4', {}, expression),
+      h('h3', {}, expression),
       h('div', { class: 'fact' }, field, h('button', { class: 'primary', onclick: () => void give() }, 'Give')),
-      h('h4', {}, 'May change'),
+      h('h3', {}, 'May change'),
       boxes('given', this.free, this.chosen),
       ...(others.length
-        ? [h('h4', {}, 'Stays'), boxes('held', others, stored<string[]>(`held.${model.name}`, []))]
+        ? [h('h3', {}, 'Stays'), boxes('held', others, stored<string[]>(`held.${model.name}`, []))]
         : []),
       this.paid,
     )

@@ -18,10 +18,14 @@ export class Orientation {
   readonly element = h('div', { class: 'orientation' }, this.cube, this.bar)
 
   constructor(
-    private readonly camera: Camera,
+    private readonly seen: () => Camera,
     private readonly look: (view: Standard) => void,
     private readonly height: () => number,
   ) {}
+
+  private get camera(): Camera {
+    return this.seen()
+  }
 
   /** The picture hears the pointer: a point that is under the cube can be dragged. */
   hover(e: MouseEvent): void {

@@ -1,6 +1,7 @@
 // Parameters, objects, the inspector, messages and the strip of numbers.
 
 import { h, shown, store, stored } from './dom'
+import { fileName } from './editor'
 import { FIGURES, unitOf } from './figures'
 import type { GivenNumbers } from './numbers'
 import { changed, type Fault, model, on, type Param, type Remark } from './state'
@@ -18,7 +19,8 @@ export interface Actions {
   select(name: string, from: 'tree' | 'view' | 'text' | 'message' | 'graph'): void
   hover(name: string): void
   locate(name: string): Promise<void>
-  show(place: [number, number]): void
+  /** Shows a place of the program, or of a file that it reads. */
+  show(place: [number, number], file?: string): void
   apply(edits: { from: number; to: number; insert: string }[], version?: number, name?: string): void
   /** A change of statements by the engine: a step of the history. */
   rewrite(kind: string, fields: Record<string, unknown>, name: string): Promise<void>
@@ -404,7 +406,7 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       ...rows,
       ...(values.length
         ? [
-            h('h4', {}, 'Values', values.length && model.params.length ? derivative : ''),
+            h('h3', {}, 'Values', values.length && model.params.length ? derivative : ''),
             ...values.map((v) =>
               h(
                 'div',
@@ -422,9 +424,9 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
             ),
           ]
         : []),
-      h('h4', {}, 'Parents'),
+      h('h3', {}, 'Parents'),
       o.parents.length ? chips(o.parents) : h('span', { class: 'quiet' }, 'none'),
-      h('h4', {}, 'Children'),
+      h('h3', {}, 'Children'),
       o.children.length ? chips(o.children) : h('span', { class: 'quiet' }, 'none'),
       h(
         'div',
@@ -488,10 +490,14 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
     return item
   }
   function one(f: Fault): HTMLElement {
-    const where = f.file ? `${f.file}:${f.line}` : f.line ? `line ${f.line}` : ''
+    const where = f.file ? `${fileName(f.file)}:${f.line}` : f.line ? `line ${f.line}` : ''
     const found = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '']
     const item = message(f, where, [...found, ...f.notes, ...f.help])
-    item.querySelector('button')!.addEventListener('click', () => f.place && act.show(f.place))
+    const go = () => {
+      if (f.file && f.elsewhere) act.show(f.elsewhere, f.file)
+      else if (f.place) act.show(f.place)
+    }
+    item.querySelector('button')!.addEventListener('click', go)
     if (f.edit)
       item.append(
         h(

@@ -2,7 +2,8 @@
 
 import type { Changes } from './changes'
 import { h, store, stored } from './dom'
-import type { Editor } from './editor'
+import { type Editor, fileName } from './editor'
+import type { FileTabs } from './file_tabs'
 import { stepEnds } from './history'
 import type { Host } from './host'
 import type { Link } from './link'
@@ -16,10 +17,8 @@ function keeps(): boolean {
 }
 
 export class Saving {
-  editor!: Editor
-  dirty = false
+  files!: FileTabs
   online = false
-  private theirs = ''
 
   constructor(
     private readonly link: Link,
@@ -29,6 +28,22 @@ export class Saving {
     private readonly give: (blob: Blob, name: string) => void,
   ) {}
 
+  /** Whether a text differs from its file. */
+  is(file: string | undefined, dirty: boolean): void {
+    const editor = this.files.of(file)
+    if (editor) editor.dirty = dirty
+    if (file !== undefined) this.files.build()
+    this.show()
+  }
+
+  private get dirty(): boolean {
+    return this.files.all.some((editor) => editor.dirty)
+  }
+
+  private get pending(): boolean {
+    return this.files.all.some((editor) => editor.pending)
+  }
+
   private words(): string {
     const ready = document.body.dataset.engine === 'ready'
     if (this.host) return ready ? '' : 'the engine starts…'
@@ -37,7 +52,7 @@ export class Saving {
       if (!ready) return 'the engine starts…'
       return !this.dirty ? 'as it was' : keeps() ? 'changed, kept in this browser' : 'changed, not saved'
     }
-    const waits = this.editor.pending
+    const waits = this.pending
     if (!this.online) return waits ? 'not connected: what you type is kept in this page' : 'not connected'
     return waits ? 'sending…' : this.dirty ? 'unsaved changes (draft kept)' : 'saved'
   }
@@ -46,48 +61,60 @@ export class Saving {
     const { saved } = this.shell
     saved.textContent = this.words()
     const away = !this.link.local && !this.host && !this.online
-    const changed = this.dirty || (!this.link.local && this.editor.pending)
+    const changed = this.dirty || (!this.link.local && this.pending)
     saved.dataset.state = away ? 'off' : changed ? 'dirty' : 'saved'
   }
 
-  async save(force = false): Promise<void> {
+  /** Writes all texts that differ from their files. */
+  async save(): Promise<void> {
     if (this.host) return this.host.save()
+    await this.changes.settled()
+    const texts = this.files.all.filter((editor) => !editor.file || editor.dirty)
+    let saved = 0
+    for (const editor of texts) if (await this.write(editor)) saved++
+    if (!this.link.local && saved === texts.length) this.shell.say('Saved')
+    this.show()
+  }
+
+  private async write(editor: Editor, force = false): Promise<boolean> {
     try {
-      await this.changes.settled()
-      this.editor.view.dispatch({ annotations: stepEnds })
-      const answer = await this.link.tell({ kind: 'save', force })
-      if (this.link.local) return this.give(new Blob([answer.text], { type: 'text/plain' }), model.name)
-      if (answer.kind === 'conflict') this.conflict(answer.theirs)
+      editor.view.dispatch({ annotations: stepEnds })
+      const answer = await this.link.tell({ kind: 'save', file: editor.file, force })
+      if (this.link.local) this.give(new Blob([answer.text], { type: 'text/plain' }), model.name)
+      else if (answer.kind === 'conflict') this.conflict(answer.theirs, editor.file)
       else {
-        this.dirty = false
-        this.shell.say('Saved')
+        this.is(editor.file, false)
+        return true
       }
     } catch (error) {
       this.shell.say((error as Error).message)
     }
-    this.show()
+    return false
   }
 
-  conflict(text: string): void {
-    this.theirs = text
+  conflict(theirs: string, file = ''): void {
+    const editor = this.files.of(file)
+    if (!editor) return
     const lines = (t: string) => t.split('\n').length
-    const [there, here] = [lines(text), lines(this.editor.text)]
+    const [there, here] = [lines(theirs), lines(editor.text)]
+    const mine = () => void this.write(editor, true).then((done) => done && this.shell.warn(''))
+    const take = () => void this.files.show(file).then(() => this.changes.revert())
     this.shell.warn(
-      `The file was changed by another program (${there} lines there, ${here} here), and there are changes here, too. `,
-      h('button', { onclick: () => void this.save(true).then(() => this.shell.warn('')) }, 'Keep mine, write the file'),
-      h('button', { onclick: () => this.changes.revert() }, 'Take theirs'),
-      h('button', { onclick: () => this.compare() }, 'Show both'),
+      `${file ? fileName(file) : 'The file'} was changed by another program (${there} lines there, ${here} here), and there are changes here, too. `,
+      h('button', { onclick: mine }, 'Keep mine, write the file'),
+      h('button', { onclick: take }, 'Take theirs'),
+      h('button', { onclick: () => this.compare(theirs, editor.text) }, 'Show both'),
     )
   }
 
-  private compare(): void {
+  private compare(theirs: string, mine: string): void {
     const dialog = h(
       'dialog',
       { class: 'compare', 'aria-label': 'both texts' },
       h('h3', {}, 'The file'),
-      h('pre', {}, this.theirs),
+      h('pre', {}, theirs),
       h('h3', {}, 'Here'),
-      h('pre', {}, this.editor.text),
+      h('pre', {}, mine),
       h('button', { onclick: () => dialog.close() }, 'Close'),
     )
     document.body.append(dialog)

@@ -81,7 +81,7 @@ export class Sheets {
         h('figcaption', {}, 'Lines plan: profile, body plan, half-breadth plan'),
         h('button', { 'aria-label': 'larger', onclick: zoom(1.25) }, '+'),
         h('button', { 'aria-label': 'smaller', onclick: zoom(0.8) }, '−'),
-        h('div', { class: 'scrolled' }, picture),
+        h('div', { class: 'scrolled', tabindex: 0, role: 'group', 'aria-label': 'lines plan' }, picture),
       ),
     ]
   }
@@ -113,7 +113,7 @@ export class Sheets {
       h(
         'div',
         { class: 'pad' },
-        h('h3', {}, 'Hydrostatics'),
+        h('h2', {}, 'Hydrostatics'),
         h('p', { class: 'quiet' }, 'At the waterplane z = 0, both sides.'),
         again,
         h(
@@ -151,7 +151,7 @@ export class Sheets {
       h(
         'div',
         { class: 'pad' },
-        h('h3', {}, 'Section areas'),
+        h('h2', {}, 'Section areas'),
         h(
           'p',
           { class: 'quiet' },
@@ -194,13 +194,13 @@ export class Sheets {
       h(
         'div',
         { class: 'pad' },
-        h('h3', {}, `${head.panels} panels, ${head.vertices} vertices, ${state}`),
+        h('h2', {}, `${head.panels} panels, ${head.vertices} vertices, ${state}`),
         h(
           'p',
           {},
           `Area of the panels ${shown(head.area)} ${unitOf('mesh.area')}, volume ${shown(head.volume)} ${unitOf('mesh.volume')}.`,
         ),
-        leaks.length ? h('h4', {}, 'Open edges that nothing closes') : '',
+        leaks.length ? h('h3', {}, 'Open edges that nothing closes') : '',
         leaks.length ? h('ul', {}, ...leaks) : '',
         h(
           'table',
@@ -328,10 +328,9 @@ export class Sheets {
           class: `node ${o.class} ${o.state} ${o.name === selected ? 'selected' : ''}`,
           tabindex: 0,
           role: 'button',
-          'aria-label': `${o.name}, ${o.kind}`,
         },
         s('rect', { x, y, width: wide.get(o.name)!, height: high, rx: 6 }),
-        s('text', { x: x + wide.get(o.name)! / 2, y: y + 14, class: 'name' }, o.name),
+        s('text', { x: x + wide.get(o.name)! / 2, y: y + 14, class: 'name' }, o.name, ' '),
         s('text', { x: x + wide.get(o.name)! / 2, y: y + 28, class: 'kind' }, o.kind),
       )
       node.addEventListener('click', () => this.act.select(o.name, 'graph'))

@@ -113,7 +113,7 @@ export function makeShell(link: Link) {
     h('div', { class: 'sections' }, section, planes),
     sheet,
   )
-  const middle = h('main', { class: 'middle' }, tabs, stage, status)
+  const middle = h('div', { class: 'middle' }, tabs, stage, status)
   const panel = (name: string, words: string, part: HTMLElement) =>
     h('div', { class: `panel ${name}` }, h('h2', {}, words), part)
   const right = h(
@@ -124,7 +124,7 @@ export function makeShell(link: Link) {
     panel('of-inspector', 'Inspector', inspector),
   )
   const body = h(
-    'div',
+    'main',
     { class: 'body' },
     left,
     grip('left', 'width of left', 'vertical'),

@@ -61,14 +61,14 @@ export function startPage(act: StartActions): { element: HTMLElement; refresh: (
     h('button', { class: 'template', onclick: run }, h('strong', {}, title), h('span', { class: 'quiet' }, words))
   const chosen = h('input', { type: 'file', accept: OPENED, 'aria-label': 'open a program', hidden: true })
   chosen.addEventListener('change', () => chosen.files?.[0] && act.open(chosen.files[0]))
-  const list = h('div', { class: 'recent', role: 'list' })
+  const list = h('div', { class: 'recent', role: 'group', 'aria-label': 'opened before' })
   const recent = h('div', { hidden: true }, h('h2', {}, 'Opened before'), list)
   const refresh = async () => {
     const files = await act.recent().catch(() => [])
     const row = ({ name, path }: OpenedBefore) => {
       const folder = path.slice(0, path.length - name.length - 1)
       const words = [h('strong', {}, name), h('span', { class: 'quiet' }, folder)]
-      return h('button', { role: 'listitem', class: 'link', title: path, onclick: () => act.reopen(path) }, ...words)
+      return h('button', { class: 'link', title: path, onclick: () => act.reopen(path) }, ...words)
     }
     list.replaceChildren(...files.slice(0, 6).map(row))
     recent.hidden = files.length === 0

@@ -26,6 +26,8 @@ export interface Fault {
   place: [number, number] | null
   line: number | null
   file: string | null
+  /** Its place in that file. */
+  elsewhere: [number, number] | null
   expected: string | null
   found: string | null
   notes: string[]
@@ -52,6 +54,8 @@ export const model = {
   name: 'model',
   params: [] as Param[],
   objects: [] as Obj[],
+  /** The files that it reads, by their full names. */
+  files: [] as string[],
   faults: [] as Fault[],
   printed: [] as string[],
   /** The last file that was made, and remarks about it. */
@@ -64,7 +68,18 @@ export const model = {
   rev: 0,
 }
 
-type Topic = 'params' | 'objects' | 'faults' | 'watched' | 'scene' | 'selection' | 'printed' | 'rev' | 'made'
+type Topic =
+  | 'files'
+  | 'shown'
+  | 'params'
+  | 'objects'
+  | 'faults'
+  | 'watched'
+  | 'scene'
+  | 'selection'
+  | 'printed'
+  | 'rev'
+  | 'made'
 const listeners = new Map<Topic, Set<() => void>>()
 
 export function on(topics: Topic | Topic[], run: () => void): void {

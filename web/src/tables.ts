@@ -151,7 +151,7 @@ export function tablesSheet(editor: Editor, act: TableActions): HTMLElement[] {
     h(
       'div',
       { class: 'pad' },
-      h('h3', {}, 'Tables'),
+      h('h2', {}, 'Tables'),
       h('p', { class: 'quiet' }, about),
       ...groups.map((g) => table(editor, act, g)),
     ),

@@ -47,7 +47,9 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
   function build(): void {
     const focused = (document.activeElement as HTMLElement | null)?.dataset?.key
     tree.textContent = ''
+    // A tree without items is none.
     const all = groups()
+    tree.setAttribute('role', all.length ? 'tree' : 'group')
     for (const [title, objects] of all) {
       const open = !folded.has(title) || search.value.trim() !== ''
       const head = h(

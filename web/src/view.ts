@@ -31,7 +31,9 @@ import { Cap } from './cap'
 import { coloured, HUES, hex, ink, type Line, type Scale, scale } from './colour'
 import { creases, isTriangulation } from './creases'
 import type { Frame, Part } from './frame'
+import { type Pane, panes } from './panes'
 import { type Hit, hit } from './pick'
+import { DOT_FRAGMENT, DOT_VERTEX, FRAGMENT, VERTEX } from './shaders'
 
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
 export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
@@ -42,48 +44,6 @@ const CROWD = 120
 const CREASE_DELAY = 120
 
 const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3, reflection: 4 }
-
-const VERTEX = `
-#include <clipping_planes_pars_vertex>
-attribute vec3 tint;
-varying vec3 vNormal; varying vec3 vWorld; varying vec3 vTint;
-void main() {
-  vec4 world = modelMatrix * vec4(position, 1.0);
-  vec4 mvPosition = viewMatrix * world;
-  vWorld = world.xyz; vTint = tint;
-  vNormal = mat3(modelMatrix) * normal;
-  gl_Position = projectionMatrix * mvPosition;
-  #include <clipping_planes_vertex>
-}`
-
-const FRAGMENT = `
-#include <clipping_planes_pars_fragment>
-uniform vec3 colour; uniform float tinted; uniform int mode; uniform vec3 towards; uniform vec3 upward; uniform vec3 right;
-uniform float opacity; uniform float grey; uniform float lit; uniform vec3 centre; uniform float size; uniform float stripes;
-varying vec3 vNormal; varying vec3 vWorld; varying vec3 vTint;
-float stripe(float x) { float w = max(fwidth(x), 1e-6); float d = abs(fract(x) - 0.5) - 0.25; return mix(smoothstep(-w, w, d), 0.5, smoothstep(0.25, 0.6, w)); }
-void main() {
-  #include <clipping_planes_fragment>
-  vec3 n = normalize(vNormal);
-  vec3 eye = isOrthographic ? towards : normalize(cameraPosition - vWorld);
-  bool inside = dot(n, eye) < 0.0;
-  if (inside) n = -n;
-  vec3 base = mix(colour, vTint, tinted);
-  if (mode == 1) { vec3 r = 2.0 * dot(n, eye) * n - eye; base = mix(vec3(0.13, 0.15, 0.18), vec3(0.96), stripe(stripes * atan(dot(r, upward), dot(r, right)) / 6.2831853)); }
-  if (mode == 2) base = mix(vec3(0.16, 0.3, 0.52), vec3(0.95, 0.94, 0.9), stripe(stripes * acos(clamp(n.z, -1.0, 1.0)) / 3.14159265));
-  if (mode == 3) { vec3 s = vec3(1.0, 0.0, 0.0); vec3 c = cross(s, n); float d = dot(c, centre + vec3(0.0, 0.0, size) - vWorld) / max(length(c), 1e-6); base = mix(vec3(0.2, 0.24, 0.3), vec3(0.97), stripe(0.5 * stripes * d / size)); }
-  // Parallel lights along x on a ceiling over the model, as the eye sees them in it (Klass 1980).
-  if (mode == 4) { vec3 r = 2.0 * dot(n, eye) * n - eye; float way = (centre.z + 3.0 * size - vWorld.z) / max(r.z, 1e-3); float y = vWorld.y + way * r.y - centre.y; base = mix(vec3(0.17, 0.2, 0.25), vec3(0.98), r.z > 1e-3 ? stripe(0.1 * stripes * y / size) : 0.0); }
-  vec3 key = normalize(-0.45 * right + 0.7 * upward + 0.55 * towards);
-  float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, eye), 0.0) + 0.30 * max(dot(n, key), 0.0);
-  float gloss = 0.09 * pow(max(dot(n, normalize(key + eye)), 0.0), 40.0);
-  float shade = mix(1.0, diffuse, lit);
-  vec3 c = base * shade * (inside ? 0.86 : 1.0) + (inside ? 0.0 : gloss * lit);
-  float g = dot(c, vec3(0.3, 0.59, 0.11));
-  c = mix(c, vec3(g) * 0.6 + 0.3, grey);
-  float a = opacity < 1.0 ? opacity + (1.0 - opacity) * pow(1.0 - abs(dot(n, eye)), 3.0) : 1.0;
-  gl_FragColor = vec4(c, a);
-}`
 
 export interface Drawn {
   key: string
@@ -128,12 +88,18 @@ export interface Picked {
 }
 
 export class View {
-  readonly camera = new Camera()
+  /** The camera of the turned view, and those of the three standard views beside it. */
+  private readonly cameras = [new Camera(), new Camera(), new Camera(), new Camera()]
+  /** The view that the hand is in. */
+  private active = 0
+  private manifold = false
   readonly items = new Map<string, Drawn>()
   readonly canvas: HTMLCanvasElement
   style: Style = 'shaded'
   paint: Paint = 'patches'
   fieldScale: Scale | null = null
+  /** Ends of the scale that a person has set. */
+  fixed: { low: number; high: number } | null = null
   mirror = true
   layers: Record<string, boolean> = {
     patch: true,
@@ -191,10 +157,8 @@ export class View {
     this.scene.add(this.model, this.image, this.extras, this.others, this.cut, this.cap.group)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
-      vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
-        void main() { vTint = tint; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_Position.z -= 2e-3 * gl_Position.w; gl_PointSize = pixels * big; }`,
-      fragmentShader: `varying vec3 vTint; void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
-        gl_FragColor = vec4(r > 0.34 ? vec3(1.0) : vTint, 1.0); }`,
+      vertexShader: DOT_VERTEX,
+      fragmentShader: DOT_FRAGMENT,
     })
     this.cloud = new Points(new BufferGeometry(), material)
     this.cloud.frustumCulled = false
@@ -213,8 +177,49 @@ export class View {
     this.draw()
   }
 
+  /** The camera of the view that the hand is in. */
+  get camera(): Camera {
+    return this.cameras[this.active]
+  }
+
+  /** Whether profile, body plan and plan are seen beside the turned view. */
+  get four(): boolean {
+    return this.manifold
+  }
+
+  set four(on: boolean) {
+    this.manifold = on
+    this.host.classList.toggle('four', on)
+    this.active = 0
+    this.cameras[1].look('profile')
+    this.cameras[2].look('body')
+    this.cameras[3].look('plan')
+    this.fit()
+  }
+
+  private get panes(): Pane[] {
+    return panes(this.resolution.x, this.resolution.y, this.manifold)
+  }
+
+  private get pane(): Pane {
+    return this.panes[this.active]
+  }
+
+  /** The hand is in the view at a place of the picture from now on. */
+  enter(x: number, y: number): void {
+    const at = this.panes.findIndex((p) => x >= p.left && x < p.left + p.width && y >= p.top && y < p.top + p.height)
+    if (at >= 0) this.active = at
+  }
+
+  /** The middle of the view that the hand is in. */
+  get middle(): [number, number] {
+    const { left, top, width, height } = this.pane
+    return [left + width / 2, top + height / 2]
+  }
+
+  /** The height of the view that the hand is in, in picture points. */
   get height(): number {
-    return this.resolution.y
+    return this.pane.height
   }
 
   /** Takes what is new in a frame; true when there was something. */
@@ -607,7 +612,7 @@ export class View {
       sized.push({ item, sizes })
       all.push(sizes)
     }
-    this.fieldScale = scale(all, signed)
+    this.fieldScale = { ...scale(all, signed), ...this.fixed }
     for (const { item, sizes } of sized) {
       const tint = new Float32Array(3 * sizes.length)
       for (let k = 0; k < sizes.length; k++) tint.set(coloured(sizes[k], this.fieldScale), 3 * k)
@@ -827,8 +832,10 @@ export class View {
   fit(): void {
     // The observer hears of a new size with the next frame only.
     this.resize()
-    this.camera.inset = this.covered() / this.resolution.y
-    this.camera.fit(this.bounds, this.resolution.x / this.resolution.y)
+    this.panes.forEach(({ top, width, height }, k) => {
+      this.cameras[k].inset = Math.max(0, this.covered() - top) / height
+      this.cameras[k].fit(this.bounds, width / height)
+    })
     this.draw()
   }
 
@@ -842,11 +849,6 @@ export class View {
   }
 
   render(): void {
-    const aspect = this.resolution.x / this.resolution.y
-    this.camera.aim(aspect, this.bounds)
-    this.uniforms.towards.value.copy(this.camera.towards)
-    this.uniforms.upward.value.copy(this.camera.up)
-    this.uniforms.right.value.copy(this.camera.right)
     if (!this.bounds.isEmpty()) {
       this.bounds.getCenter(this.uniforms.centre.value)
       this.uniforms.size.value = 0.25 * this.bounds.getSize(new Vector3()).length()
@@ -857,29 +859,44 @@ export class View {
       const normal = new Vector3().setComponent(this.clip.axis, sign)
       this.renderer.clippingPlanes = [new Plane(normal, -sign * this.clip.value)]
     }
-    this.renderer.render(this.scene, this.camera.three)
+    const { panes, resolution, renderer } = this
+    renderer.setScissorTest(panes.length > 1)
+    panes.forEach(({ left, top, width, height }, k) => {
+      const camera = this.cameras[k]
+      camera.aim(width / height, this.bounds)
+      this.uniforms.towards.value.copy(camera.towards)
+      this.uniforms.upward.value.copy(camera.up)
+      this.uniforms.right.value.copy(camera.right)
+      renderer.setViewport(left, resolution.y - top - height, width, height)
+      renderer.setScissor(left, resolution.y - top - height, width, height)
+      renderer.render(this.scene, camera.three)
+    })
     this.onFrame()
   }
 
   /** Where a place is in the picture, in CSS pixels. */
   project(p: Vector3): [number, number] {
-    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    this.aim()
     return this.projected(p)
+  }
+
+  private aim(): void {
+    const { width, height } = this.pane
+    this.camera.aim(width / height, this.bounds)
   }
 
   /** The same while the camera stays. */
   private projected(p: Vector3): [number, number] {
     const v = p.clone().project(this.camera.three)
-    return [(v.x * 0.5 + 0.5) * this.resolution.x, (-v.y * 0.5 + 0.5) * this.resolution.y]
+    const { left, top, width, height } = this.pane
+    return [left + (v.x * 0.5 + 0.5) * width, top + (-v.y * 0.5 + 0.5) * height]
   }
 
   ray(x: number, y: number): Raycaster {
-    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    this.aim()
+    const { left, top, width, height } = this.pane
     const caster = new Raycaster()
-    caster.setFromCamera(
-      new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2),
-      this.camera.three,
-    )
+    caster.setFromCamera(new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2), this.camera.three)
     return caster
   }
 
@@ -891,7 +908,7 @@ export class View {
   near(x: number, y: number, within: number, but = ''): Drawn | null {
     let best: Drawn | null = null
     let least = within
-    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    this.aim()
     for (const item of this.dotItems) {
       if (item.object === but) continue
       const [px, py] = this.projected(this.place(item))
@@ -931,7 +948,8 @@ export class View {
     const eye = this.ray(x, y).ray
     const { projectionMatrix, matrixWorldInverse } = this.camera.three
     const m = new Matrix4().multiplyMatrices(projectionMatrix, matrixWorldInverse).elements
-    const [w, h] = [this.resolution.x / 2, this.resolution.y / 2]
+    const { left, top, width, height } = this.pane
+    const [w, h] = [width / 2, height / 2]
     for (const item of this.items.values()) {
       if (item.kind === 'patch' || item.kind === 'point' || item.kind === 'grid' || !item.group.visible) continue
       const { origin, position, edge } = item
@@ -943,8 +961,8 @@ export class View {
           position[3 * k + 2] + origin.z,
         ]
         const scale = 1 / (m[3] * px + m[7] * py + m[11] * pz + m[15])
-        flat[2 * k] = w + w * scale * (m[0] * px + m[4] * py + m[8] * pz + m[12])
-        flat[2 * k + 1] = h - h * scale * (m[1] * px + m[5] * py + m[9] * pz + m[13])
+        flat[2 * k] = left + w + w * scale * (m[0] * px + m[4] * py + m[8] * pz + m[12])
+        flat[2 * k + 1] = top + h - h * scale * (m[1] * px + m[5] * py + m[9] * pz + m[13])
       }
       for (let k = 0; k < edge.length; k += 2) {
         const [a, b] = [2 * edge[k], 2 * edge[k + 1]]

@@ -50,7 +50,10 @@ pub use measures::gradients::{GradientMode, Gradients, WeightedOutput};
 pub use measures::hydrostatics::HydrostaticsOptions as FloatOptions;
 pub use measures::surface_fields::PatchAnalysis;
 pub use moldloft_lang::run::program::ArgumentInText;
-pub use moldloft_lang::{NoFiles, Param, ReadText, SolveStatus, TextReadError, World, registry};
+pub use moldloft_lang::{
+    NoFiles, OpenFiles, OpenTexts, Param, ReadAs, ReadText, SolveStatus, TextReadError, World,
+    registry,
+};
 pub use set::LiteralCoefficient;
 pub use solve::SolveReport;
 pub use solve_for::{Adjustable, Adjustment, SolvedNumbers, WantedNumber, round_to};

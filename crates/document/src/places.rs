@@ -6,11 +6,10 @@ use moldloft_lang::run::program::{self, ArgumentInText};
 use moldloft_syntax::sdl::StmtKind;
 
 impl Document {
-    /// Span of the name of an object in its declaration; `None` outside the main text.
+    /// Span of the name of an object in its declaration, in whichever text that is.
     pub fn declaration(&self, name: &str) -> Option<Span> {
         let graph = self.graph();
-        let span = self.declared_at(&self.plain, graph.get(graph.find(name)?)?)?;
-        (self.sources.ids().next() == Some(span.file)).then_some(span)
+        self.declared_at(&self.plain, graph.get(graph.find(name)?)?)
     }
 
     /// Position of an argument of an object in the main text, or where it can be inserted; `None`

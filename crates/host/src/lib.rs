@@ -7,16 +7,16 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 use moldloft_lang::{ReadText, TextReadError, World};
+use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most bytes of one file.
 pub const LARGEST: u64 = 256 << 20;
 
-/// The most bytes that one model reads.
+/// The most bytes of the files that one model reads.
 const MOST_READ: u64 = 1 << 30;
 
 /// Reads files inside the model's folder and the library path, and nowhere else.
@@ -24,8 +24,8 @@ const MOST_READ: u64 = 1 << 30;
 pub struct FileWorld {
     /// Folders that may be read, links resolved; the model's own first.
     roots: Vec<PathBuf>,
-    /// Number of bytes read so far.
-    read: Arc<AtomicU64>,
+    /// Number of bytes of each file that was read.
+    read: Arc<Mutex<HashMap<PathBuf, u64>>>,
 }
 
 impl FileWorld {
@@ -90,10 +90,12 @@ impl World for FileWorld {
             Err(ReadFault::System(error)) => return Err(failed(path, &error)),
             Err(fault) => return Err(refused(&fault.to_string(), None)),
         };
-        let count = bytes.len() as u64;
-        if self.read.fetch_add(count, Ordering::Relaxed) + count > MOST_READ {
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        read.insert(found.clone(), bytes.len() as u64);
+        if read.values().sum::<u64>() > MOST_READ {
             return Err(refused("the model reads more than 1 GiB", None));
         }
+        drop(read);
         let name = if from.is_none() { path.into() } else { found.display().to_string() };
         Ok(ReadText { name, bytes: bytes.into() })
     }
@@ -161,33 +163,6 @@ fn open(path: &Path) -> std::io::Result<File> {
 #[cfg(not(unix))]
 fn open(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().read(true).open(path)
-}
-
-/// A text that was read: path as requested, requesting text, and content.
-pub type ReadAs = (String, Option<String>, ReadText);
-
-/// A world that records the texts that are read, so that a page can contain them.
-pub struct Noted<W> {
-    world: W,
-    read: Arc<Mutex<Vec<ReadAs>>>,
-}
-
-impl<W: World> Noted<W> {
-    /// The world `world`; each read is recorded in `read`.
-    pub fn new(world: W, read: Arc<Mutex<Vec<ReadAs>>>) -> Self {
-        Self { world, read }
-    }
-}
-
-impl<W: World> World for Noted<W> {
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
-        let found = self.world.read(path, from)?;
-        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
-        if !read.iter().any(|(p, f, _)| p == path && f.as_deref() == from) {
-            read.push((path.into(), from.map(str::to_owned), found.clone()));
-        }
-        Ok(found)
-    }
 }
 
 fn failed(path: &str, error: &std::io::Error) -> TextReadError {

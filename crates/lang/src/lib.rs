@@ -23,7 +23,9 @@ pub use functions::block_files::{BlockJoint, CgnsBlocks, FacePart};
 pub use functions::builtins::{BUILTINS, Builtin, MOST_REFINED};
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};
-pub use source::{LIBRARIES, NoFiles, ReadText, TextReadError, World};
+pub use source::{
+    LIBRARIES, NoFiles, OpenFiles, OpenTexts, ReadAs, ReadText, TextReadError, World,
+};
 pub use value::display;
 
 /// Inner parts, for the tests of this crate: unit tests would compile all of it once more.

@@ -1,37 +1,7 @@
-//! Files and addresses: editors' names of files, and the search for loaded files.
+//! Addresses: editors' names of files.
 
-use moldloft::host::FileWorld;
-use moldloft::lang::{LIBRARIES, ReadText, TextReadError, World};
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, PoisonError, RwLock};
-
-/// The texts that an editor has open and may not have saved, by their paths with links resolved.
-pub type Buffers = Arc<RwLock<HashMap<PathBuf, Arc<str>>>>;
-
-/// The files beside a text; of those that are open the texts that the editor shows.
-pub struct OpenFiles {
-    files: FileWorld,
-    buffers: Buffers,
-}
-
-impl OpenFiles {
-    /// The files in `folder`.
-    pub fn new(folder: &Path, buffers: Buffers) -> Self {
-        Self { files: FileWorld::new(Some(folder), &[]), buffers }
-    }
-}
-
-impl World for OpenFiles {
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
-        let found = self.files.read(path, from)?;
-        let buffers = self.buffers.read().unwrap_or_else(PoisonError::into_inner);
-        match buffers.get(Path::new(&found.name)) {
-            Some(text) => Ok(ReadText { name: found.name, bytes: text.as_bytes().into() }),
-            None => Ok(found),
-        }
-    }
-}
+use moldloft::lang::LIBRARIES;
+use std::path::PathBuf;
 
 /// The path of a file address.
 pub fn path_of(uri: &str) -> Option<PathBuf> {

@@ -3,19 +3,20 @@
 use crate::answers::{self, Answer};
 use crate::index::{Index, OpenText};
 use crate::lines::{LineIndex, apply};
-use crate::places::{Buffers, OpenFiles, path_of, uri_of};
+use crate::places::{path_of, uri_of};
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification as note;
 use lsp_types::notification::Notification as _;
 use moldloft::budget::Budget;
 use moldloft::diag::{DiagnosticData, LabelData, Severity, Sources};
-use moldloft::document::{Document, NoFiles, World};
+use moldloft::document::{Document, NoFiles, OpenFiles, OpenTexts, World};
+use moldloft::host::FileWorld;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time limit of a program, so that an endless loop is reported soon.
@@ -95,7 +96,7 @@ impl Running {
 pub struct Server {
     open: BTreeMap<String, OpenDocument>,
     folders: Vec<PathBuf>,
-    buffers: Buffers,
+    texts: Arc<OpenTexts>,
     index: Index,
     events: Sender<Event>,
     runs: u64,
@@ -111,7 +112,7 @@ impl Server {
         Self {
             open: BTreeMap::new(),
             folders,
-            buffers: Buffers::default(),
+            texts: Arc::default(),
             index: Index::default(),
             events,
             runs: 0,
@@ -269,7 +270,7 @@ impl Server {
         });
         self.out.push(running(uri, self.runs, true));
         let (uri, text, serial) = (uri.to_string(), open.text.clone(), self.runs);
-        let (events, buffers) = (self.events.clone(), self.buffers.clone());
+        let (events, texts) = (self.events.clone(), self.texts.clone());
         // As much as a program's first thread has, for texts that nest deeply.
         let thread = std::thread::Builder::new().stack_size(8 << 20);
         let begun = thread.spawn(move || {
@@ -280,7 +281,7 @@ impl Server {
                         document.set_text(&text);
                         document
                     }
-                    None => Box::new(opened(&uri, &text, budget.clone(), buffers)),
+                    None => Box::new(opened(&uri, &text, budget.clone(), texts)),
                 }
             });
             let document = catch_unwind(run).ok();
@@ -397,7 +398,7 @@ impl Server {
         self.stop(uri);
         let Some(open) = self.open.remove(uri) else { return };
         if let Some(path) = path_of(uri).and_then(|path| path.canonicalize().ok()) {
-            self.buffers.write().unwrap_or_else(PoisonError::into_inner).remove(&path);
+            self.texts.put(&path.display().to_string(), None);
         }
         for uri in std::iter::once(uri.clone()).chain(open.reported) {
             self.out.push(published(&uri, None, &[]));
@@ -410,8 +411,7 @@ impl Server {
     fn buffer(&mut self, uri: &str) {
         let path = path_of(uri).and_then(|path| path.canonicalize().ok());
         if let (Some(path), Some(open)) = (path, self.open.get(uri)) {
-            let mut buffers = self.buffers.write().unwrap_or_else(PoisonError::into_inner);
-            buffers.insert(path, open.text.as_str().into());
+            self.texts.put(&path.display().to_string(), Some(&open.text));
         }
     }
 
@@ -573,11 +573,11 @@ fn related(label: &LabelData, uri: &str) -> Value {
 }
 
 /// The model of a text, which loads files from the folder of its file.
-fn opened(uri: &str, text: &str, budget: Arc<Budget>, buffers: Buffers) -> Document {
+fn opened(uri: &str, text: &str, budget: Arc<Budget>, texts: Arc<OpenTexts>) -> Document {
     let (world, name): (Box<dyn World>, String) = match path_of(uri) {
         Some(path) => {
-            let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
-            (Box::new(OpenFiles::new(&folder, buffers)), path.display().to_string())
+            let files = FileWorld::new(path.parent(), &[]);
+            (Box::new(OpenFiles::new(files, texts)), path.display().to_string())
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };

@@ -6,7 +6,8 @@
 //! it has no answer yet; everything else is answered in order.
 
 use moldloft::budget::{Budget, read_frame, write_frame};
-use moldloft::host::{FileWorld, Noted, ReadAs};
+use moldloft::document::ReadText;
+use moldloft::host::FileWorld;
 use moldloft::session::Session;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -132,7 +133,6 @@ fn serve(name: &str, folder: Option<&str>, library: &[String]) {
 #[pyclass(name = "Session", module = "moldloft._core")]
 pub struct PySession {
     inner: Mutex<Session>,
-    read: Arc<Mutex<Vec<ReadAs>>>,
 }
 
 #[pymethods]
@@ -145,12 +145,11 @@ impl PySession {
         folder: Option<String>,
         library: Vec<String>,
     ) -> Self {
-        let read = Arc::<Mutex<Vec<ReadAs>>>::default();
         let session = py.detach(|| {
             let files = FileWorld::new(folder.as_deref().map(Path::new), &library);
-            Session::new(Box::new(Noted::new(files, read.clone())), name, text)
+            Session::new(Box::new(files), name, text)
         });
-        Self { inner: Mutex::new(session), read }
+        Self { inner: Mutex::new(session) }
     }
 
     /// The files that were read: path as requested, requesting text, name and bytes.
@@ -158,12 +157,12 @@ impl PySession {
         &self,
         py: Python<'py>,
     ) -> Vec<(String, Option<String>, String, Bound<'py, pyo3::types::PyBytes>)> {
-        let read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
-        let one = |(path, from, text): &ReadAs| {
+        let session = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+        let one = |(path, from, text): (String, Option<String>, ReadText)| {
             let bytes = pyo3::types::PyBytes::new(py, &text.bytes);
-            (path.clone(), from.clone(), text.name.clone(), bytes)
+            (path, from, text.name, bytes)
         };
-        read.iter().map(one).collect()
+        session.files().into_iter().map(one).collect()
     }
 
     /// The reply to a request, as a frame.

@@ -3,7 +3,7 @@
 use crate::drag::own_numbers;
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_document::{ArgumentInText, Document};
+use moldloft_document::{ArgumentInText, Document, ReadAs};
 use moldloft_model::Object;
 use moldloft_num::Vec3;
 use moldloft_registry::{Class, DefaultValue, FieldSpec, Registry, Row, Unit, Value as Quantity};
@@ -20,6 +20,28 @@ pub fn place(document: &Document, text: &str, span: Span) -> Value {
         return Value::Null;
     }
     json!([unit(text, span.start as usize), unit(text, span.end as usize)])
+}
+
+/// A span of another file: its name, and the place in UTF-16 units.
+pub fn elsewhere(document: &Document, span: Span) -> Option<(String, [usize; 2])> {
+    let sources = document.sources();
+    if !span.is_known() || sources.ids().next() == Some(span.file) {
+        return None;
+    }
+    let (name, text) = (sources.name(span.file)?, sources.text(span.file)?);
+    let place = [unit(text, span.start as usize), unit(text, span.end as usize)];
+    Some((name.to_string(), place))
+}
+
+/// The files that were read, in the order in which they were first.
+pub fn files(read: &[ReadAs]) -> Value {
+    let mut names: Vec<&str> = Vec::new();
+    for (_, _, file) in read {
+        if !names.contains(&file.name.as_str()) {
+            names.push(&file.name);
+        }
+    }
+    names.into()
 }
 
 /// The parameters.
@@ -96,6 +118,7 @@ pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value
             "place": home,
             "line": data.primary.as_ref().map(|l| l.line),
             "file": file.filter(|_| home.is_null()),
+            "elsewhere": elsewhere(document, span).map(|(_, place)| place),
             "expected": data.expected,
             "found": data.found,
             "notes": data.notes,

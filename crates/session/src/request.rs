@@ -51,6 +51,15 @@ pub enum Ask {
         /// The text.
         text: String,
     },
+    /// Replaces the text that counts in place of a file beside the document.
+    TextBeside {
+        /// The file's name, as the fact `reads` has it.
+        name: String,
+        /// The text; none gives the file back.
+        text: Option<String>,
+    },
+    /// The files that the text and those files read.
+    Reads,
     /// Applies one or several change sets to the text.
     Splice {
         /// Change sets of CodeMirror: lists of retained lengths and of `[removed, line, line ...]`.
@@ -268,6 +277,7 @@ impl Ask {
             Ask::Open
                 | Ask::Sync
                 | Ask::Text { .. }
+                | Ask::TextBeside { .. }
                 | Ask::Splice { .. }
                 | Ask::Set { .. }
                 | Ask::Commit

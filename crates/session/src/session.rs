@@ -11,7 +11,10 @@ use crate::text::{byte, changed, difference, unit};
 use crate::volume::{self, GridPlane};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Adjustable, CompletionKind, Document, WantedNumber, World, registry};
+use moldloft_document::{
+    Adjustable, CompletionKind, Document, OpenFiles, OpenTexts, ReadAs, WantedNumber, World,
+    registry,
+};
 use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
 use moldloft_mesh::{closure, qualities};
 use moldloft_num::{Order, Vec3};
@@ -35,6 +38,8 @@ const COMB_POINTS: usize = 129;
 /// An interactive session with a document.
 pub struct Session {
     document: Document,
+    /// Texts of files beside the document that count before they are saved.
+    texts: Arc<OpenTexts>,
     /// The text as in the page.
     text: String,
     /// Version of the text, counted by the page.
@@ -92,9 +97,12 @@ impl Session {
 
     /// As [`Self::new`], with a budget that limits and can cancel its work.
     pub fn within(world: Box<dyn World>, name: &str, text: &str, budget: Arc<Budget>) -> Self {
+        let texts = Arc::<OpenTexts>::default();
+        let world = Box::new(OpenFiles::new(world, texts.clone()));
         let document = Document::edited(registry(), world, (name, text), budget);
         Self {
             document,
+            texts,
             text: text.into(),
             version: 0,
             rev: 1,
@@ -110,6 +118,11 @@ impl Session {
     /// The text as in the page.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The files that the text and those files read.
+    pub fn files(&self) -> Vec<ReadAs> {
+        self.texts.files()
     }
 
     /// The document.
@@ -206,6 +219,7 @@ impl Session {
         let fault = self.scene.fault().filter(|f| diagnostics.iter().all(|d| d.id != f.id));
         diagnostics.extend(fault.cloned());
         known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
+        known.fact(frame, "reads", facts::files(&self.texts.files()));
         known.fact(frame, "printed", document.printed().iter().take(1000).cloned().collect());
         known.fact(frame, "mirror", document.symmetry().into());
         known.fact(frame, "unit", length_unit(document).0.into());
@@ -216,6 +230,11 @@ impl Session {
         match ask {
             Ask::Open | Ask::Sync | Ask::Close | Ask::Ping => {}
             Ask::Text { text } => self.take_text(text),
+            Ask::TextBeside { name, text } => {
+                self.texts.put(&name, text.as_deref());
+                self.take_text(self.text.clone());
+            }
+            Ask::Reads => frame.put("reads", facts::files(&self.texts.files())),
             Ask::Splice { changes } => {
                 let start = self.text.clone();
                 self.take_text(changes.iter().try_fold(start, |text, c| changed(&text, c))?);
@@ -387,6 +406,9 @@ impl Session {
 
     fn put_place(&self, span: moldloft_diag::Span, frame: &mut ReplyFrame) {
         frame.put("place", facts::place(&self.document, &self.text, span));
+        if let Some((file, place)) = facts::elsewhere(&self.document, span) {
+            frame.put("elsewhere", json!({"file": file, "place": place}));
+        }
     }
 
     /// The edits that give the name at an offset another spelling everywhere.
@@ -428,6 +450,7 @@ impl Session {
     fn take_text(&mut self, text: String) {
         self.drag = None;
         self.document.forget_params(&self.kept);
+        self.texts.forget();
         self.text = text;
         self.document.set_text(&self.text);
         self.rev += 1;

@@ -83,6 +83,7 @@ async def _serve(options: argparse.Namespace, hub_type: type, server_type: type)
             loop.add_signal_handler(number, task.cancel)
     with contextlib.suppress(asyncio.CancelledError):
         await task
-    if hub.dirty:
-        print(f"unsaved changes are kept in {hub.draft.path}")
+    for text in hub.texts:
+        if text.dirty:
+            print(f"unsaved changes are kept in {text.draft.path}")
     return 0

@@ -16,6 +16,13 @@ __all__ = ["Draft"]
 VERSION = 1
 
 
+def _places(model: Path) -> tuple[Path, Path]:
+    """Where the draft of a file is: beside it, or in a folder of the user."""
+    target = model.resolve()
+    name = "%".join(target.parts[1:])[-180:] + ".draft"
+    return target.with_name(f".{target.name}.draft"), state_folder().parent / "drafts" / name
+
+
 class Draft:
     """A side file ``.NAME.draft``; its owner holds the lock beside it.
 
@@ -31,18 +38,16 @@ class Draft:
     """
 
     def __init__(self, model: Path) -> None:
-        target = model.resolve()
+        beside, elsewhere = _places(model)
         try:
             try:
-                self._own(target.with_name(f".{target.name}.draft"))
+                self._own(beside)
             except BusyError:
                 raise
             except OSError:
                 # The folder cannot be written: the draft is among those of prompts.
-                name = "%".join(target.parts[1:])[-180:] + ".draft"
-                folder = state_folder().parent / "drafts"
-                make_folders(folder)
-                self._own(folder / name)
+                make_folders(elsewhere.parent)
+                self._own(elsewhere)
         except BusyError as busy:
             by = f": {busy.owner}" if busy.owner else ""
             raise Error(
@@ -53,6 +58,17 @@ class Draft:
         self.path = path
         self._lock = Lock(path.with_name(path.name + ".lock"), path.name)
         recover(path.parent)
+
+    @staticmethod
+    def waits(model: Path) -> bool:
+        """True if a server has left a draft of a file, or has it open with changes.
+
+        Parameters
+        ----------
+        model
+            The file.
+        """
+        return any(place.exists() for place in _places(model))
 
     def left(self) -> dict[str, str] | None:
         """The draft of an earlier server: ``text``, and the ``digest`` of the file it is based on.

@@ -1,8 +1,8 @@
-"""The hub: owner of the text, queue of requests to the engine, and messages to each tab.
+"""The hub: owner of the texts, queue of requests to the engine, and messages to each tab.
 
-The text is here, not in the engine and not in a page: a page's change counts once the hub has it,
-and it is on disk before the page hears so. The engine is asked one thing at a time; what has become
-out of date while it waited is left out. Nothing here waits for a page: each has an outbox.
+The texts are here, not in the engine and not in a page: that of the model, and those of the files
+beside it that pages have opened. The engine is asked one thing at a time; what has become out of
+date while it waited is left out. Nothing here waits for a page: each has an outbox.
 """
 
 from __future__ import annotations
@@ -13,14 +13,13 @@ import json
 import secrets
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
-from moldloft.errors import Error, FileError
+from moldloft.errors import Error
 from moldloft.formats import formats
 from moldloft.language import check_language
-from moldloft.storage import ChangedError, digest, put, utf8_path
+from moldloft.storage import utf8_path
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.drawing import BOARD, DESK, FILES, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
@@ -28,7 +27,8 @@ from moldloft.workbench.frames import frame_of, head_of
 from moldloft.workbench.making import shape_functions
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.recent import recent_models
-from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
+from moldloft.workbench.shared_text import Reader, SharedText
+from moldloft.workbench.text import read
 
 __all__ = ["Hub", "Tab"]
 
@@ -49,15 +49,22 @@ ASKED = NEWEST | {
 #: After these other tabs have something new, too.
 CHANGING = {
     "set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show",
-    "add", "delete", "duplicate", "rename_object",
+    "add", "delete", "duplicate", "rename_object", "text", "text_beside",
 }  # fmt: skip
+
+#: Requests about a text, which name its file; that of the model has no name.
+OF_TEXTS = {"push", "pull", "save", "revert"}
+
+#: Jobs of the hub itself: no page hears their answers but for what has changed.
+OWN = {"text", "text_beside"}
 
 MOST_TABS = 32
 #: Bytes of a frame that says no more than what is wrong.
 LONGEST_FAULT = 2000
 #: Requests of one page that wait for the engine.
 MOST_WAITING = 64
-MOST_UPDATES = 20_000
+#: Files beside the model that are open at a time.
+MOST_FILES = 32
 #: Pages that were dropped and may ask why.
 MOST_DROPPED = 4 * MOST_TABS
 
@@ -68,8 +75,8 @@ class Tab:
 
     number: int
     outbox: Outbox
-    known: int
-    """The version of the text that it has, once what waits is sent."""
+    known: dict[str, int]
+    """The versions of the texts that it has, once what waits is sent."""
     dropped: str = ""
     """Why its last connection was ended, if the server ended it."""
 
@@ -107,26 +114,19 @@ class Hub:
 
     def __post_init__(self) -> None:
         utf8_path(self.path)
-        self.stored = read(self.path)
-        check_language(self.stored.text, str(self.path))
-        self.draft = Draft(self.path)
-        self.text = self.stored.text
-        self.recovered = False
-        left = self.draft.left()
-        if left is not None and left["text"] != self.text:
-            self.text, self.recovered = left["text"], True
-        self.version = 0
+        check_language(read(self.path).text, str(self.path))
+        self.main = SharedText(self.path, self)
+        self.others: dict[str, SharedText] = {}
+        self._files: dict[str, tuple[int, ...]] = {}
         self.instance = secrets.token_hex(8)
-        self._first = 0
-        self._updates: list[dict[str, Any]] = []
         folder = str(self.path.resolve().parent)
         self.engine = Engine(
             self.path.name, folder, self.library, memory=self.memory, budget=self.budget
         )
         self.rooms = [
             Drawing(
-                room, lambda: (self.version, self.text), self.path.name, folder, self.library,
-                self.memory, self.budget,
+                room, lambda: (self.main.version, self.main.text), self.path.name, folder,
+                self.library, self.memory, self.budget,
             )
             for room in (BOARD, DESK, FILES)
         ]  # fmt: skip
@@ -138,24 +138,20 @@ class Hub:
         self._sending: set[asyncio.Task[None]] = set()
         self._dropped: dict[int, str] = {}
         self._served = 0
-        self._noted = self.stored.digest
-        self._disk = asyncio.Lock()
-        self._published = 0
-        self._unkept = ""
 
     @property
-    def dirty(self) -> bool:
-        """True when the text differs from the file's."""
-        return self.text != self.stored.text
+    def texts(self) -> list[SharedText]:
+        """The model's text, and those of files beside it."""
+        return [self.main, *self.others.values()]
 
     def start(self) -> None:
         """Begin to work."""
         self._tasks = [asyncio.ensure_future(self._work()), asyncio.ensure_future(self._watch())]
 
     async def stop(self) -> None:
-        """End the engine; the draft stays when something is unsaved."""
+        """End the engine; drafts stay where something is unsaved."""
         with contextlib.suppress(asyncio.TimeoutError):
-            await asyncio.wait_for(self._publish(), 5)
+            await asyncio.wait_for(asyncio.gather(*(text.publish() for text in self.texts)), 5)
         left = {task for task in (*self._tasks, *self._sending) if not task.done()}
         while left:
             # Once is not enough: until Python 3.12, `wait_for` forgets a cancellation that comes
@@ -168,7 +164,8 @@ class Hub:
         await self.engine.end()
         for room in self.rooms:
             await room.end()
-        self.draft.close(keep=self.dirty)
+        for text in self.texts:
+            text.close()
 
     # Tabs.
 
@@ -197,7 +194,8 @@ class Hub:
             drop()
 
         outbox = Outbox(send, give_up, room=self._wake.set)
-        tab = Tab(number, outbox, self.version, self._dropped.pop(before, ""))
+        known = {"": self.main.version}
+        tab = Tab(number, outbox, known, self._dropped.pop(before, ""))
         self.tabs[number] = tab
         return tab
 
@@ -206,6 +204,8 @@ class Hub:
         tab.outbox.close()
         if self.tabs.pop(tab.number, None) is None:
             return
+        for name in list(tab.known):
+            self._close_file(tab, name)
         self._jobs = [job for job in self._jobs if job.tab != tab.number]
         for room in self.rooms:
             room.leave(tab.number)
@@ -213,43 +213,21 @@ class Hub:
 
     def hello(self, tab: Tab) -> dict[str, Any]:
         """First message to a page."""
-        tab.known = self.version
         return {
             "kind": "hello",
             "instance": self.instance,
             "secret": self.secret,
             "tab": tab.number,
             "name": self.path.name,
-            "text": self.text,
-            "version": self.version,
-            "dirty": self.dirty,
-            "recovered": self.recovered,
             "dropped": tab.dropped,
+            **self.main.state(tab),
+            "unsaved": [name for name, text in self.others.items() if text.dirty],
         }
 
-    def _tell(
-        self, kind: str, state: Callable[[Tab], dict[str, Any]], *, but: int | None = None
-    ) -> None:
-        """Has all tabs sent a state, as it is when their turn comes."""
-        for tab in self.tabs.values():
-            if tab.number != but:
-                tab.outbox.put_newest(kind, partial(_message, kind, state, tab))
-
-    def _tell_saved(self, *, but: int | None = None) -> None:
-        self._tell("saved", lambda _: {"version": self.version, "dirty": self.dirty}, but=but)
-
-    def _tell_conflict(self, theirs: str) -> None:
-        self._tell("conflict", lambda _: {"theirs": theirs})
-
     def _tell_engine(self, **state: str) -> None:
-        self._tell("engine", lambda _: state)
-
-    def _news(self, tab: Tab) -> dict[str, Any]:
-        """The changes that are on disk and that a tab has not been sent."""
-        first = max(min(tab.known, self._published), self._first)
-        updates = self._updates[first - self._first : self._published - self._first]
-        tab.known = max(tab.known, self._published)
-        return {"from": first, "updates": updates, "dirty": self.dirty}
+        message = json.dumps({"kind": "engine", **state})
+        for tab in self.tabs.values():
+            tab.outbox.put_newest("engine", lambda: message)
 
     def _to(self, tab: Tab | None, message: dict[str, Any] | bytes) -> None:
         if tab is not None:
@@ -260,14 +238,18 @@ class Hub:
     async def hear(self, tab: Tab, message: dict[str, Any]) -> None:
         """Take a message of a page."""
         kind, number = message.get("kind"), message.get("id", 0)
-        if kind == "push":
-            self._push(tab, message)
-        elif kind == "pull":
-            self._pull(tab, message)
-        elif kind == "save":
-            await self._save(tab, message)
-        elif kind == "revert":
-            await self._revert(tab, number)
+        if kind in OF_TEXTS:
+            name = message.get("file", "")
+            text = self.main if name == "" else self.others.get(name)
+            if text is None or name not in tab.known:
+                self.refuse(tab, number, f"`{name}` is not open here")
+            else:
+                await text.hear(tab, message)
+        elif kind == "open_file":
+            self._open_file(tab, number, message.get("file"))
+        elif kind == "close_file":
+            self._close_file(tab, message.get("file"))
+            self._to(tab, {"kind": "closed", "id": number})
         elif kind == "recent":
             files = [{"name": p.name, "path": str(p)} for p in self._others()]
             self._to(tab, {"kind": "recent", "id": number, "files": files})
@@ -281,7 +263,14 @@ class Hub:
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
-            room.ask(tab.number, message, tab.outbox.put)
+            unsaved = ", ".join(Path(name).name for name, text in self.others.items() if text.dirty)
+            if unsaved:
+                # Rooms read files, not the texts that count before they are saved.
+                self.refuse(
+                    tab, number, f"save {unsaved} first: this reads files as they are saved"
+                )
+            else:
+                room.ask(tab.number, message, tab.outbox.put)
         else:
             self.refuse(tab, number, "no such request")
 
@@ -307,158 +296,83 @@ class Hub:
         """Tell a page that a request is not carried out, by the id that it gave."""
         self._to(tab, {"kind": "refused", "id": number, "error": error})
 
-    def _push(self, tab: Tab, message: dict[str, Any]) -> None:
-        """Changes of the text. They count when the page knew the newest version."""
-        number, updates = message.get("id", 0), message.get("updates")
-        reply = {"kind": "pushed", "id": number, "ok": False, "version": self.version}
+    # Texts.
+
+    def readers(self) -> list[Reader]:
+        """All pages, which a text tells of its changes."""
+        return list(self.tabs.values())
+
+    def text_changed(self, text: SharedText) -> None:
+        """The engine is to have a text."""
+        kind = "text" if text is self.main else "text_beside"
+        self._queue(_Job(kind, 0, {"name": text.name}))
+
+    def later(self, work: Coroutine[Any, Any, None]) -> None:
+        """Work that nobody waits for."""
+        task = asyncio.ensure_future(work)
+        self._sending.add(task)
+        task.add_done_callback(self._sending.discard)
+
+    def _open_file(self, tab: Tab, number: Any, name: Any) -> None:
+        """Opens a file that the model reads; pages can open no other."""
         try:
-            if message.get("version") == self.version and isinstance(updates, list):
-                text = self.text
-                for update in updates:
-                    text = applied(text, update["changes"])
-                self._accept(text, [
-                    {"changes": u["changes"], "clientID": str(u["clientID"])[:40]} for u in updates
-                ])  # fmt: skip
-                self._later(self._pushed(tab, {**reply, "ok": True, "version": self.version}))
-                return
-            if isinstance(message.get("version"), int) and message["version"] < self._first:
-                # Too long away for the changes since: it takes the whole text.
-                reply["text"] = self.text
-        except (ValueError, KeyError, TypeError, IndexError) as error:
-            reply = {**reply, "error": str(error), "text": self.text}
-        self._to(tab, reply)
-
-    async def _pushed(self, tab: Tab, reply: dict[str, Any]) -> None:
-        """Says that changes count, once the draft is on disk: moves of sliders do not wait."""
-        await self._publish()
-        if self._unkept:
-            reply["error"] = self._unkept
-        self._to(tab, reply)
-
-    def _accept(self, text: str, updates: list[dict[str, Any]]) -> None:
-        """A new text, which counts at once; :meth:`_publish` has to follow."""
-        self.text = text
-        self.version += len(updates)
-        self._updates += updates
-        if len(self._updates) > MOST_UPDATES:
-            gone = len(self._updates) - MOST_UPDATES
-            self._first += gone
-            del self._updates[:gone]
-        self._queue(_Job("text", 0, {}))
-
-    async def _publish(self) -> None:
-        """Brings the newest text to disk, then to the pages; meanwhile the engine works on.
-
-        Changes that come meanwhile go with the next draft. When it cannot be written, the text
-        counts all the same, and the answers of pushes say so.
-        """
-        async with self._disk:
-            version = self.version
-            if self._published == version:
-                return
-            try:
-                if self.dirty:
-                    await asyncio.to_thread(self.draft.keep, self.text, self.stored.digest)
-                else:
-                    await asyncio.to_thread(self.draft.drop)
-                self._unkept = ""
-            except (OSError, Error) as error:
-                self._unkept = f"the draft cannot be written: {error}"
-            self._published = version
-            self._tell("updates", self._news)
-
-    def _pull(self, tab: Tab, message: dict[str, Any]) -> None:
-        """The updates after the version of a page, or the whole text when they are not kept."""
-        version = message.get("version")
-        reply = {"kind": "pulled", "id": message.get("id", 0), "version": self.version}
-        if isinstance(version, int) and self._first <= version <= self.version:
-            reply.update({"from": version, "updates": self._updates[version - self._first :]})
-        else:
-            reply["text"] = self.text
-        self._to(tab, reply)
-
-    async def _save(self, tab: Tab, message: dict[str, Any]) -> None:
-        """Write the text to the model's file, unless that has changed meanwhile."""
-        async with self._disk:
-            await self._write(tab, message)
-
-    async def _write(self, tab: Tab, message: dict[str, Any]) -> None:
-        number = message.get("id", 0)
-        try:
-            now = read(self.path) if self.path.exists() else None
-            if now and now.digest != self.stored.digest and not message.get("force"):
-                self._noted = now.digest
-                self._to(tab, {"kind": "conflict", "id": number, "theirs": now.text})
-                return
-            expected = now.digest if now else None
-            data = encoded(self.text, self.stored)
-            self._noted = digest(data)
-            await asyncio.to_thread(put, self.path, data, expected=expected)
-            self.stored = decoded(data)
-            self.draft.drop()
-        except ChangedError:
-            # Between looking and writing; what is there now is shown.
-            await self._write(tab, message)
-            return
+            if not isinstance(name, str) or name not in self._files:
+                raise Error(f"the model reads no file `{name}`")
+            text = self.others.get(name) or self._opened(name)
         except (Error, OSError) as error:
             self.refuse(tab, number, str(error))
             return
-        self.recovered = False
-        self._to(tab, {"kind": "saved", "id": number, "version": self.version})
-        self._tell_saved(but=tab.number)
+        self._to(tab, {"kind": "file", "id": number, "file": name, **text.state(tab)})
+
+    def _opened(self, name: str) -> SharedText:
+        """The text of a file beside the model, from now on the one that counts."""
+        if len(self.others) >= MOST_FILES:
+            raise Error(f"{MOST_FILES} files are open: close one first")
+        text = SharedText(Path(name), self, name)
+        if "\0" in text.text:
+            text.close()
+            raise Error(f"`{name}` is not a text")
+        self.others[name] = text
+        if text.dirty:
+            self.text_changed(text)
+            for tab in self.tabs.values():
+                self._to(tab, {"kind": "unsaved", "file": name})
+        return text
+
+    def _close_file(self, tab: Tab, name: Any) -> None:
+        """A page no longer shows a file; one that is as it is on disk is that of the disk again."""
+        text = self.others.get(name) if isinstance(name, str) else None
+        if text is None:
+            return
+        tab.known.pop(name, None)
+        if not text.dirty and not any(name in other.known for other in self.tabs.values()):
+            del self.others[name]
+            text.close()
+            self._queue(_Job("text_beside", 0, {"name": name}))
+
+    def _read_by_model(self, names: list[str]) -> None:
+        """Takes in which files the model reads; what an earlier server left of them is open."""
+        known = self._files
+        self._files = {n: known[n] if n in known else _stamp(n) for n in names}
+        for name in names:
+            if name not in self.others and Draft.waits(Path(name)):
+                # Another workbench may have it.
+                with contextlib.suppress(Error, OSError):
+                    self._opened(name)
 
     async def _watch(self) -> None:
-        """Follow the file on disk."""
-        stamp = None
+        """Follow the files on disk."""
         while True:
             await asyncio.sleep(0.5)
-            try:
-                status = self.path.stat()
-                new = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
-                if new == stamp:
-                    continue
-                stamp = new
-                now = read(self.path)
-            except (OSError, FileError):
-                # It is being written, or has gone: the text is here.
-                continue
-            if now.digest == self._noted:
-                continue
-            if self.dirty and now.text != self.text:
-                self._noted = now.digest
-                self._tell_conflict(now.text)
-                continue
-            try:
-                await self._outside(now)
-            except (OSError, Error):
-                # The draft cannot be written just now: the next look tries again.
-                stamp = None
-
-    async def _revert(self, tab: Tab, number: int) -> None:
-        """The file's text for a page, which applies it as a step of its own history."""
-        try:
-            now = read(self.path)
-            self.stored, self._noted = now, now.digest
-            if now.text == self.text:
-                await self._outside(now)
-            reply = {"kind": "reverted", "id": number, "text": now.text}
-        except (OSError, Error) as error:
-            reply = {"kind": "refused", "id": number, "error": str(error)}
-        self.recovered = False
-        self._to(tab, reply)
-
-    async def _outside(self, now: Stored) -> None:
-        """Replace our text with that of the file."""
-        self.stored = now
-        if now.text != self.text:
-            update = {"changes": change_set(self.text, now.text), "clientID": "disk"}
-            self._accept(now.text, [update])
-            await self._publish()
-        else:
-            async with self._disk:
-                self.draft.drop()
-            self._tell_saved()
-        self._noted = now.digest
+            for text in self.texts:
+                await text.look()
+            changed = False
+            for name, known in list(self._files.items()):
+                stamp = _stamp(name)
+                changed |= stamp != known and name not in self.others
+                self._files[name] = stamp
+            if changed:
+                self.text_changed(self.main)
 
     # The engine.
 
@@ -475,17 +389,13 @@ class Hub:
                     return
         self._queue(_Job(kind, tab.number, request))
 
-    def _later(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.ensure_future(work)
-        self._sending.add(task)
-        task.add_done_callback(self._sending.discard)
-
     def _queue(self, job: _Job) -> None:
-        if job.kind in ("text", "sync") and any(
-            j.kind == job.kind and j.tab == job.tab for j in self._jobs
+        if job.kind in OWN | {"sync"} and any(
+            (j.kind, j.tab, j.request.get("name")) == (job.kind, job.tab, job.request.get("name"))
+            for j in self._jobs
         ):
             return
-        if job.kind == "text":
+        if job.kind in OWN:
             self._jobs.insert(0, job)
         elif job.kind == "close" or sum(j.tab == job.tab for j in self._jobs) < MOST_WAITING:
             self._jobs.append(job)
@@ -520,20 +430,16 @@ class Hub:
                 await self._lost(job, str(lost))
 
     async def _carry_out(self, job: _Job) -> None:
-        fresh = self.engine.pid is None
-        version = self.version
-        if fresh:
+        version = self.main.version
+        if self.engine.pid is None:
             if self._failed[0] == version and self._failed[1] >= 2:
                 raise EngineLostError("this text made the engine fail twice: change it to go on")
-            await self.engine.start(self.text)
+            await self._begin(job)
         request = job.request
-        if job.kind == "text":
+        if job.kind in OWN:
             tab = next((n for n, tab in self.tabs.items() if not tab.outbox.behind), 0)
-            request = {"kind": "text", "tab": tab, "version": version, "text": self.text, "id": 0}
-            job = _Job("text", tab, request)
-        if fresh and job.kind not in ("open", "text", "close"):
-            # What a new engine needs first: the version it has, and the viewers it sends to.
-            await self.engine.ask(_data({"kind": "text", "version": version, "text": self.text}))
+            request = {**self._own(job), "tab": tab, "id": 0}
+            job = _Job(job.kind, tab, request)
         try:
             data = _data(request)
         except ValueError as error:
@@ -547,20 +453,43 @@ class Hub:
         if self._failed[0] == version:
             self._failed = (-1, 0)
             self._tell_engine(state="back")
-        if job.kind == "text" or job.kind in CHANGING:
+        if job.kind in OWN:
+            await self._ask_files()
+        if job.kind in CHANGING:
             for number in self.tabs:
                 if number != job.tab:
                     self._queue(_Job("sync", number, {"kind": "sync", "tab": number, "id": 0}))
+
+    def _own(self, job: _Job) -> dict[str, Any]:
+        """The request that brings a text to the engine, as the text is now."""
+        if job.kind == "text":
+            return {"kind": "text", "version": self.main.version, "text": self.main.text}
+        name = job.request["name"]
+        text = self.others.get(name)
+        return {"kind": "text_beside", "name": name, "text": text and text.text}
+
+    async def _begin(self, job: _Job) -> None:
+        """A new engine: it needs the version of the text, and the texts of files beside it."""
+        await self.engine.start(self.main.text)
+        if job.kind not in ("open", "text", "close"):
+            await self.engine.ask(_data(self._own(_Job("text", 0, {}))))
+        await self._ask_files()
+        for name in self.others:
+            await self.engine.ask(_data(self._own(_Job("text_beside", 0, {"name": name}))))
+
+    async def _ask_files(self) -> None:
+        head = head_of(await self.engine.ask(_data({"kind": "reads"})))
+        self._read_by_model(list(head.get("reads", [])))
 
     async def _lost(self, job: _Job, why: str) -> None:
         """Start a new engine after a loss, and send every tab the complete state."""
         await self.engine.end()
         version, count = self._failed
-        count = count + 1 if version == self.version else 1
+        count = count + 1 if version == self.main.version else 1
         again = count < 2
         if why.startswith("this text"):
             count -= 1
-        self._failed = (self.version, count)
+        self._failed = (self.main.version, count)
         self.refuse(self.tabs.get(job.tab), job.request.get("id", 0), why)
         self._tell_engine(state="lost", reason=why)
         if again:
@@ -569,8 +498,13 @@ class Hub:
                 self._queue(_Job("open", number, request))
 
 
-def _message(kind: str, state: Callable[[Tab], dict[str, Any]], tab: Tab) -> str:
-    return json.dumps({"kind": kind, **state(tab)})
+def _stamp(name: str) -> tuple[int, ...]:
+    """What changes with a file on disk; empty while it is not there."""
+    try:
+        status = Path(name).stat()
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def _data(request: dict[str, Any]) -> bytes:

@@ -9,4 +9,4 @@ pub mod sketch_file;
 pub(crate) mod world;
 
 pub use library::LIBRARIES;
-pub use world::{NoFiles, ReadText, TextReadError, World};
+pub use world::{NoFiles, OpenFiles, OpenTexts, ReadAs, ReadText, TextReadError, World};

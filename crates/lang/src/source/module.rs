@@ -114,8 +114,14 @@ impl Modules {
         match at {
             Some(at) => {
                 self.modules[at] = module;
-                self.loaded.retain(|(from, _), _| *from != at);
-                self.sketched.retain(|(from, _), _| *from != at);
+                if at == 0 {
+                    // A new text reads all files again: they may have changed.
+                    self.loaded.clear();
+                    self.sketched.clear();
+                } else {
+                    self.loaded.retain(|(from, _), _| *from != at);
+                    self.sketched.retain(|(from, _), _| *from != at);
+                }
                 at
             }
             None => {
@@ -238,8 +244,9 @@ impl Modules {
                     .maybe_help(near)
             })
         })?;
-        if let Some(at) = self.modules.iter().position(|m| m.path == read.name) {
-            return Ok(at);
+        let known = self.modules.iter().position(|m| m.path == read.name);
+        if known == Some(0) {
+            return Ok(0);
         }
         let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
         let text = if read.name.to_ascii_lowercase().ends_with(".ms2") {
@@ -248,9 +255,21 @@ impl Modules {
             text.into_owned()
         };
         let text = text.as_str();
-        let file = loader.sources.add(read.name.clone(), text);
+        let file = known.and_then(|_| loader.sources.find(&read.name));
+        if let (Some(at), Some(file)) = (known, file)
+            && loader.sources.text(file).is_some_and(|before| **before == *text)
+        {
+            return Ok(at);
+        }
+        let file = match file {
+            Some(file) => {
+                loader.sources.replace(file, text);
+                file
+            }
+            None => loader.sources.add(read.name.clone(), text),
+        };
         let (program, found) = sdl::parse(text, file);
-        let at = self.add(&read.name, program, loader.registry, None);
+        let at = self.add(&read.name, program, loader.registry, known);
         self.get_mut(at).faults = found;
         Ok(at)
     }

@@ -1,6 +1,7 @@
 //! Source of texts: files of the host, or none.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 /// Access of a run to the outside. The core opens no files: the host does, in the permitted
 /// folders.
@@ -37,5 +38,73 @@ pub struct NoFiles;
 impl World for NoFiles {
     fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, TextReadError> {
         Err(TextReadError { message: format!("cannot read `{path}`: no files here"), help: None })
+    }
+}
+
+impl<W: World + ?Sized> World for Box<W> {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        (**self).read(path, from)
+    }
+}
+
+/// A file that was read: the path as requested, the requesting text, and the content.
+pub type ReadAs = (String, Option<String>, ReadText);
+
+/// Texts that count in place of the files of their names, such as those that an editor has not
+/// saved; and the files that were read.
+#[derive(Debug, Default)]
+pub struct OpenTexts {
+    texts: RwLock<HashMap<String, Arc<[u8]>>>,
+    read: Mutex<Vec<ReadAs>>,
+}
+
+impl OpenTexts {
+    /// The text counts in place of the file; `None` gives the file back.
+    pub fn put(&self, name: &str, text: Option<&str>) {
+        let mut texts = self.texts.write().unwrap_or_else(PoisonError::into_inner);
+        match text {
+            Some(text) => texts.insert(name.into(), text.as_bytes().into()),
+            None => texts.remove(name),
+        };
+    }
+
+    /// The files that were read since [`Self::forget`], once for each path and requesting text.
+    pub fn files(&self) -> Vec<ReadAs> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Forgets which files were read.
+    pub fn forget(&self) {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+}
+
+/// A world in which open texts count in place of files, and which records what is read.
+pub struct OpenFiles<W> {
+    world: W,
+    texts: Arc<OpenTexts>,
+}
+
+impl<W: World> OpenFiles<W> {
+    /// The files of `world`, but for those whose texts are open.
+    pub fn new(world: W, texts: Arc<OpenTexts>) -> Self {
+        Self { world, texts }
+    }
+}
+
+impl<W: World> World for OpenFiles<W> {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        let mut found = self.world.read(path, from)?;
+        let texts = self.texts.texts.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(text) = texts.get(&found.name) {
+            found.bytes = text.clone();
+        }
+        drop(texts);
+        let mut read = self.texts.read.lock().unwrap_or_else(PoisonError::into_inner);
+        match read.iter_mut().find(|(p, f, _)| p == path && f.as_deref() == from) {
+            Some((_, _, known)) => *known = found.clone(),
+            None => read.push((path.into(), from.map(str::to_owned), found.clone())),
+        }
+        Ok(found)
     }
 }

@@ -5,4 +5,5 @@ mod drags;
 mod overlays;
 mod scenes;
 mod statements;
+mod texts_beside;
 mod viewer;
