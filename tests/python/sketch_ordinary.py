@@ -247,6 +247,19 @@ def pipes(n: Sizes) -> Tool:
     return cut("P", joined("U", a, b), *n.shuffled([i, j]))
 
 
+def bored_pipes(n: Sizes) -> Tool:
+    """Pipes united, and bored again where each reaches into the other."""
+    r, q = n(10, 20), n(5, 20)
+    s, p = r - n(1, 4), q - n(1, 4)
+    off = n.pick(0.0, 0.0, n(0, 10))
+    a = rod("A", "x", r, (-50.0, 0.0, 0.0), 100.0)
+    b = rod("B", "y", q, (0.0, 0.0, off), 55.0)
+    first, second = [rod(name, "x", s, (-50.0, 0.0, 0.0), 100.0) for name in ("I", "K")]
+    third, fourth = [rod(name, "y", p, (0.0, 0.0, off), 55.0) for name in ("J", "L")]
+    both = joined("U", *n.shuffled([cut("V", a, first), cut("W", b, third)]))
+    return cut("P", both, *n.shuffled([second, fourth]))
+
+
 def inner_posts(n: Sizes) -> Tool:
     r, post, t = n(20, 40), n(2, 6), n(3, 9)
     h = t + n(5, 20)
@@ -381,6 +394,7 @@ FAMILIES: dict[str, Callable[[Sizes], Tool]] = {
     "bored cross": bored_cross,
     "off-centre cross": off_centre_cross,
     "pipes": pipes,
+    "bored pipes": bored_pipes,
     "inner posts": inner_posts,
     "wall posts": wall_posts,
     "keyway": keyway,

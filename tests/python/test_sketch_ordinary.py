@@ -13,7 +13,7 @@ pytest.importorskip("OCP")
 
 import moldloft
 from moldloft import Sketch
-from sketch_ordinary import FAMILIES, Sizes, measures, read_volume
+from sketch_ordinary import FAMILIES, Sizes, box, cut, joined, measures, read_volume, rod
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
@@ -57,3 +57,30 @@ def test_one_volume_in_five_ways(family: str, tmp_path) -> None:
         path = tmp_path / "part.step"
         path.write_bytes(sketch.run(f"EXPORT STEP {part.name} part.step")[-1].file[1])
         assert read_volume(path) == pytest.approx(sketch.volume, rel=BOUND), k
+
+
+def test_parts_of_one_cylinder_are_one_face() -> None:
+    for k in range(200 if SOAK else 4):
+        n = Sizes(f"coaxial {k}")
+        r, d = n(5, 20), n(20, 40)
+        first, second = n(5, 30), n(5, 30)
+        # Bars of one radius that overlap or meet, and holes from both ends of a block.
+        bar = joined(
+            "B",
+            rod("B1", "x", r, (0.0, 0.0, 0.0), d),
+            rod("B2", "x", r, (n.pick(d, d - 1.0, d / 2), 0.0, 0.0), d + 7.0),
+        )
+        block = box("A", (0.0, -50.0, -50.0), (first + second, 100.0, 100.0))
+        drills = [
+            rod("D1", "x", r, (-1.0, 0.0, 0.0), first + 1.0 + n.pick(0.0, 1.0)),
+            rod("D2", "x", r, (first, 0.0, 0.0), second + 1.0),
+        ]
+        for part, faces in ((bar, 3), (cut("P", block, *n.shuffled(drills)), 7)):
+            volume, area = measures(part.solid)
+            sketch = Sketch()
+            sketch.run(f"{part.text}USING {part.name}")
+            assert sketch.volume == pytest.approx(volume, rel=BOUND), (k, part.text)
+            assert sketch.area == pytest.approx(area, rel=10 * BOUND), (k, part.text)
+            file = sketch.run(f"EXPORT STEP {part.name} part.step")[-1].file
+            assert file is not None
+            assert file[1].count(b"ADVANCED_FACE") == faces, (k, part.text)

@@ -9,6 +9,7 @@
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
 use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
+use super::joined_cylinder::{joined_surface, seams, shared_cylinders};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
 use super::surface::{FaceSurface, Jet};
@@ -181,12 +182,18 @@ fn arranged<T: Real>(
     if !unclear.is_empty() {
         return Err(CombineError::Coarse(unclear));
     }
-    let facets = std::mem::take(&mut all.facets);
-    let arranged = arrangement::arrange(&all.flat, facets, [crossing, T::PARTS > 1], rule)?;
+    let scale = extent(&plain);
+    let shared = shared_cylinders(&all.sources, scale);
+    let seams = seams(&all.sources, &shared);
+    let mut facets = std::mem::take(&mut all.facets);
+    for facet in &mut facets {
+        facet.side = shared.get(&(facet.operand, facet.tag)).copied();
+    }
+    let ways = [crossing, T::PARTS > 1];
+    let arranged = arrangement::arrange(&all.flat, facets, ways, &seams, rule)?;
     if arranged.faces.is_empty() {
         return Err(CombineError::Empty);
     }
-    let scale = extent(&plain);
     let body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
     let mut body = body.balanced()?;
     if T::PARTS > 1 {
@@ -514,6 +521,8 @@ pub(super) struct Placing<'a, T> {
     pub(super) placed: HashMap<u32, Vec3<T>>,
     /// Corners of more faces than fix them, in some part not moved by all of them.
     pub(super) parted: BTreeSet<u32>,
+    /// The surfaces of faces that are joined of parts of several round faces.
+    joined: HashMap<usize, FaceSurface<T>>,
     pub(super) kinks: Vec<Kink>,
 }
 
@@ -525,11 +534,21 @@ impl<'a, T: Real> Placing<'a, T> {
                 original.entry(v).or_insert(k as u32);
             }
         }
-        let (placed, parted, kinks) = Default::default();
-        Placing { all, arranged, scale, fitted, original, placed, parted, kinks }
+        let (mut joined, mut kinks) = (HashMap::new(), Vec::new());
+        for (f, face) in arranged.faces.iter().enumerate() {
+            if let Some((surface, own)) = joined_surface(face, &all.sources) {
+                joined.insert(f, surface);
+                kinks.extend(own);
+            }
+        }
+        let (placed, parted) = Default::default();
+        Placing { all, arranged, scale, fitted, original, placed, parted, joined, kinks }
     }
 
-    pub(super) fn surface(&self, face: usize) -> &'a FaceSurface<T> {
+    pub(super) fn surface(&self, face: usize) -> &FaceSurface<T> {
+        if let Some(surface) = self.joined.get(&face) {
+            return surface;
+        }
         let (operand, tag) = self.arranged.faces[face].sources[0];
         &self.all.sources[operand].surfaces[tag as usize]
     }

@@ -40,11 +40,22 @@ pub struct Facet {
     pub loops: Vec<Vec<u32>>,
     /// The edge of the body that each side is part of, or [`INNER`].
     pub edges: Vec<Vec<u32>>,
+    /// The surface that its face shares with others, so that parts of them may be joined.
+    pub side: Option<SurfaceSide>,
     bounds: [Vec3; 2],
 }
 
+/// A side of a surface that several faces share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SurfaceSide {
+    /// Its number.
+    pub surface: usize,
+    /// True if it is the surface's positive side.
+    pub positive: bool,
+}
+
 impl Facet {
-    /// A facet of a face.
+    /// A facet of a face that is alone on its surface.
     pub fn new(
         operand: usize,
         tag: u32,
@@ -53,7 +64,7 @@ impl Facet {
         loops: Vec<Vec<u32>>,
         edges: Vec<Vec<u32>>,
     ) -> Facet {
-        Facet { operand, tag, plane, normal, loops, edges, bounds: [Vec3::zero(); 2] }
+        Facet { operand, tag, plane, normal, loops, edges, side: None, bounds: [Vec3::zero(); 2] }
     }
 }
 
@@ -137,6 +148,7 @@ const MAX_REGIONS: usize = 400_000;
 
 /// Makes the body in which `solid` holds for the numbers of windings. Facets of one operand are taken
 /// not to cross each other unless `crossing`. Lines in which more than two surfaces meet are listed if `sharing`.
+/// Faces end at `seams`, edges by operand and tag, although their surface continues.
 ///
 /// # Errors
 /// [`ArrangeError`], with the position.
@@ -144,6 +156,7 @@ pub fn arrange(
     points: &[Vec3],
     mut facets: Vec<Facet>,
     [crossing, sharing]: [bool; 2],
+    seams: &BTreeSet<(usize, u32)>,
     solid: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<Arrangement, ArrangeError> {
     let [low, high] = bounds(points.iter().copied());
@@ -227,7 +240,11 @@ pub fn arrange(
             }
         })
         .collect();
-    let faces = join(&pool, &facets, &frames, &sheets, &found, &kept);
+    let ends = |a: u32, b: u32| {
+        let own = edges.get(&(a.min(b), a.max(b)));
+        own.is_some_and(|own| own.iter().any(|edge| seams.contains(edge)))
+    };
+    let faces = join(&pool, &facets, &frames, &sheets, &found, &kept, &ends);
     Ok(Arrangement { points: pool.points, given, faces, edges, changed, shared })
 }
 
@@ -472,8 +489,19 @@ fn all_regions(
     Ok((found, other, shared))
 }
 
-/// Joins kept regions of one surface to faces. `kept` are regions with whether their outward side is
-/// that of their sheet's normal.
+/// What pieces that join have in common.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum JoinKey {
+    /// A face, and whether the side outward is its own.
+    Face(usize, u32, bool),
+    /// The side outward of a surface that several faces share.
+    Shared(SurfaceSide),
+    /// A plane, and whether the side outward is that of its normal.
+    Plane(usize, bool),
+}
+
+/// Joins kept regions of one surface to faces, which end at sides that are on seams. `kept` are regions with whether
+/// their outward side is that of their sheet's normal.
 fn join(
     pool: &Pool,
     facets: &[Facet],
@@ -481,22 +509,25 @@ fn join(
     sheets: &[PlaneCoordinates],
     regions: &[ArrangedRegion],
     kept: &[(usize, bool)],
+    ends: &dyn Fn(u32, u32) -> bool,
 ) -> Vec<ArrangedFace> {
-    // Plane pieces join within their sheet, others within their face.
-    let mut groups: BTreeMap<(bool, usize, u32, bool), Vec<usize>> = BTreeMap::new();
+    // Plane pieces join within their sheet, others within their face or the surface that it shares.
+    let mut groups: BTreeMap<JoinKey, Vec<usize>> = BTreeMap::new();
     for (k, &(r, up)) in kept.iter().enumerate() {
         let leader = leader(facets, &regions[r]);
         let facet = &facets[leader];
-        let key = if facet.plane {
-            (true, regions[r].sheet, 0, up)
-        } else {
-            let along = frames[leader].normal.dot(sheets[regions[r].sheet].normal) > 0.0;
-            (false, facet.operand, facet.tag, along == up)
+        let along = frames[leader].normal.dot(sheets[regions[r].sheet].normal) > 0.0;
+        let own = along == up;
+        let key = match facet.side {
+            _ if facet.plane => JoinKey::Plane(regions[r].sheet, up),
+            Some(side) => JoinKey::Shared(SurfaceSide { positive: side.positive == own, ..side }),
+            None => JoinKey::Face(facet.operand, facet.tag, own),
         };
         groups.entry(key).or_default().push(k);
     }
     let mut faces = Vec::new();
     for (key, own) in groups {
+        let plane = matches!(key, JoinKey::Plane(..));
         // Half-edges of all pieces, oriented outward.
         let mut halves: Vec<(u32, u32, usize)> = Vec::new();
         let mut next: Vec<usize> = Vec::new();
@@ -521,7 +552,7 @@ fn join(
         let twin: Vec<Option<usize>> = halves
             .iter()
             .map(|&(a, b, _)| match (at[&(a, b)].as_slice(), at.get(&(b, a)).map(Vec::as_slice)) {
-                ([_], Some([t])) => Some(*t),
+                ([_], Some([t])) if plane || !ends(a, b) => Some(*t),
                 _ => None,
             })
             .collect();
@@ -566,7 +597,7 @@ fn join(
             let normal = if up { sheet.normal } else { -sheet.normal };
             let first = leader(facets, &regions[r]);
             let reversed = frames[first].normal.dot(normal) < 0.0;
-            if key.0 {
+            if plane {
                 let frame = PlaneCoordinates::new(normal, sheet.origin);
                 let size = |c: &Vec<u32>| {
                     regions::area(&c.iter().map(|&v| frame.flat(pool.at(v))).collect::<Vec<_>>())
@@ -589,7 +620,7 @@ fn join(
             faces.push(ArrangedFace {
                 sources,
                 reversed,
-                plane: key.0,
+                plane,
                 normal,
                 loops: cycles,
                 parts,
