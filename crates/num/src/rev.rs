@@ -62,6 +62,8 @@ pub struct DerivativeTape {
     sound: bool,
     /// The greatest size so far.
     peak: usize,
+    /// The derivative of each node in one direction, if [`DerivativeTape::probe`] was called.
+    probes: Option<Vec<f64>>,
 }
 
 impl std::fmt::Debug for Dependence {
@@ -85,6 +87,7 @@ impl DerivativeTape {
             forgotten: 0,
             sound: true,
             peak: 0,
+            probes: None,
         }
     }
 
@@ -93,11 +96,24 @@ impl DerivativeTape {
         TAPE.with_borrow_mut(|tape| *tape = Self::empty());
     }
 
+    /// The recording, which has just begun, knows the derivative of each number in one direction, [`Real::probe`].
+    pub fn probe() {
+        TAPE.with_borrow_mut(|tape| {
+            debug_assert!(tape.ends.is_empty(), "before the first number");
+            tape.probes = Some(Vec::new());
+        });
+    }
+
     /// A number that others are differentiated by.
     pub fn input(value: f64) -> Rev {
         TAPE.with_borrow_mut(|tape| {
             tape.inputs += 1;
-            Rev { value, node: tape.node() }
+            let node = tape.node();
+            if let Some(last) = tape.probes.as_mut().and_then(|probes| probes.last_mut()) {
+                // Of about the same size for all inputs, and in no simple ratio.
+                *last = 1.0 + 0.5 * Real::sin(f64::from(tape.inputs) * 1.618_033_988_749_895);
+            }
+            Rev { value, node }
         })
     }
 
@@ -133,6 +149,10 @@ impl DerivativeTape {
             tape.ends.truncate(tape.kept as usize);
             let end = tape.ends.last().map_or(0, |end| *end as usize);
             tape.dependences.truncate(end);
+            let kept = tape.kept as usize;
+            if let Some(probes) = &mut tape.probes {
+                probes.truncate(kept);
+            }
             match tape.forgotten.checked_add(local).filter(|n| n + tape.kept < INFINITE / 2) {
                 Some(forgotten) => tape.forgotten = forgotten,
                 None => tape.sound = false,
@@ -147,7 +167,9 @@ impl DerivativeTape {
 
     fn bytes(&self) -> usize {
         self.peak.max(
-            self.ends.len() * size_of::<u32>() + self.dependences.len() * size_of::<Dependence>(),
+            self.ends.len() * size_of::<u32>()
+                + self.dependences.len() * size_of::<Dependence>()
+                + self.probes.as_ref().map_or(0, |probes| probes.len() * size_of::<f64>()),
         )
     }
 
@@ -159,6 +181,12 @@ impl DerivativeTape {
         if end * size_of::<Dependence>() > MAX_TAPE_BYTES || node >= INFINITE {
             self.sound = false;
             return 0;
+        }
+        if let Some(probes) = &mut self.probes {
+            let begin = self.ends.last().map_or(0, |end| *end as usize);
+            let of = |d: &Dependence| d.rate * probes[d.of as usize];
+            let derivative = self.dependences[begin..].iter().map(of).sum();
+            probes.push(derivative);
         }
         self.ends.push(end as u32);
         node
@@ -444,6 +472,19 @@ impl Real for Rev {
             }
         }
     }
+    fn probe(self, k: usize) -> f64 {
+        let node = self.node & !INFINITE;
+        match k {
+            0 => self.value,
+            _ if node == 0 => 0.0,
+            _ => TAPE.with_borrow_mut(|tape| {
+                let at = tape.index(node).map(|at| at as usize);
+                let found = tape.probes.as_ref().zip(at).and_then(|(all, at)| all.get(at).copied());
+                tape.sound &= found.is_some();
+                found.unwrap_or(f64::NAN)
+            }),
+        }
+    }
     #[inline(always)]
     fn from_parts(mut part: impl FnMut(usize) -> f64) -> Self {
         let value = part(0);
@@ -668,6 +709,29 @@ mod tests {
         adjoints.add(root * 2.0, 1.0);
         assert!(!adjoints.are_sound() && DerivativeTape::is_sound());
         assert!(D::seeded(0.0, 0).sqrt().is_finite() == root.is_finite());
+    }
+
+    #[test]
+    fn a_probe_is_the_derivative_in_one_direction() {
+        DerivativeTape::clear();
+        DerivativeTape::probe();
+        let of = [DerivativeTape::input(0.7), DerivativeTape::input(1.3)];
+        DerivativeTape::keep();
+        for _ in 0..2 {
+            for y in formulas(of[0], of[1]) {
+                let rates = of.map(|x| x.probe(1));
+                assert!(rates[0] != rates[1] && rates.iter().all(|r| (0.5..=1.5).contains(r)));
+                let by = gradient(y, of);
+                let exact = by[0] * rates[0] + by[1] * rates[1];
+                assert!((y.probe(1) - exact).abs() < 1e-13 * (1.0 + exact.abs()));
+            }
+            DerivativeTape::forget();
+        }
+        assert_eq!((Rev::from(2.0).probe(0), Rev::from(2.0).probe(1)), (2.0, 0.0));
+        DerivativeTape::clear();
+        // Without probes it is something that a tape does not have.
+        let _ = DerivativeTape::input(1.0).probe(1);
+        assert!(!DerivativeTape::is_sound());
     }
 
     #[test]
