@@ -143,11 +143,7 @@ impl<T: Real> Body<T> {
     }
 
     /// The body of cells, without rims.
-    pub(crate) fn of_cells(
-        cells: Vec<Arc<PolynomialCell<T>>>,
-        size: f64,
-        accuracy: f64,
-    ) -> Self {
+    pub(crate) fn of_cells(cells: Vec<Arc<PolynomialCell<T>>>, size: f64, accuracy: f64) -> Self {
         Self { cells, rims: Vec::new(), folds: Vec::new(), size, accuracy }
     }
 

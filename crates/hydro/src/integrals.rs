@@ -71,8 +71,25 @@ impl<T: Real> HydrostaticIntegrals<T> {
         let [f, m, a] = [self.forms, self.moment.to_array(), self.area_moment.to_array()];
         let (p, o) = (self.plane, self.open);
         [
-            f[0], f[1], f[2], m[0], m[1], m[2], a[0], a[1], a[2], self.wetted, self.green, p[0],
-            p[1], p[2], p[3], p[4], p[5], o[0], o[1],
+            f[0],
+            f[1],
+            f[2],
+            m[0],
+            m[1],
+            m[2],
+            a[0],
+            a[1],
+            a[2],
+            self.wetted,
+            self.green,
+            p[0],
+            p[1],
+            p[2],
+            p[3],
+            p[4],
+            p[5],
+            o[0],
+            o[1],
         ]
     }
 
@@ -315,11 +332,7 @@ pub(crate) fn immersed<T: Real>(
 /// Quadrature points on cut strips: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
-fn part<T: Real>(
-    leaf: Leaf<T>,
-    cut: CoordinatePlane<T>,
-    origin: Vec3<T>,
-) -> CellIntegrals<T> {
+fn part<T: Real>(leaf: Leaf<T>, cut: CoordinatePlane<T>, origin: Vec3<T>) -> CellIntegrals<T> {
     let cell = &leaf.cell;
     let mut found = Vec::new();
     let undecided = strips(cell, cut, &mut found);

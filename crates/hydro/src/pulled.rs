@@ -156,7 +156,8 @@ impl NetPull<'_> {
         let body = Body::of_cells(cells, self.body.size(), self.body.accuracy());
         let mirrored = of.lengthwise.then(|| body.with_mirror_image(0));
         let whole = mirrored.as_ref().unwrap_or(&body);
-        let sums = HydrostaticIntegrals::of_numbers(found.sums.numbers().map(DerivativeTape::input));
+        let sums =
+            HydrostaticIntegrals::of_numbers(found.sums.numbers().map(DerivativeTape::input));
         let cut = self.taped_cut();
         let mut waterline = Vec::new();
         for leaf in &found.leaves {
@@ -282,7 +283,8 @@ fn pulled_whole(
     let (mut at, mut by) = (vec![Vec3::zero(); count], vec![Vec3::zero(); count]);
     for &(w, weight) in gauss_rule(across) {
         strip.line(w, &mut line);
-        let (outer_basis, outer_slopes) = crate::bernstein::basis(cell.degree()[1 - strip.inner], w);
+        let (outer_basis, outer_slopes) =
+            crate::bernstein::basis(cell.degree()[1 - strip.inner], w);
         for (net, sums) in nets.iter_mut().zip(sums) {
             at.fill(Vec3::zero());
             by.fill(Vec3::zero());

@@ -16,7 +16,11 @@ fn coordinates(flat: bool) -> Vec<f64> {
         for j in 0..NET[1] {
             let (x, s) = (i as f64 / (NET[0] - 1) as f64, j as f64 / (NET[1] - 1) as f64);
             let full = if flat { 1.0 } else { 4.0 * x * (1.0 - x) };
-            all.extend([6.0 * x + 0.1 * s, full * s * (1.0 + 0.1 * x), 1.6 * s - 1.1 + 0.2 * x * x]);
+            all.extend([
+                6.0 * x + 0.1 * s,
+                full * s * (1.0 + 0.1 * x),
+                1.6 * s - 1.1 + 0.2 * x * x,
+            ]);
         }
     }
     all
@@ -122,7 +126,11 @@ fn corners_of_panels_have_weights() {
                 };
                 let exact = (moved(1e-4) - moved(-1e-4)) / 2e-4;
                 let found = weights[0][corner][axis];
-                assert!((found - exact).abs() < 1e-6, "{} {corner} {axis}: {found} {exact}", names[k]);
+                assert!(
+                    (found - exact).abs() < 1e-6,
+                    "{} {corner} {axis}: {found} {exact}",
+                    names[k]
+                );
             }
         }
     }

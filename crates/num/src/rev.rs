@@ -29,14 +29,17 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 pub struct Rev {
     value: f64,
     /// Its node, from 1; 0 when it does not depend on any input. [`INFINITE`] is added where a derivative is not finite.
-    node: u32,
+    node: u64,
 }
 
 /// The bit of a node of a number whose derivative is not finite, as at a square root of zero.
-const INFINITE: u32 = 1 << 31;
+const INFINITE: u64 = 1 << 63;
 
 /// Maximum size of a tape in bytes.
 const MAX_TAPE_BYTES: usize = 2 << 30;
+
+/// Maximum number of nodes that a tape has at a time.
+const MAX_NODES: usize = 1 << 30;
 
 /// One dependence: on the node at index `of`, at `rate`. 12 bytes.
 #[derive(Clone, Copy)]
@@ -58,7 +61,7 @@ pub struct DerivativeTape {
     /// Nodes that stay, and the end of their dependences.
     kept: u32,
     /// Local nodes that were forgotten: their numbers are never used again.
-    forgotten: u32,
+    forgotten: u64,
     sound: bool,
     /// The greatest size so far.
     peak: usize,
@@ -153,10 +156,7 @@ impl DerivativeTape {
             if let Some(probes) = &mut tape.probes {
                 probes.truncate(kept);
             }
-            match tape.forgotten.checked_add(local).filter(|n| n + tape.kept < INFINITE / 2) {
-                Some(forgotten) => tape.forgotten = forgotten,
-                None => tape.sound = false,
-            }
+            tape.forgotten += u64::from(local);
         });
     }
 
@@ -175,10 +175,10 @@ impl DerivativeTape {
 
     /// The number of a new node that depends on what was appended since the last.
     #[inline]
-    fn node(&mut self) -> u32 {
+    fn node(&mut self) -> u64 {
         let end = self.dependences.len();
-        let node = self.ends.len() as u32 + 1 + self.forgotten;
-        if end * size_of::<Dependence>() > MAX_TAPE_BYTES || node >= INFINITE {
+        let node = self.ends.len() as u64 + 1 + self.forgotten;
+        if end * size_of::<Dependence>() > MAX_TAPE_BYTES || self.ends.len() >= MAX_NODES {
             self.sound = false;
             return 0;
         }
@@ -194,20 +194,21 @@ impl DerivativeTape {
 
     /// The index of a node; `None`, and unsound, when it was forgotten.
     #[inline]
-    fn index(&mut self, node: u32) -> Option<u32> {
-        if node <= self.kept {
-            return Some(node - 1);
+    fn index(&mut self, node: u64) -> Option<u32> {
+        let kept = u64::from(self.kept);
+        if node <= kept {
+            return Some((node - 1) as u32);
         }
-        if node <= self.kept + self.forgotten {
+        if node <= kept + self.forgotten {
             self.sound = false;
             return None;
         }
-        Some(node - self.forgotten - 1)
+        Some((node - self.forgotten - 1) as u32)
     }
 
     /// Appends a dependence of the next node; gives the part of its number that says whether it is finite.
     #[inline]
-    fn depend(&mut self, on: u32, rate: f64) -> u32 {
+    fn depend(&mut self, on: u64, rate: f64) -> u64 {
         let (infinite, node) = (on & INFINITE, on & !INFINITE);
         // A rate of zero reaches nothing, were it infinity further down.
         if node != 0
@@ -221,7 +222,7 @@ impl DerivativeTape {
 
     /// The number `value` of the next node, if that has dependences.
     #[inline]
-    fn number(&mut self, value: f64, before: usize, infinite: u32) -> Rev {
+    fn number(&mut self, value: f64, before: usize, infinite: u64) -> Rev {
         if self.dependences.len() == before {
             return Rev { value, node: infinite };
         }
@@ -332,7 +333,7 @@ impl Rev {
     }
 
     /// Its node: two numbers share it only if their derivatives are the same; 0 for a constant.
-    pub fn node(self) -> u32 {
+    pub fn node(self) -> u64 {
         self.node
     }
 }
