@@ -120,10 +120,12 @@ def cubic_basis(count: int, places: np.ndarray) -> np.ndarray:
     t = np.minimum(places, 1 - 1e-15)
     basis = ((knots[:-1] <= t[:, None]) & (t[:, None] < knots[1:])).astype(float)
     for degree in range(1, 4):
-        left, right = knots[: -degree - 1], knots[degree + 1 :]
+        n = len(knots) - 1 - degree
+        rise = knots[degree : degree + n] - knots[:n]
+        fall = knots[degree + 1 :] - knots[1 : n + 1]
         with np.errstate(divide="ignore", invalid="ignore"):
-            up = np.nan_to_num((t[:, None] - left[:-1]) / (knots[degree:-1] - left)[:-1])
-            down = np.nan_to_num((right[1:] - t[:, None]) / (right - knots[1:-degree])[1:])
+            up = np.where(rise > 0, (t[:, None] - knots[:n]) / rise, 0.0)
+            down = np.where(fall > 0, (knots[degree + 1 :] - t[:, None]) / fall, 0.0)
         basis = up * basis[:, :-1] + down * basis[:, 1:]
     return basis
 

@@ -351,6 +351,7 @@ async function sheet(name: TabName): Promise<void> {
     t.tabIndex = on ? 0 : -1
   }
   await rooms.show(inRoom || beside ? name : null)
+  if (beside) requestAnimationFrame(() => view.fit())
   // What was made in a room is seen whole.
   if (room && !inRoom && seen !== model.rev) view.fit()
 }

@@ -4,7 +4,7 @@
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
 use crate::folds::fold;
-use crate::integrals::{Immersed, Leaf, Wanted, immersed};
+use crate::integrals::{HalvedCell, Immersed, Wanted, immersed};
 use crate::trimmed::TrimLoops;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
@@ -315,13 +315,13 @@ impl<T: Real> Body<T> {
             c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min)
         };
         let mut best: Option<LowestPlace<T>> = None;
-        let mut stack: Vec<(f64, Leaf<T>)> = (self.cells.iter().enumerate())
-            .map(|(root, c)| (least(c), Leaf { cell: c.clone(), root, path: Vec::new() }))
+        let mut stack: Vec<(f64, HalvedCell<T>)> = (self.cells.iter().enumerate())
+            .map(|(root, c)| (least(c), HalvedCell { cell: c.clone(), root, path: Vec::new() }))
             .collect();
         stack.sort_by(|a, b| b.0.total_cmp(&a.0));
         let near = 1e-14 * self.size;
         let mut steps = 0;
-        while let Some((bound, Leaf { cell, root, path })) = stack.pop() {
+        while let Some((bound, HalvedCell { cell, root, path })) = stack.pop() {
             if best.as_ref().is_some_and(|b| bound >= b.value.re() - near) {
                 continue;
             }
@@ -342,7 +342,7 @@ impl<T: Real> Body<T> {
                 .zip(cell.split(usize::from(axis)))
                 .map(|(half, c)| {
                     let path = [&path[..], &[[axis, half]]].concat();
-                    (least(&c), Leaf { cell: Arc::new(c), root, path })
+                    (least(&c), HalvedCell { cell: Arc::new(c), root, path })
                 })
                 .collect();
             parts.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -154,12 +154,12 @@ pub(crate) struct Immersed<T> {
     /// The strips cut by the water.
     pub waterline: Vec<Strip<T>>,
     /// The cells that they are of.
-    pub leaves: Vec<Leaf<T>>,
+    pub leaves: Vec<HalvedCell<T>>,
 }
 
 /// A cell, or what halvings leave of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Leaf<T> {
+pub(crate) struct HalvedCell<T> {
     pub cell: Arc<PolynomialCell<T>>,
     /// The index of the cell halved.
     pub root: usize,
@@ -188,7 +188,7 @@ const WORTH_A_THREAD: usize = 2048;
 
 /// Contribution of a cell to the integrals.
 struct CellIntegrals<T> {
-    leaf: Leaf<T>,
+    leaf: HalvedCell<T>,
     sums: HydrostaticIntegrals<T>,
     errors: Errors,
     waterline: Vec<Strip<T>>,
@@ -237,9 +237,9 @@ pub(crate) fn immersed<T: Real>(
 ) -> Immersed<T> {
     let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * size };
     let origin = Vec3::new(origin[0], origin[1], level);
-    let one = |leaf: Leaf<T>| part(leaf, cut, origin);
+    let one = |leaf: HalvedCell<T>| part(leaf, cut, origin);
     let whole = |(root, cell): (usize, &Arc<PolynomialCell<T>>)| {
-        Some(one(Leaf { cell: cell.clone(), root, path: Vec::new() }))
+        Some(one(HalvedCell { cell: cell.clone(), root, path: Vec::new() }))
     };
     let mut parts: Vec<Option<CellIntegrals<T>>> = if cells.len() < WORTH_A_THREAD {
         cells.iter().enumerate().map(whole).collect()
@@ -300,7 +300,7 @@ pub(crate) fn immersed<T: Real>(
         for (k, half) in (0u8..).zip(old.leaf.cell.split(usize::from(along))) {
             let mut path = old.leaf.path.clone();
             path.push([along, k]);
-            let new = one(Leaf { cell: Arc::new(half), root: old.leaf.root, path });
+            let new = one(HalvedCell { cell: Arc::new(half), root: old.leaf.root, path });
             for e in 0..6 {
                 errors[e] += new.errors[e];
             }
@@ -332,7 +332,11 @@ pub(crate) fn immersed<T: Real>(
 /// Quadrature points on cut strips: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
-fn part<T: Real>(leaf: Leaf<T>, cut: CoordinatePlane<T>, origin: Vec3<T>) -> CellIntegrals<T> {
+fn part<T: Real>(
+    leaf: HalvedCell<T>,
+    cut: CoordinatePlane<T>,
+    origin: Vec3<T>,
+) -> CellIntegrals<T> {
     let cell = &leaf.cell;
     let mut found = Vec::new();
     let undecided = strips(cell, cut, &mut found);

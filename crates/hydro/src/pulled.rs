@@ -11,7 +11,7 @@ use crate::body::{Body, HullSide, fit_limits};
 use crate::cell::{CellFrame, PolynomialCell, SurfaceDivision, interpolated, pulled_points};
 use crate::figures::{of_integrals, origin_of};
 use crate::hydrostatics::Symmetry;
-use crate::integrals::{HydrostaticIntegrals, Immersed, Leaf, integrated, rule_points};
+use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, integrated, rule_points};
 use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
 use moldloft_num::{Adjoints, DerivativeTape, Dual, Real, Rev, Vec3, gauss_rule};
 use moldloft_parallel::on_one_thread;
@@ -204,7 +204,7 @@ impl NetPull<'_> {
     }
 
     /// Adds what the integrals over a leaf depend on.
-    fn leaf(&mut self, leaf: &Leaf<f64>, sums: &[HydrostaticIntegrals<f64>]) {
+    fn leaf(&mut self, leaf: &HalvedCell<f64>, sums: &[HydrostaticIntegrals<f64>]) {
         let found = self.strips(&leaf.cell);
         if found.is_empty() {
             return;
