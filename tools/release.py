@@ -348,6 +348,11 @@ _EXTRAS = {
     "optimizers": "import optuna, pymoo, moldloft.study.optimizers",
     "tables": "import pandas, pyarrow, moldloft.study",
     "cluster": "import distributed, moldloft.study.cluster",
+    "jobqueue": "import dask_jobqueue; from moldloft.study.cluster import QUEUES; "
+    "assert all(hasattr(dask_jobqueue, name) for name in QUEUES.values())",
+    "jax": "import jax; jax.config.update('jax_enable_x64', True); "
+    "from moldloft.study import function, jax_function; "
+    "assert jax_function(function(m, ['beam'], ['hydrostatics.volume']))([1.0]).size == 1",
     "hydro": "assert m.to_capytaine().mesh.nb_faces > 0",
     "cad": "m.write('boat.3dm'); m.write('boat.dxf'); assert not m.to_ocp().IsNull()",
 }

@@ -22,9 +22,12 @@ from typing import Any, BinaryIO
 
 from moldloft.pipes import broken_pipes_raise
 
-__all__ = ["ChildProcess", "ProcessEnd", "bounded", "serve"]
+__all__ = ["ChildProcess", "ProcessEnd", "bounded", "send_end", "serve"]
 
 _HEAD = struct.Struct("<Q")
+
+#: The key of the message of a process whose copy has ended over a request.
+_ENDED = "process-ended"
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,8 @@ class ChildProcess:
                 _write(target, request)
             asked = True
             answer = _read(source)
+            if answer is not None and _ENDED in answer:
+                return ProcessEnd(answer[_ENDED], False, asked)
             if answer is not None:
                 self.answered = True
                 return answer
@@ -142,6 +147,18 @@ class ChildProcess:
             if pipe is not None:
                 with broken_pipes_raise(), contextlib.suppress(OSError):
                     pipe.close()
+
+
+def send_end(status: int) -> None:
+    """Tell the parent process that the copy of this one which was to answer has ended.
+
+    Parameters
+    ----------
+    status
+        Its return code; below zero the number of a signal.
+    """
+    body = json.dumps({_ENDED: status}).encode()
+    os.write(1, _HEAD.pack(len(body)) + body)
 
 
 def serve(answer: Callable[[dict[str, Any]], dict[str, Any]], idle: float) -> None:

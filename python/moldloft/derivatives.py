@@ -266,6 +266,40 @@ class Differentiable:
         """
         return self.vjp({expression: 1.0}, by) if by is not None else self.vjp({expression: 1.0})
 
+    def value_and_gradient(
+        self, expression: str, by: Sequence[str] | None = None
+    ) -> tuple[float, dict[str, float] | Floats]:
+        """One number and its exact derivatives by many inputs, as optimisers take them.
+
+        Parameters
+        ----------
+        expression
+            An expression with a number as value, such as ``"mesh.volume"``.
+        by
+            Parameters, or literals such as ``"P21.y"``; by default all.
+
+        Returns
+        -------
+        tuple
+            The value, and what :meth:`gradient` returns.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such parameter or number.
+        ModelError
+            When the expression is none, is not a number, or has no derivative.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("param float a = 3 in [0, 9]; AbsPoint P(a * a, 1, 2);")
+        >>> m.value_and_gradient("P.x", ["a"])
+        (9.0, array([6.]))
+        """
+        gradient = self.gradient(expression, by)
+        return float(self._document.eval(expression)), gradient
+
     def jvp(self, directions: Mapping[str, float], outputs: Sequence[str]) -> dict[str, Any]:
         """The change of outputs when inputs change at given rates: one evaluation in forward mode.
 

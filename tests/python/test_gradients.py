@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import re
+import os
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import moldloft
+import random_models
 from moldloft import _core
-from moldloft.study import component, function
+from moldloft.deformation import Deformation
+from moldloft.study import component, function, jax_function, torch_function
+from test_deformation import ball, two_boxes
 
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 HULL = """
@@ -78,17 +83,81 @@ def test_sums_of_outputs_of_all_shapes(hull):
         assert ahead == (list(outputs) if mode == "forward" else ["hull.area"])
     assert close(hull.gradient("mesh.volume", by), hull.derivatives(["mesh.volume"], by)[0])
     assert list(hull.gradient("B.y")) == by
+    value, gradient = hull.value_and_gradient("mesh.volume", by)
+    assert value == hull.eval("mesh.volume")
+    assert np.array_equal(gradient, hull.gradient("mesh.volume", by))
+    with pytest.raises(moldloft.Error, match="weights"):
+        hull.value_and_gradient("B", by)
 
 
-def test_hydrostatics_join_in_by_forward_mode():
+#: Greatest difference of hydrostatic figures from forward mode: both differentiate a quadrature of
+#: this accuracy, each on cells of its own. The integrand of the wetted area is no polynomial.
+OF_QUADRATURE, OF_AREA = 1e-8, 1e-5
+
+FIGURES = (
+    "volume", "wetted_area", "draft", "lcb", "vcb", "waterplane_area", "lcf", "waterplane_it",
+    "waterplane_il", "kmt",
+)  # fmt: skip
+
+
+def of_figures(m, names, by, mode):
+    """The derivatives of hydrostatic figures, (figures, inputs), and what took forward mode."""
+    eye = np.eye(len(names))
+    columns = [np.ascontiguousarray(eye[:, k : k + 1]) for k in range(len(names))]
+    given = [(f"hydrostatics.{name}", w) for name, w in zip(names, columns, strict=True)]
+    return _core.vjp(m._document, given, by, mode)
+
+
+def assert_figures_agree(m, names, by):
+    rows, ahead = of_figures(m, names, by, "reverse")
+    exact, _ = of_figures(m, names, by, "forward")
+    # Of a figure that depends on none of the inputs there is rounding.
+    off = np.abs(rows - exact).max(axis=1) / np.maximum(np.abs(exact).max(axis=1), 1e-6)
+    most = [OF_AREA if name == "wetted_area" else OF_QUADRATURE for name in names]
+    assert (off <= most).all(), dict(zip(names, off.tolist(), strict=True))
+    return ahead
+
+
+def test_hydrostatics_by_a_reverse_sweep():
     m = moldloft.load(EXAMPLES / "sailboat" / "yacht.sdl")
-    by = [p.name for p in m.params.values() if not p.whole]
-    rows = m.derivatives(["hydrostatics.volume", "mesh.area"], by)
-    exact = 3.0 * np.array(rows[0]) - np.array(rows[1])
-    assert close(m.vjp({"hydrostatics.volume": 3.0, "mesh.area": -1.0}, by), exact)
-    flat = [("hydrostatics.volume", np.array([[3.0]])), ("mesh.area", np.array([[-1.0]]))]
-    found, ahead = _core.vjp(m._document, flat, by, "reverse")
-    assert close(found[0], exact) and "hydrostatics.volume" in ahead
+    by = [p.name for p in m.params.values() if not p.whole] + m.literals[:10]
+    assert assert_figures_agree(m, FIGURES, by) == []
+    # Together with the mesh, as one sum.
+    weights = {"hydrostatics.volume": 3.0, "mesh.area": -1.0, "hydrostatics.kmt": 0.1}
+    flat = [(name, np.array([[w]])) for name, w in weights.items()]
+    rows, ahead = _core.vjp(m._document, flat, by, "reverse")
+    both = np.array(list(weights.values())) @ np.array(m.derivatives(list(weights), by))
+    assert ahead == [] and np.abs(rows[0] - both).max() < OF_QUADRATURE * np.abs(both).max()
+
+
+def test_hydrostatics_of_panels_by_a_reverse_sweep():
+    """A deformed mesh has no surface: its figures are those of its panels."""
+    m = Deformation.of_mesh(*ball(), two_boxes()).model()
+    names = ("volume", "wetted_area", "lcb", "waterplane_area", "kmt")
+    assert_figures_agree(m, names, ["nose", "twist", "crown"])
+
+
+def test_a_figure_that_does_not_exist_is_an_error():
+    m = moldloft.load(EXAMPLES / "sailboat" / "yacht.sdl")
+    by = m.literals[:12]
+    with pytest.raises(moldloft.Error, match="has no `volumen`"):
+        m.vjp({"hydrostatics.volumen": 1.0}, by)
+
+
+@pytest.mark.parametrize("seed", range(500 if SOAK else 12))
+def test_random_models_agree(seed):
+    drawn = random_models.drawn(seed)
+    m = moldloft.loads(drawn.text)
+    rng = np.random.default_rng(seed)
+    literals = m.literals
+    by = ["w", *(literals[k] for k in rng.permutation(len(literals))[:11])]
+    w = rng.normal(size=(2, *m.mesh().vertices.shape))
+    outputs = [("mesh", w.reshape(2, -1)), ("mesh.volume", rng.normal(size=(2, 1)))]
+    rows, ahead = _core.vjp(m._document, outputs, by, "reverse")
+    exact, _ = _core.vjp(m._document, outputs, by, "forward")
+    assert ahead == [] and close(rows, exact)
+    if drawn.low < 0 < drawn.high:
+        assert_figures_agree(m, ("volume", "wetted_area", "lcb", "waterplane_area", "kmt"), by)
 
 
 def test_directions(hull):
@@ -180,6 +249,17 @@ def test_functions_of_studies(hull):
     assert close(of.vjp(x, w), w @ jacobian) and close(of.vjp(x, w[0]), w[0] @ jacobian)
     rates = np.random.default_rng(6).normal(size=len(inputs))
     assert np.abs(of.jvp(x, rates) - jacobian @ rates).max() < 1e-12 * np.abs(jacobian).max()
+    # A Hessian, by its products: symmetric, and that of differences of the Jacobian.
+    along = np.random.default_rng(7).normal(size=(2, len(inputs)))
+    second = [of.hvp(x, w[0], d) for d in along]
+    size = max(np.abs(row).max() for row in second)
+    assert abs(second[0] @ along[1] - second[1] @ along[0]) < 1e-6 * size * len(inputs)
+    step = 1e-4 / np.abs(along[0]).max()
+    pair = [of.jacobian(x + s * step * along[0]) for s in (1, -1)]
+    assert np.abs(w[0] @ (pair[0] - pair[1]) / (2 * step) - second[0]).max() < 1e-5 * size
+    assert (of.hvp(x, w[0], 0 * along[0]) == 0).all()
+    with pytest.raises(moldloft.Error, match="a direction"):
+        of.hvp(x, w[0], [1.0])
     # Many inputs for each output: rows by reverse mode.
     few = function(hull, inputs, ["mesh.area", "mesh.volume"])
     rows = hull.derivatives(["mesh.area", "mesh.volume"], inputs)
@@ -188,6 +268,9 @@ def test_functions_of_studies(hull):
         of.vjp(x, [1.0])
     with pytest.raises(moldloft.Error, match="rates"):
         of.jvp(x, [1.0])
+    near = few.start + 0.02
+    values, rows = few.value_and_jacobian(near)
+    assert np.array_equal(values, few(near)) and np.array_equal(rows, few.jacobian(near))
 
 
 @pytest.mark.parametrize("matrix_free", [False, True])
@@ -210,21 +293,33 @@ def test_components_of_openmdao(hull, matrix_free):
             assert np.allclose(found["b", name][:, 0], exact[1:, k], rtol=1e-11, atol=1e-12)
 
 
-@pytest.mark.parametrize("package", ["jax", "torch"])
-def test_the_recipes_of_the_page_of_studies(hull, package):
-    peer = pytest.importorskip(package)
-    text = (EXAMPLES.parent / "docs" / "studies.md").read_text(encoding="utf-8")
-    recipe = next(b for b in re.findall(r"^```py\n(.*?)^```$", text, re.M | re.S) if package in b)
+def test_a_function_of_jax(hull):
+    jax = pytest.importorskip("jax")
     f = function(hull, ["beam", "draft", *hull.literals], ["mesh.area", "B"])
-    names = {"f": f}
-    if package == "jax":
-        peer.config.update("jax_enable_x64", True)
-    exec(recipe, names)
     x, w = f.start, np.array([1.0, 2.0, 3.0, 4.0])
-    if package == "jax":
-        found = peer.grad(lambda x: names["outputs"](x) @ w)(x)
-    else:
-        variable = peer.from_numpy(x).requires_grad_()
-        (names["Outputs"].apply(variable) @ peer.from_numpy(w)).backward()
-        found = variable.grad.numpy()
+    jax.config.update("jax_enable_x64", False)
+    with pytest.raises(moldloft.Error, match="single precision"):
+        jax_function(f)
+    jax.config.update("jax_enable_x64", True)
+    outputs = jax_function(f)
+    found = jax.grad(lambda x: outputs(x) @ w)(x)
     assert close(np.asarray(found), w @ f.jacobian(x))
+    assert close(np.asarray(jax.jacrev(outputs)(x)), f.jacobian(x))
+    two = np.stack([x, x + 0.01])
+    assert (np.asarray(jax.jit(jax.vmap(outputs))(two)) == [f(x), f(x + 0.01)]).all()
+
+
+def test_a_function_of_torch(hull):
+    torch = pytest.importorskip("torch")
+    f = function(hull, ["beam", "draft", *hull.literals], ["mesh.area", "B"])
+    outputs, w = torch_function(f), np.array([1.0, 2.0, 3.0, 4.0])
+    x = torch.tensor(f.start, dtype=torch.float64, requires_grad=True)
+    (outputs(x) @ torch.from_numpy(w)).backward()
+    assert close(x.grad.numpy(), w @ f.jacobian(f.start))
+
+
+@pytest.mark.parametrize(("made", "package"), [(jax_function, "jax"), (torch_function, "torch")])
+def test_a_package_that_is_missing_is_named(hull, monkeypatch, made, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(moldloft.Error, match=rf"moldloft\[{package}\]"):
+        made(function(hull, ["beam"], ["mesh.area"]))

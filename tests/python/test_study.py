@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import importlib.util
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -20,6 +22,7 @@ import pytest
 
 import moldloft
 from moldloft import study
+from study_campaign import known
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
@@ -325,41 +328,6 @@ def test_any_executor_and_any_parts_give_the_same_table(tmp_path):
     assert done.stdout.encode() == serial
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_a_killed_study_goes_on(tmp_path):
-    count, kills = (10_000, 2) if SOAK else (120, 1)
-    more = f"""
-[plan]
-method = "sobol"
-count = {count}
-[analysis.rare]
-python = "rare.py:rare"
-outputs = ["twice"]
-"""
-    path = write(tmp_path, more, DEFINITION.replace("[1, 3]", "[1, 3.95]"))
-    # Some 1 % of the cases end their process.
-    (tmp_path / "rare.py").write_text(
-        "import os, signal\ndef rare(model):\n"
-        "    if int(model['a'] * 1e6) % 100 == 7: os.kill(os.getpid(), signal.SIGKILL)\n"
-        "    return 2 * model['a']\n"
-    )
-    serial = study.sweep(study.read(path), tmp_path / "serial.sqlite", processes=1)
-    assert set(serial.counts) <= {"done", "refused", "crashed"}
-    words = [sys.executable, "-m", "moldloft", "study", "sweep", str(path), "-q"]
-    store = tmp_path / "box.sqlite"
-    for _ in range(kills):
-        with subprocess.Popen(words, stderr=subprocess.DEVNULL) as run:
-            deadline = time.monotonic() + 60
-            before = known(store)
-            while known(store) <= before and run.poll() is None and time.monotonic() < deadline:
-                time.sleep(0.02)
-            run.kill()
-    counted = []
-    results = study.sweep(study.read(path), store, progress=lambda n, all_, _: counted.append(all_))
-    assert results.csv() == serial.csv()
-    assert not counted or counted[0] < count
-
-
 def test_a_result_is_in_the_file_at_once(tmp_path: Path):
     path = tmp_path / "s.sqlite"
     made = study.Outcome("k", "done", "", "", 0.1, {"a": 1.0}, {"b": 2.0})
@@ -380,14 +348,6 @@ def test_a_result_is_in_the_file_at_once(tmp_path: Path):
         monkey.pop()
         assert kept.collect(other) == known(path) == 1
         other.close()
-
-
-def known(store: Path) -> int:
-    try:
-        with study.Store(store) as kept:
-            return len(kept.known())
-    except moldloft.Error:
-        return 0
 
 
 SOLVER = """
@@ -542,6 +502,38 @@ def test_the_command(tmp_path):
     assert "no results" in command("show", path, "--store", tmp_path / "none.sqlite").stderr
 
 
+def test_the_page_has_pictures_of_variants(tmp_path):
+    """The ends of each output, of the model that the table is of."""
+    plate = (
+        "param float b = 1 in [0.5, 3]; AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0);"
+        "AbsPoint C(0, b, 0); AbsPoint D(1, b, 0); Line l(A, B); Line m(C, D); RuledSurf s(l, m);"
+    )
+    (tmp_path / "plate.sdl").write_text(plate)
+    path = tmp_path / "plate.toml"
+    path.write_text(
+        "model = 'plate.sdl'\n[inputs]\nb = {}\n[outputs]\narea = 's.area'\nwidth = 'C.y'\n"
+        "[plan]\nmethod = 'grid'\nlevels = 5\n"
+    )
+    page = tmp_path / "plate.html"
+    assert command("sweep", path, "--html", page, "-q").returncode == 0
+    text = page.read_text()
+    pictures = re.findall(
+        r'<img alt="([^"]+)" width="300" src="data:image/png;base64,([^"]+)"', text
+    )
+    assert [alt for alt, _ in pictures] == [
+        "case 0: least area, least width (area 0.5, width 0.5)",
+        "case 4: greatest area, greatest width (area 3, width 3)",
+    ]
+    for (_, data), value in zip(pictures, (0.5, 3.0), strict=True):
+        shape = moldloft.load(tmp_path / "plate.sdl")
+        shape.set({"b": value})
+        assert base64.b64decode(data) == shape.picture(360, 240)
+    # Of another model than that of the table there are none.
+    (tmp_path / "plate.sdl").write_text(plate.replace("AbsPoint B(1,", "AbsPoint B(2,"))
+    assert command("show", path, "--html", page, "-q").returncode == 0
+    assert "<img" not in page.read_text()
+
+
 def test_a_page_of_many_cases_counts_them_by_cells():
     """No case is left out of a plot, and the page does not grow with them."""
     from moldloft.study.report import html, sensitivities
@@ -663,7 +655,7 @@ def test_a_cluster_gives_the_same_table(tmp_path):
     definition = study.read(write(tmp_path, "[plan]\nmethod = 'sobol'\ncount = 24\n"))
     serial = study.sweep(definition, tmp_path / "one.sqlite").csv()
     with (
-        distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=":0") as cluster,
         distributed.Client(cluster) as client,
     ):
         executor = executor_of(client)

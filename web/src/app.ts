@@ -13,7 +13,7 @@ import type { Host } from './host'
 import type { Link } from './link'
 import type { Making } from './making'
 import type { Actions } from './panels'
-import type { Rooms } from './rooms'
+import type { RoomName, Rooms } from './rooms'
 import type { Saving } from './saving'
 import type { SectionPlane } from './section'
 import type { Shell } from './shell'
@@ -21,7 +21,7 @@ import type { OpenedBefore } from './start'
 import type { View } from './view'
 
 /** A tab over the picture. */
-export type TabName = SheetName | 'board' | 'desk'
+export type TabName = SheetName | RoomName
 
 export interface App {
   shell: Shell

@@ -60,6 +60,13 @@ export class Changes {
     this.setting.push({ [name]: value })
   }
 
+  /** Shows the model with these values, without writing them; with none as the text has it. */
+  async preview(values: Record<string, number> | null): Promise<void> {
+    if (values) this.setting.push(values)
+    await this.setting.settled()
+    if (!values) await this.reset()
+  }
+
   /** Runs after all that is being written. */
   after(run: () => Promise<void>): Promise<void> {
     this.writing = this.writing.then(run).catch((error) => this.say((error as Error).message))

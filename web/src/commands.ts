@@ -213,6 +213,7 @@ function analysisCommands(app: App): Command[] {
       ? []
       : [
           { name: 'Fairing desk', run: () => void app.sheet('desk') },
+          { name: 'Studies', run: () => void app.sheet('studies') },
           { name: 'Fair the selected curve or surface', run: fair },
         ]),
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => void app.sheet(n) })),

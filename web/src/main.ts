@@ -265,7 +265,11 @@ editor.steps.onText = () => {
   if (start.element.hidden && !hidden) void start.refresh()
   start.element.hidden = hidden
 }
-const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name))
+const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name), {
+  say,
+  preview: (values) => changes.preview(values),
+  write: actions.write,
+})
 const sheets = new Sheets(shell.sheet, link, actions, () => tablesSheet(editor, actions))
 const section = new SectionPlane(view, shell.section, {
   say,
@@ -351,19 +355,22 @@ async function askRecent(): Promise<void> {
 let seen = -1
 async function sheet(name: TabName): Promise<void> {
   const inRoom = name === 'board' || name === 'desk'
+  // Beside the picture, which shows what is chosen there.
+  const beside = name === 'studies'
   const { room } = document.body.dataset
   if (inRoom) document.body.dataset.room = name
   else delete document.body.dataset.room
   if (inRoom && !room) seen = model.rev
-  sheets.show(inRoom ? 'model' : name)
-  shell.toolbar.hidden = shell.view.hidden = name !== 'model'
+  sheets.show(inRoom || beside ? 'model' : name)
+  shell.toolbar.hidden = shell.view.hidden = name !== 'model' && !beside
   shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)?.removeAttribute('hidden')
   for (const t of shell.tabs.querySelectorAll<HTMLElement>('[role=tab]')) {
     const on = t.dataset.sheet === name
     t.setAttribute('aria-selected', String(on))
     t.tabIndex = on ? 0 : -1
   }
-  await rooms.show(inRoom ? name : null)
+  await rooms.show(inRoom || beside ? name : null)
+  if (beside) requestAnimationFrame(() => view.fit())
   // What was made in a room is seen whole.
   if (room && !inRoom && seen !== model.rev) view.fit()
 }
@@ -557,7 +564,7 @@ async function begin(hello: any): Promise<void> {
   if (inCell) cell ??= new Cell(editor)
   if (hello.words) spell(hello.words)
   const has = (name: string) => shell.tabs.querySelector(`[data-sheet=${name}]`) !== null
-  if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'))
+  if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'), tab('studies', 'Studies'))
   if (!link.local && /\.skt$/i.test(hello.name) && !has('board')) {
     shell.tabs.append(tab('board', 'Drawing board'))
     if (!/^\s*SKETCH/im.test(hello.text)) void sheet('board')
@@ -644,6 +651,9 @@ Object.assign(window, {
     },
     get desk() {
       return rooms.loaded.desk
+    },
+    get studies() {
+      return rooms.loaded.studies
     },
     steps: () => ({ done: [...editor.steps.done], undone: [...editor.steps.undone] }),
     settled: () => changes.settled(),

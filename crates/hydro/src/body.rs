@@ -4,7 +4,7 @@
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
 use crate::folds::fold;
-use crate::integrals::{Immersed, Wanted, immersed};
+use crate::integrals::{HalvedCell, Immersed, Wanted, immersed};
 use crate::trimmed::TrimLoops;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
@@ -82,6 +82,28 @@ pub fn surface_measures<T: Real>(
     Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
 }
 
+/// The tolerances of the cells of a body of that size.
+pub(crate) fn fit_limits(size: f64, accuracy: f64) -> FitLimits {
+    FitLimits {
+        distance: 1e-2 * SHARE * accuracy * size,
+        area: 0.1 * SHARE * accuracy * size * size,
+        relative: (SHARE * accuracy).max(1e-11),
+    }
+}
+
+/// The corner of a part of a cell that is lowest.
+struct LowestPlace<T> {
+    value: T,
+    root: usize,
+    /// The halvings of the cell.
+    path: Vec<[u8; 2]>,
+    corner: usize,
+}
+
+fn along<T: Real>(p: Vec3<T>, direction: Vec3<f64>) -> T {
+    p.x * direction.x + p.y * direction.y + p.z * direction.z
+}
+
 impl<T: Real> Body<T> {
     /// The body bounded by surfaces and by panels of other skins. `size` is approximately its
     /// diagonal. `None` if a point of a surface is not finite, or loops bound no part of it.
@@ -92,11 +114,7 @@ impl<T: Real> Body<T> {
         size: f64,
         accuracy: f64,
     ) -> Option<Self> {
-        let limits = FitLimits {
-            distance: 1e-2 * SHARE * accuracy * size,
-            area: 0.1 * SHARE * accuracy * size * size,
-            relative: (SHARE * accuracy).max(1e-11),
-        };
+        let limits = fit_limits(size, accuracy);
         let mut body = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
         for (k, side) in sides.iter().enumerate() {
             let cells = cells_of(side.surface, side.loops, side.reversed, limits)?;
@@ -122,6 +140,11 @@ impl<T: Real> Body<T> {
         let no_surface = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
         let cells = panels.map(|p| Arc::new(PolynomialCell::of_panel(p))).collect();
         Self { cells, ..no_surface }
+    }
+
+    /// The body of cells, without rims.
+    pub(crate) fn of_cells(cells: Vec<Arc<PolynomialCell<T>>>, size: f64, accuracy: f64) -> Self {
+        Self { cells, rims: Vec::new(), folds: Vec::new(), size, accuracy }
     }
 
     /// True for a body without cells.
@@ -278,36 +301,49 @@ impl<T: Real> Body<T> {
     /// The minimum of `p . direction` over the skin: exact to rounding, with the derivatives of the
     /// point where it is attained.
     pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
-        let along = |p: Vec3<T>| p.x * direction.x + p.y * direction.y + p.z * direction.z;
+        if T::TAPED {
+            // A tape has the corner that is lowest, not the search for it.
+            let place = self.re().lowest_place(|p| along(p, direction))?;
+            let cell = self.cells[place.root].along_path(&place.path);
+            return Some(along(cell.net()[place.corner], direction));
+        }
+        Some(self.lowest_place(|p| along(p, direction))?.value)
+    }
+
+    fn lowest_place(&self, along: impl Fn(Vec3<T>) -> T) -> Option<LowestPlace<T>> {
         let least = |c: &PolynomialCell<T>| {
             c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min)
         };
-        let mut best: Option<T> = None;
-        let mut stack: Vec<(f64, Arc<PolynomialCell<T>>)> =
-            self.cells.iter().map(|c| (least(c), c.clone())).collect();
+        let mut best: Option<LowestPlace<T>> = None;
+        let mut stack: Vec<(f64, HalvedCell<T>)> = (self.cells.iter().enumerate())
+            .map(|(root, c)| (least(c), HalvedCell { cell: c.clone(), root, path: Vec::new() }))
+            .collect();
         stack.sort_by(|a, b| b.0.total_cmp(&a.0));
         let near = 1e-14 * self.size;
         let mut steps = 0;
-        while let Some((bound, cell)) = stack.pop() {
-            if best.is_some_and(|b| bound >= b.re() - near) {
+        while let Some((bound, HalvedCell { cell, root, path })) = stack.pop() {
+            if best.as_ref().is_some_and(|b| bound >= b.value.re() - near) {
                 continue;
             }
             steps += 1;
             let [du, dv] = cell.degree();
             for corner in [0, dv, du * (dv + 1), du * (dv + 1) + dv] {
-                let x = along(cell.net()[corner]);
-                if best.is_none_or(|b| x.re() < b.re()) {
-                    best = Some(x);
+                let value = along(cell.net()[corner]);
+                if best.as_ref().is_none_or(|b| value.re() < b.value.re()) {
+                    best = Some(LowestPlace { value, root, path: path.clone(), corner });
                 }
             }
             let [u, v] = cell.lengths();
             if u.max(v) <= 1e-9 * self.size || steps > 20_000 {
                 continue;
             }
-            let mut parts: Vec<_> = cell
-                .split(usize::from(v > u))
-                .into_iter()
-                .map(|c| (least(&c), Arc::new(c)))
+            let axis = u8::from(v > u);
+            let mut parts: Vec<_> = (0u8..)
+                .zip(cell.split(usize::from(axis)))
+                .map(|(half, c)| {
+                    let path = [&path[..], &[[axis, half]]].concat();
+                    (least(&c), HalvedCell { cell: Arc::new(c), root, path })
+                })
                 .collect();
             parts.sort_by(|a, b| b.0.total_cmp(&a.0));
             stack.extend(parts);

@@ -109,6 +109,20 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
+    /// The cell with these numbers, each made by `number`.
+    pub(crate) fn with_numbers<S: Real>(
+        &self,
+        mut number: impl FnMut(T) -> S,
+    ) -> PolynomialCell<S> {
+        PolynomialCell {
+            degree: self.degree,
+            net: self.net.iter().map(|p| p.map(&mut number)).collect(),
+            reversed: self.reversed,
+            border: self.border,
+            fit: self.fit,
+        }
+    }
+
     /// True when it reaches edge `k` of the surface.
     pub(crate) fn on_edge(&self, k: usize) -> bool {
         self.border[k]
@@ -171,6 +185,14 @@ impl<T: Real> PolynomialCell<T> {
         parts
     }
 
+    /// The part of it that halvings leave: each the parameter along, and which half.
+    pub(crate) fn along_path(&self, path: &[[u8; 2]]) -> Self {
+        path.iter().fold(self.clone(), |cell, &[along, half]| {
+            let [low, high] = cell.split(usize::from(along));
+            if half == 0 { low } else { high }
+        })
+    }
+
     /// Maximum lengths of its control polygons along u and along v.
     pub(crate) fn lengths(&self) -> [f64; 2] {
         let [du, dv] = self.degree;
@@ -190,52 +212,86 @@ pub(crate) fn cells_of<T: Real>(
     reversed: bool,
     limits: FitLimits,
 ) -> Option<Vec<PolynomialCell<T>>> {
-    let ends = |mut breaks: Vec<f64>, joints: Vec<f64>| {
-        breaks.extend(joints);
-        breaks.retain(|t| *t > 0.0 && *t < 1.0);
-        breaks.extend([0.0, 1.0]);
-        breaks.sort_by(f64::total_cmp);
-        breaks.dedup_by(|a, b| *a - *b < 1e-13);
-        breaks
-    };
-    let [bu, bv] = surface.breaks();
-    let [ju, jv] = surface.joints();
-    let (us, vs) = (ends(bu, ju), ends(bv, jv));
-    let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
-    let mut frames: Vec<CellFrame<'_, T>> = Vec::new();
-    let charts = charts(surface, loops, [&us, &vs])?;
-    match &charts {
-        Some(charts) => {
-            let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);
-            frames.extend(charts.iter().map(|chart| CellFrame { chart: Some(chart), ends: whole }));
-        }
-        None => {
-            for u in us.windows(2) {
-                for v in vs.windows(2) {
-                    frames.push(CellFrame { chart: None, ends: [u[0], u[1], v[0], v[1]] });
-                }
+    let division = SurfaceDivision::new(surface, loops)?;
+    let fit = &mut |frame: &CellFrame<'_, T>| fit(surface, frame, reversed);
+    let cells = division.cells(limits, fit)?;
+    Some(cells.into_iter().map(|(_, cell)| cell).collect())
+}
+
+/// The parts of a surface that cells begin with: between its joints, or charts of what loops leave
+/// of it.
+pub(crate) struct SurfaceDivision<T> {
+    us: Vec<T>,
+    vs: Vec<T>,
+    charts: Option<Vec<Chart<T>>>,
+}
+
+impl<T: Real> SurfaceDivision<T> {
+    /// `None` for loops that bound no part.
+    pub fn new(surface: &dyn Surface<T>, loops: Option<&TrimLoops<'_, T>>) -> Option<Self> {
+        let ends = |mut breaks: Vec<f64>, joints: Vec<f64>| {
+            breaks.extend(joints);
+            breaks.retain(|t| *t > 0.0 && *t < 1.0);
+            breaks.extend([0.0, 1.0]);
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup_by(|a, b| *a - *b < 1e-13);
+            breaks
+        };
+        let [bu, bv] = surface.breaks();
+        let [ju, jv] = surface.joints();
+        let (us, vs) = (ends(bu, ju), ends(bv, jv));
+        let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
+        let charts = charts(surface, loops, [&us, &vs])?;
+        Some(Self { us, vs, charts })
+    }
+
+    fn frames(&self) -> Vec<CellFrame<'_, T>> {
+        let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);
+        match &self.charts {
+            Some(charts) => {
+                charts.iter().map(|chart| CellFrame { chart: Some(chart), ends: whole }).collect()
+            }
+            None => {
+                let row = |u: [T; 2]| {
+                    let ends = self.vs.windows(2).map(move |v| [u[0], u[1], v[0], v[1]]);
+                    ends.map(|ends| CellFrame { chart: None, ends })
+                };
+                self.us.windows(2).flat_map(|u| row([u[0], u[1]])).collect()
             }
         }
     }
-    // If there are too many cells, the whole surface is fitted with larger tolerances.
-    let mut limits = limits;
-    loop {
-        match fitted_cells(surface, &frames, reversed, limits) {
-            CellFits::Cells(cells) => return Some(cells),
-            // Derivatives dominated by rounding never meet their tolerance: then only values
-            // decide.
-            CellFits::TooMany if T::PARTS > 1 && limits.relative.is_finite() => {
-                limits.relative = f64::INFINITY;
+
+    /// The cells by a fit, with their frames; `None` if a point is not finite.
+    pub fn cells<C: Real>(
+        &self,
+        mut limits: FitLimits,
+        fit: CellFit<'_, T, C>,
+    ) -> Option<Vec<(CellFrame<'_, T>, PolynomialCell<C>)>> {
+        let frames = self.frames();
+        // If there are too many cells, the whole surface is fitted with larger tolerances.
+        loop {
+            match fitted_cells(&frames, limits, fit) {
+                CellFits::Cells(cells) => return Some(cells),
+                // Derivatives dominated by rounding never meet their tolerance: then only values
+                // decide.
+                CellFits::TooMany if T::PARTS > 1 && limits.relative.is_finite() => {
+                    limits.relative = f64::INFINITY;
+                }
+                CellFits::TooMany => limits = limits.coarser(),
+                CellFits::NotFinite => return None,
             }
-            CellFits::TooMany => limits = limits.coarser(),
-            CellFits::NotFinite => return None,
         }
     }
 }
 
+/// A fit of a surface on a frame, with the relative errors of its derivatives along u and v; `None`
+/// if a point is not finite.
+pub(crate) type CellFit<'f, T, C> =
+    &'f mut dyn FnMut(&CellFrame<'_, T>) -> Option<(PolynomialCell<C>, [f64; 2])>;
+
 /// Result of fitting a surface by cells.
-enum CellFits<T> {
-    Cells(Vec<PolynomialCell<T>>),
+enum CellFits<'a, T, C> {
+    Cells(Vec<(CellFrame<'a, T>, PolynomialCell<C>)>),
     TooMany,
     /// A point is not finite.
     NotFinite,
@@ -243,7 +299,7 @@ enum CellFits<T> {
 
 /// A rectangle in the parameters of a chart or of the surface.
 #[derive(Clone, Copy)]
-struct CellFrame<'a, T> {
+pub(crate) struct CellFrame<'a, T> {
     chart: Option<&'a Chart<T>>,
     /// Minimum and maximum of u, minimum and maximum of v.
     ends: [T; 4],
@@ -260,8 +316,23 @@ impl<T: Real> CellFrame<'_, T> {
         halves.map(|ends| CellFrame { chart: self.chart, ends })
     }
 
+    /// The points of the surface of which a cell is made.
+    pub fn points(&self, surface: &dyn Surface<T>) -> Vec<Vec3<T>> {
+        let shares = &tables().nodes;
+        if self.moves() {
+            self.moving_places(surface, shares)
+        } else {
+            self.places(surface, shares)
+        }
+    }
+
+    /// Positions of the surface between these.
+    pub fn probes(&self, surface: &dyn Surface<T>) -> Vec<Vec3> {
+        self.places(surface, &PROBES).iter().map(|p| p.re()).collect()
+    }
+
     /// True for each of the edges v = 0, u = 1, v = 1, u = 0 of the surface that it reaches.
-    fn border(&self) -> [bool; 4] {
+    pub fn border(&self) -> [bool; 4] {
         let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
         let ends = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
         match self.chart {
@@ -310,20 +381,19 @@ impl<T: Real> CellFrame<'_, T> {
 }
 
 /// The cells of all frames.
-fn fitted_cells<T: Real>(
-    surface: &dyn Surface<T>,
-    frames: &[CellFrame<'_, T>],
-    reversed: bool,
+fn fitted_cells<'a, T: Real, C: Real>(
+    frames: &[CellFrame<'a, T>],
     limits: FitLimits,
-) -> CellFits<T> {
-    let mut stack: Vec<(CellFrame<'_, T>, [u32; 2])> =
+    fit: CellFit<'_, T, C>,
+) -> CellFits<'a, T, C> {
+    let mut stack: Vec<(CellFrame<'a, T>, [u32; 2])> =
         frames.iter().rev().map(|frame| (*frame, [0, 0])).collect();
     let slopes_count = T::PARTS > 1 && limits.relative.is_finite();
     let most = if slopes_count { MOST_CELLS_FOR_SLOPES } else { MOST_CELLS };
     let most = most.max(2 * frames.len());
     let mut cells = Vec::new();
     while let Some((frame, depth)) = stack.pop() {
-        let Some((fitted, slopes)) = fit(surface, &frame, reversed) else {
+        let Some((fitted, slopes)) = fit(&frame) else {
             return CellFits::NotFinite;
         };
         let [length_u, length_v] = fitted.lengths();
@@ -350,7 +420,7 @@ fn fitted_cells<T: Real>(
             stack.push((high, deeper));
             stack.push((low, deeper));
         } else {
-            cells.push(fitted);
+            cells.push((frame, fitted));
         }
     }
     CellFits::Cells(cells)
@@ -436,24 +506,30 @@ fn moving_chart<T: Real>(
 /// Parameters between the Chebyshev points at which an interpolation is checked.
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
-/// The interpolation of a surface on a frame at Chebyshev points, reduced to the lowest sufficient
-/// degree, and the relative errors of its derivatives along u and v.
+/// The interpolation of a surface on a frame.
 fn fit<T: Real>(
     surface: &dyn Surface<T>,
     frame: &CellFrame<'_, T>,
     reversed: bool,
 ) -> Option<(PolynomialCell<T>, [f64; 2])> {
-    const N: usize = MOST_DEGREE + 1;
-    let tables = tables();
-    let points = if frame.moves() {
-        frame.moving_places(surface, &tables.nodes)
-    } else {
-        frame.places(surface, &tables.nodes)
-    };
+    let points = frame.points(surface);
     if !points.iter().all(|p| p.is_finite()) {
         return None;
     }
-    let coefficients = transformed(&points, [N, N], [&tables.analysis, &tables.analysis]);
+    interpolated(&points, &frame.probes(surface), frame.border(), reversed)
+}
+
+/// The interpolation of points at the Chebyshev points, reduced to the lowest sufficient degree,
+/// and the relative errors of its derivatives along u and v; `probes` are positions between them.
+pub(crate) fn interpolated<T: Real>(
+    points: &[Vec3<T>],
+    probes: &[Vec3],
+    border: [bool; 4],
+    reversed: bool,
+) -> Option<(PolynomialCell<T>, [f64; 2])> {
+    const N: usize = MOST_DEGREE + 1;
+    let tables = tables();
+    let coefficients = transformed(points, [N, N], [&tables.analysis, &tables.analysis]);
     // Sums of the coefficient norms by rows and by columns.
     let row = |i: usize| (0..N).map(|j| coefficients[i * N + j].re().norm()).sum::<f64>();
     let column = |j: usize| (0..N).map(|i| coefficients[i * N + j].re().norm()).sum::<f64>();
@@ -467,7 +543,7 @@ fn fit<T: Real>(
         (0..N).all(|m| {
             let c = coefficients[at(m)];
             (1..T::PARTS).all(|p| {
-                let largest = |x: T| x.part(p).abs();
+                let largest = |x: T| x.probe(p).abs();
                 largest(c.x).max(largest(c.y)).max(largest(c.z)) <= 1e-13 * (1.0 + size)
             })
         })
@@ -487,17 +563,15 @@ fn fit<T: Real>(
     }
     let to_bernstein = [&tables.synthesis[du], &tables.synthesis[dv]];
     let net = transformed(&kept, [du + 1, dv + 1], to_bernstein);
-    let border = frame.border();
     let cell = PolynomialCell { degree: [du, dv], net, reversed, border, fit };
     // Check between the interpolation points, where an undeclared kink shows.
     let mut off: f64 = 0.0;
     let (mut at, mut by) = (Vec::new(), Vec::new());
-    let probes = frame.places(surface, &PROBES);
     for (j, &v) in PROBES.iter().enumerate() {
         cell.line(0, T::from(v), &mut at, &mut by);
         for (i, &u) in PROBES.iter().enumerate() {
             let p = crate::bernstein::place_and_tangent(&at, T::from(u)).0.re();
-            off = off.max(p.distance(probes[i * PROBES.len() + j].re()));
+            off = off.max(p.distance(probes[i * PROBES.len() + j]));
         }
     }
     if !off.is_finite() {
@@ -521,7 +595,7 @@ fn derivative_tails<T: Real>(coefficients: &[Vec3<T>]) -> [f64; 2] {
     for part in 1..T::PARTS {
         let size = |k: usize| {
             let c = coefficients[k];
-            c.x.part(part).abs().max(c.y.part(part).abs()).max(c.z.part(part).abs())
+            c.x.probe(part).abs().max(c.y.probe(part).abs()).max(c.z.probe(part).abs())
         };
         let most = (0..N * N).map(size).fold(0.0, f64::max);
         if most == 0.0 {
@@ -535,6 +609,25 @@ fn derivative_tails<T: Real>(coefficients: &[Vec3<T>]) -> [f64; 2] {
         }
     }
     tails
+}
+
+/// The weights of the points of which a cell of this degree is made, from those of its net.
+pub(crate) fn pulled_points([du, dv]: [usize; 2], net: &[Vec3]) -> Vec<Vec3> {
+    const N: usize = MOST_DEGREE + 1;
+    let tables = tables();
+    // Transposed: from Bernstein to Chebyshev coefficients, and from these to the points.
+    let half = |d: usize| -> Vec<Vec<f64>> {
+        (0..N)
+            .map(|a| {
+                let entry = |i: usize| -> f64 {
+                    let of = |m: usize| tables.synthesis[d][i][m] * tables.analysis[m][a];
+                    (0..=d).map(of).sum()
+                };
+                (0..=d).map(entry).collect()
+            })
+            .collect()
+    };
+    transformed(net, [du + 1, dv + 1], [&half(du), &half(dv)])
 }
 
 /// The Chebyshev points, and the matrices from values at these to Chebyshev coefficients and from
@@ -596,18 +689,19 @@ fn transformed<T: Real>(
     [along_u, along_v]: [&Vec<Vec<f64>>; 2],
 ) -> Vec<Vec3<T>> {
     let scaled = |p: Vec3<T>, c: f64| p.map(|x| x * c);
-    let mut half = vec![Vec3::zero(); nu * nv];
+    let (mu, mv) = (along_u.len(), along_v.len());
+    let mut half = vec![Vec3::zero(); nu * mv];
     for i in 0..nu {
         for (j, row) in along_v.iter().enumerate() {
             let sum = (0..nv).fold(Vec3::zero(), |s, k| s + scaled(points[i * nv + k], row[k]));
-            half[i * nv + j] = sum;
+            half[i * mv + j] = sum;
         }
     }
-    let mut all = vec![Vec3::zero(); nu * nv];
+    let mut all = vec![Vec3::zero(); mu * mv];
     for (i, row) in along_u.iter().enumerate() {
-        for j in 0..nv {
-            all[i * nv + j] =
-                (0..nu).fold(Vec3::zero(), |s, k| s + scaled(half[k * nv + j], row[k]));
+        for j in 0..mv {
+            all[i * mv + j] =
+                (0..nu).fold(Vec3::zero(), |s, k| s + scaled(half[k * mv + j], row[k]));
         }
     }
     all

@@ -125,7 +125,7 @@ impl<T: Real> ChartBoundary<T> {
 
     /// The same without its last coefficients, where they are rounding.
     pub fn shortened(mut self) -> Self {
-        let negligible = |c: &T| (0..T::PARTS).all(|part| c.part(part).abs() < 1e-16);
+        let negligible = |c: &T| (0..T::PARTS).all(|part| c.probe(part).abs() < 1e-16);
         while self.0.len() > 1 && self.0.last().is_some_and(negligible) {
             self.0.pop();
         }

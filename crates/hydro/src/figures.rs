@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
-use crate::integrals::Wanted;
+use crate::integrals::{Immersed, Wanted};
 use crate::section::{section_area, waterline_extent};
 use crate::strip::CoordinatePlane;
 use moldloft_num::{Real, Vec3};
@@ -59,12 +59,28 @@ pub(crate) fn floating<T: Real>(
     symmetry: Symmetry,
     density: f64,
 ) -> Floating<T> {
-    let box_ = body.bounds();
-    let middle = box_.centre();
-    let half = symmetry != Symmetry::None;
-    let (x0, y0) = (T::from(middle.x), T::from(if half { 0.0 } else { middle.y }));
-    let origin = Vec3::new(x0, y0, level);
+    let [x0, y0] = origin_of(body, symmetry).map(T::from);
     let all = body.integrals(level, [x0, y0]);
+    of_integrals(body, [x0, y0], level, symmetry, density, &all)
+}
+
+/// The origin of the integrals, in the water plane.
+pub(crate) fn origin_of<T: Real>(body: &Body<T>, symmetry: Symmetry) -> [f64; 2] {
+    let middle = body.bounds().centre();
+    [middle.x, if symmetry == Symmetry::None { middle.y } else { 0.0 }]
+}
+
+/// The figures from the integrals about (x0, y0, level).
+pub(crate) fn of_integrals<T: Real>(
+    body: &Body<T>,
+    [x0, y0]: [T; 2],
+    level: T,
+    symmetry: Symmetry,
+    density: f64,
+    all: &Immersed<T>,
+) -> Floating<T> {
+    let half = symmetry != Symmetry::None;
+    let origin = Vec3::new(x0, y0, level);
     let sums = &all.sums;
     let outward = sums.forms[2].re() >= 0.0;
     let sides = if symmetry == Symmetry::MirroredTwice { 2.0 } else { 1.0 };
@@ -98,7 +114,7 @@ pub(crate) fn floating<T: Real>(
     let relative = |error: f64, size: f64| if error == 0.0 { 0.0 } else { error / size.abs() };
     let largest = (x - z).re().abs().max((y - z).re().abs());
     let green = sums.green.re().abs();
-    let fit = body.fit_errors(&box_);
+    let fit = body.fit_errors(&body.bounds());
     let mut errors: [f64; 6] = std::array::from_fn(|k| (all.errors[k] + fit[k]) * sides);
     // Rims that only nearly meet leave slits, whose share differs from form to form.
     errors[0] += largest;

@@ -66,6 +66,46 @@ impl<T: Real> HydrostaticIntegrals<T> {
         }
     }
 
+    /// All of them, in a fixed order.
+    pub fn numbers(&self) -> [T; 19] {
+        let [f, m, a] = [self.forms, self.moment.to_array(), self.area_moment.to_array()];
+        let (p, o) = (self.plane, self.open);
+        [
+            f[0],
+            f[1],
+            f[2],
+            m[0],
+            m[1],
+            m[2],
+            a[0],
+            a[1],
+            a[2],
+            self.wetted,
+            self.green,
+            p[0],
+            p[1],
+            p[2],
+            p[3],
+            p[4],
+            p[5],
+            o[0],
+            o[1],
+        ]
+    }
+
+    /// Those with these numbers.
+    pub fn of_numbers(n: [T; 19]) -> Self {
+        Self {
+            forms: [n[0], n[1], n[2]],
+            moment: Vec3::new(n[3], n[4], n[5]),
+            area_moment: Vec3::new(n[6], n[7], n[8]),
+            wetted: n[9],
+            green: n[10],
+            plane: [n[11], n[12], n[13], n[14], n[15], n[16]],
+            open: [n[17], n[18]],
+        }
+    }
+
     /// Adds a piece of skin with the vector area `n`.
     #[inline]
     fn take(&mut self, p: Vec3<T>, n: Vec3<T>) {
@@ -113,6 +153,18 @@ pub(crate) struct Immersed<T> {
     pub errors: Errors,
     /// The strips cut by the water.
     pub waterline: Vec<Strip<T>>,
+    /// The cells that they are of.
+    pub leaves: Vec<HalvedCell<T>>,
+}
+
+/// A cell, or what halvings leave of it.
+#[derive(Clone, Debug)]
+pub(crate) struct HalvedCell<T> {
+    pub cell: Arc<PolynomialCell<T>>,
+    /// The index of the cell halved.
+    pub root: usize,
+    /// The halvings: the parameter along, and which half.
+    pub path: Vec<[u8; 2]>,
 }
 
 #[cfg(test)]
@@ -136,7 +188,7 @@ const WORTH_A_THREAD: usize = 2048;
 
 /// Contribution of a cell to the integrals.
 struct CellIntegrals<T> {
-    cell: Arc<PolynomialCell<T>>,
+    leaf: HalvedCell<T>,
     sums: HydrostaticIntegrals<T>,
     errors: Errors,
     waterline: Vec<Strip<T>>,
@@ -185,11 +237,14 @@ pub(crate) fn immersed<T: Real>(
 ) -> Immersed<T> {
     let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * size };
     let origin = Vec3::new(origin[0], origin[1], level);
-    let one = |cell: &Arc<PolynomialCell<T>>| part(cell, cut, origin);
+    let one = |leaf: HalvedCell<T>| part(leaf, cut, origin);
+    let whole = |(root, cell): (usize, &Arc<PolynomialCell<T>>)| {
+        Some(one(HalvedCell { cell: cell.clone(), root, path: Vec::new() }))
+    };
     let mut parts: Vec<Option<CellIntegrals<T>>> = if cells.len() < WORTH_A_THREAD {
-        cells.iter().map(|c| Some(one(c))).collect()
+        cells.iter().enumerate().map(whole).collect()
     } else {
-        cells.par_iter().map(|c| Some(one(c))).collect()
+        cells.par_iter().enumerate().map(whole).collect()
     };
     let mut errors = [0.0; 6];
     let mut scale = [0.0f64; 6];
@@ -233,7 +288,7 @@ pub(crate) fn immersed<T: Real>(
             break;
         }
         let Some(old) = parts[k].take() else { continue };
-        let [along_u, along_v] = old.cell.lengths();
+        let [along_u, along_v] = old.leaf.cell.lengths();
         if along_u.max(along_v) <= 1e-12 * size {
             parts[k] = Some(old);
             continue;
@@ -241,8 +296,11 @@ pub(crate) fn immersed<T: Real>(
         for e in 0..6 {
             errors[e] -= old.errors[e];
         }
-        for half in old.cell.split(usize::from(along_v > along_u)) {
-            let new = one(&Arc::new(half));
+        let along = u8::from(along_v > along_u);
+        for (k, half) in (0u8..).zip(old.leaf.cell.split(usize::from(along))) {
+            let mut path = old.leaf.path.clone();
+            path.push([along, k]);
+            let new = one(HalvedCell { cell: Arc::new(half), root: old.leaf.root, path });
             for e in 0..6 {
                 errors[e] += new.errors[e];
             }
@@ -254,14 +312,19 @@ pub(crate) fn immersed<T: Real>(
     #[cfg(test)]
     HALVED.with(|count| count.set(count.get() + halved));
     // Sum again: repeated subtraction accumulates rounding.
-    let mut all =
-        Immersed { sums: HydrostaticIntegrals::zero(), errors: [0.0; 6], waterline: Vec::new() };
+    let mut all = Immersed {
+        sums: HydrostaticIntegrals::zero(),
+        errors: [0.0; 6],
+        waterline: Vec::new(),
+        leaves: Vec::new(),
+    };
     for part in parts.into_iter().flatten() {
         all.sums.add(&part.sums);
         for k in 0..6 {
             all.errors[k] += part.errors[k];
         }
         all.waterline.extend(part.waterline);
+        all.leaves.push(part.leaf);
     }
     all
 }
@@ -270,10 +333,11 @@ pub(crate) fn immersed<T: Real>(
 const OUTER: [usize; 2] = [14, 10];
 
 fn part<T: Real>(
-    cell: &Arc<PolynomialCell<T>>,
+    leaf: HalvedCell<T>,
     cut: CoordinatePlane<T>,
     origin: Vec3<T>,
 ) -> CellIntegrals<T> {
+    let cell = &leaf.cell;
     let mut found = Vec::new();
     let undecided = strips(cell, cut, &mut found);
     let (mut sums, mut errors) = (HydrostaticIntegrals::zero(), [0.0; 6]);
@@ -301,7 +365,7 @@ fn part<T: Real>(
         }
     }
     found.retain(Strip::is_cut);
-    CellIntegrals { cell: cell.clone(), sums, errors, waterline: found }
+    CellIntegrals { leaf, sums, errors, waterline: found }
 }
 
 /// Maximum number of quadrature points on whole lines.
@@ -335,22 +399,29 @@ fn points_beside(degree: usize, coarser: usize, other_exact: bool) -> usize {
     }
 }
 
+/// Quadrature points of a strip along its lines, and across them, of the finer (0) or coarser (1)
+/// rule.
+pub(crate) fn rule_points<T: Real>(strip: &Strip<T>, coarser: usize) -> [usize; 2] {
+    let degree = strip.cell.degree();
+    let [inner, beside] = [degree[strip.inner], degree[1 - strip.inner]];
+    let outer_exact = !strip.is_cut() && exact_along(beside);
+    let along = points_beside(inner, coarser, outer_exact);
+    let across = match strip.is_cut() {
+        true => OUTER[coarser],
+        false => points_beside(beside, coarser, exact_along(inner)),
+    };
+    [along, across]
+}
+
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
-fn integrated<T: Real>(
+pub(crate) fn integrated<T: Real>(
     strip: &Strip<T>,
     cut: CoordinatePlane<T>,
     origin: Vec3<T>,
     coarser: usize,
 ) -> HydrostaticIntegrals<T> {
     let mut sums = HydrostaticIntegrals::zero();
-    let degree = strip.cell.degree();
-    let [inner, beside] = [degree[strip.inner], degree[1 - strip.inner]];
-    let outer_exact = !strip.is_cut() && exact_along(beside);
-    let across = points_beside(inner, coarser, outer_exact);
-    let outer = match strip.is_cut() {
-        true => OUTER[coarser],
-        false => points_beside(beside, coarser, exact_along(inner)),
-    };
+    let [across, outer] = rule_points(strip, coarser);
     let length = strip.to - strip.from;
     let sign = strip.sign();
     let mut line = StripLine::default();

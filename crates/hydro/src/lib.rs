@@ -22,6 +22,7 @@ mod folds;
 mod hydrostatics;
 mod integrals;
 mod measures;
+mod pulled;
 mod section;
 mod strip;
 mod trimmed;
@@ -33,6 +34,7 @@ pub use figures::hydrostatics;
 pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
 pub use hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 pub use measures::{curve_measures, solid_measures};
+pub use pulled::{PulledBody, pull_hydrostatics};
 pub use section::section_area;
 pub use trimmed::{TrimCurve, TrimLoops, bounds_part};
 
@@ -42,6 +44,8 @@ mod folds_tests;
 mod mesh_tests;
 #[cfg(test)]
 mod part_tests;
+#[cfg(test)]
+mod pulled_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -45,6 +45,13 @@ pub trait Real:
     /// Part `k` of [`Self::PARTS`]; part 0 is the real part.
     fn part(self, k: usize) -> f64;
 
+    /// Part `k` for decisions, such as how fine a fit must be; of numbers of a tape the derivative in one direction,
+    /// which is zero by chance only.
+    #[inline(always)]
+    fn probe(self, k: usize) -> f64 {
+        self.part(k)
+    }
+
     /// The number whose part `k` is `part(k)`.
     fn from_parts(part: impl FnMut(usize) -> f64) -> Self;
 

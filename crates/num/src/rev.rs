@@ -29,14 +29,17 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 pub struct Rev {
     value: f64,
     /// Its node, from 1; 0 when it does not depend on any input. [`INFINITE`] is added where a derivative is not finite.
-    node: u32,
+    node: u64,
 }
 
 /// The bit of a node of a number whose derivative is not finite, as at a square root of zero.
-const INFINITE: u32 = 1 << 31;
+const INFINITE: u64 = 1 << 63;
 
 /// Maximum size of a tape in bytes.
 const MAX_TAPE_BYTES: usize = 2 << 30;
+
+/// Maximum number of nodes that a tape has at a time.
+const MAX_NODES: usize = 1 << 30;
 
 /// One dependence: on the node at index `of`, at `rate`. 12 bytes.
 #[derive(Clone, Copy)]
@@ -58,10 +61,12 @@ pub struct DerivativeTape {
     /// Nodes that stay, and the end of their dependences.
     kept: u32,
     /// Local nodes that were forgotten: their numbers are never used again.
-    forgotten: u32,
+    forgotten: u64,
     sound: bool,
     /// The greatest size so far.
     peak: usize,
+    /// The derivative of each node in one direction, if [`DerivativeTape::probe`] was called.
+    probes: Option<Vec<f64>>,
 }
 
 impl std::fmt::Debug for Dependence {
@@ -85,6 +90,7 @@ impl DerivativeTape {
             forgotten: 0,
             sound: true,
             peak: 0,
+            probes: None,
         }
     }
 
@@ -93,11 +99,24 @@ impl DerivativeTape {
         TAPE.with_borrow_mut(|tape| *tape = Self::empty());
     }
 
+    /// The recording, which has just begun, knows the derivative of each number in one direction, [`Real::probe`].
+    pub fn probe() {
+        TAPE.with_borrow_mut(|tape| {
+            debug_assert!(tape.ends.is_empty(), "before the first number");
+            tape.probes = Some(Vec::new());
+        });
+    }
+
     /// A number that others are differentiated by.
     pub fn input(value: f64) -> Rev {
         TAPE.with_borrow_mut(|tape| {
             tape.inputs += 1;
-            Rev { value, node: tape.node() }
+            let node = tape.node();
+            if let Some(last) = tape.probes.as_mut().and_then(|probes| probes.last_mut()) {
+                // Of about the same size for all inputs, and in no simple ratio.
+                *last = 1.0 + 0.5 * Real::sin(f64::from(tape.inputs) * 1.618_033_988_749_895);
+            }
+            Rev { value, node }
         })
     }
 
@@ -133,10 +152,11 @@ impl DerivativeTape {
             tape.ends.truncate(tape.kept as usize);
             let end = tape.ends.last().map_or(0, |end| *end as usize);
             tape.dependences.truncate(end);
-            match tape.forgotten.checked_add(local).filter(|n| n + tape.kept < INFINITE / 2) {
-                Some(forgotten) => tape.forgotten = forgotten,
-                None => tape.sound = false,
+            let kept = tape.kept as usize;
+            if let Some(probes) = &mut tape.probes {
+                probes.truncate(kept);
             }
+            tape.forgotten += u64::from(local);
         });
     }
 
@@ -147,18 +167,26 @@ impl DerivativeTape {
 
     fn bytes(&self) -> usize {
         self.peak.max(
-            self.ends.len() * size_of::<u32>() + self.dependences.len() * size_of::<Dependence>(),
+            self.ends.len() * size_of::<u32>()
+                + self.dependences.len() * size_of::<Dependence>()
+                + self.probes.as_ref().map_or(0, |probes| probes.len() * size_of::<f64>()),
         )
     }
 
     /// The number of a new node that depends on what was appended since the last.
     #[inline]
-    fn node(&mut self) -> u32 {
+    fn node(&mut self) -> u64 {
         let end = self.dependences.len();
-        let node = self.ends.len() as u32 + 1 + self.forgotten;
-        if end * size_of::<Dependence>() > MAX_TAPE_BYTES || node >= INFINITE {
+        let node = self.ends.len() as u64 + 1 + self.forgotten;
+        if end * size_of::<Dependence>() > MAX_TAPE_BYTES || self.ends.len() >= MAX_NODES {
             self.sound = false;
             return 0;
+        }
+        if let Some(probes) = &mut self.probes {
+            let begin = self.ends.last().map_or(0, |end| *end as usize);
+            let of = |d: &Dependence| d.rate * probes[d.of as usize];
+            let derivative = self.dependences[begin..].iter().map(of).sum();
+            probes.push(derivative);
         }
         self.ends.push(end as u32);
         node
@@ -166,20 +194,21 @@ impl DerivativeTape {
 
     /// The index of a node; `None`, and unsound, when it was forgotten.
     #[inline]
-    fn index(&mut self, node: u32) -> Option<u32> {
-        if node <= self.kept {
-            return Some(node - 1);
+    fn index(&mut self, node: u64) -> Option<u32> {
+        let kept = u64::from(self.kept);
+        if node <= kept {
+            return Some((node - 1) as u32);
         }
-        if node <= self.kept + self.forgotten {
+        if node <= kept + self.forgotten {
             self.sound = false;
             return None;
         }
-        Some(node - self.forgotten - 1)
+        Some((node - self.forgotten - 1) as u32)
     }
 
     /// Appends a dependence of the next node; gives the part of its number that says whether it is finite.
     #[inline]
-    fn depend(&mut self, on: u32, rate: f64) -> u32 {
+    fn depend(&mut self, on: u64, rate: f64) -> u64 {
         let (infinite, node) = (on & INFINITE, on & !INFINITE);
         // A rate of zero reaches nothing, were it infinity further down.
         if node != 0
@@ -193,7 +222,7 @@ impl DerivativeTape {
 
     /// The number `value` of the next node, if that has dependences.
     #[inline]
-    fn number(&mut self, value: f64, before: usize, infinite: u32) -> Rev {
+    fn number(&mut self, value: f64, before: usize, infinite: u64) -> Rev {
         if self.dependences.len() == before {
             return Rev { value, node: infinite };
         }
@@ -304,7 +333,7 @@ impl Rev {
     }
 
     /// Its node: two numbers share it only if their derivatives are the same; 0 for a constant.
-    pub fn node(self) -> u32 {
+    pub fn node(self) -> u64 {
         self.node
     }
 }
@@ -442,6 +471,19 @@ impl Real for Rev {
                 DerivativeTape::refuse();
                 f64::NAN
             }
+        }
+    }
+    fn probe(self, k: usize) -> f64 {
+        let node = self.node & !INFINITE;
+        match k {
+            0 => self.value,
+            _ if node == 0 => 0.0,
+            _ => TAPE.with_borrow_mut(|tape| {
+                let at = tape.index(node).map(|at| at as usize);
+                let found = tape.probes.as_ref().zip(at).and_then(|(all, at)| all.get(at).copied());
+                tape.sound &= found.is_some();
+                found.unwrap_or(f64::NAN)
+            }),
         }
     }
     #[inline(always)]
@@ -668,6 +710,29 @@ mod tests {
         adjoints.add(root * 2.0, 1.0);
         assert!(!adjoints.are_sound() && DerivativeTape::is_sound());
         assert!(D::seeded(0.0, 0).sqrt().is_finite() == root.is_finite());
+    }
+
+    #[test]
+    fn a_probe_is_the_derivative_in_one_direction() {
+        DerivativeTape::clear();
+        DerivativeTape::probe();
+        let of = [DerivativeTape::input(0.7), DerivativeTape::input(1.3)];
+        DerivativeTape::keep();
+        for _ in 0..2 {
+            for y in formulas(of[0], of[1]) {
+                let rates = of.map(|x| x.probe(1));
+                assert!(rates[0] != rates[1] && rates.iter().all(|r| (0.5..=1.5).contains(r)));
+                let by = gradient(y, of);
+                let exact = by[0] * rates[0] + by[1] * rates[1];
+                assert!((y.probe(1) - exact).abs() < 1e-13 * (1.0 + exact.abs()));
+            }
+            DerivativeTape::forget();
+        }
+        assert_eq!((Rev::from(2.0).probe(0), Rev::from(2.0).probe(1)), (2.0, 0.0));
+        DerivativeTape::clear();
+        // Without probes it is something that a tape does not have.
+        let _ = DerivativeTape::input(1.0).probe(1);
+        assert!(!DerivativeTape::is_sound());
     }
 
     #[test]

@@ -2,10 +2,12 @@
 //! edges.
 
 use crate::panelling::Panelling;
-use moldloft_hydro::{Body, HullSide, TrimCurve, bounds_part};
+use moldloft_hydro::{
+    Body, HullSide, PulledBody, Symmetry, TrimCurve, bounds_part, pull_hydrostatics,
+};
 use moldloft_mesh::{Closes, EdgeName, Mesh, OpenEdge, closure};
 use moldloft_model::Graph;
-use moldloft_num::Vec3;
+use moldloft_num::{Adjoints, Rev, Vec3};
 use moldloft_registry::{Border, Scalar, SurfaceRef, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -174,6 +176,23 @@ impl Skin {
         graph: &Graph<T>,
         accuracy: f64,
     ) -> Option<Body<T>> {
+        let mut panels: Vec<[Vec3<T>; 4]> = Vec::new();
+        let mut rims: Vec<Vec<Vec3<T>>> = Vec::new();
+        if !self.faces.is_empty() || !self.rims.is_empty() {
+            let mesh = panelling.mesh(graph)?;
+            let at = |v: u32| mesh.positions()[v as usize];
+            panels.extend(self.faces.iter().map(|&f| mesh.faces()[f].map(at)));
+            rims.extend(self.rims.iter().map(|edge| edge.map(at).to_vec()));
+        }
+        self.with_sides(graph, |sides| Body::new(sides, panels, rims, self.size, accuracy))
+    }
+
+    /// What is made of the sides; `None` if a surface has no value in `graph`.
+    fn with_sides<T: Scalar, R>(
+        &self,
+        graph: &Graph<T>,
+        made: impl FnOnce(&[HullSide<'_, T>]) -> Option<R>,
+    ) -> Option<R> {
         let shapes = self.sides.iter().map(|side| shape(graph, &side.name, side.trimmed));
         let shapes: Vec<_> = shapes.collect::<Option<_>>()?;
         let parts: Vec<Option<_>> = (shapes.iter())
@@ -193,15 +212,49 @@ impl Skin {
                 loops: loops.as_deref(),
             })
             .collect();
-        let mut panels: Vec<[Vec3<T>; 4]> = Vec::new();
-        let mut rims: Vec<Vec<Vec3<T>>> = Vec::new();
-        if !self.faces.is_empty() || !self.rims.is_empty() {
-            let mesh = panelling.mesh(graph)?;
-            let at = |v: u32| mesh.positions()[v as usize];
-            panels.extend(self.faces.iter().map(|&f| mesh.faces()[f].map(at)));
-            rims.extend(self.rims.iter().map(|edge| edge.map(at).to_vec()));
-        }
-        Body::new(&sides, panels, rims, self.size, accuracy)
+        made(&sides)
+    }
+
+    /// Adds the derivatives of weighted sums of hydrostatic figures by the nodes of this thread's
+    /// tape, of which `graph` consists ([`pull_hydrostatics`]), and returns those by the vertices of
+    /// `mesh` on whose panels the skin is measured. `weights` are those of each sum by the name of
+    /// the figure, `mirrors` as for [`Skin::new`].
+    pub fn pull_hydrostatics(
+        &self,
+        mesh: &Mesh<f64>,
+        graph: &Graph<Rev>,
+        accuracy: f64,
+        mirrors: &[u8],
+        weights: &[Vec<(&str, f64)>],
+        adjoints: &mut [Adjoints],
+    ) -> Option<Vec<Vec<Vec3>>> {
+        let at = |v: u32| mesh.positions()[v as usize];
+        let panels: Vec<_> = self.faces.iter().map(|&f| mesh.faces()[f].map(at)).collect();
+        let mirrored = mirrors.contains(&1);
+        let body = PulledBody {
+            panels: &panels,
+            size: self.size,
+            accuracy,
+            lengthwise: mirrors.contains(&0),
+            symmetry: if mirrored { Symmetry::MirroredTwice } else { Symmetry::None },
+        };
+        let corners =
+            self.with_sides(graph, |sides| pull_hydrostatics(sides, body, weights, adjoints))?;
+        let of_sum = |corners: Vec<[Vec3; 4]>| {
+            let mut vertices = vec![Vec3::zero(); mesh.positions().len()];
+            for (&f, corners) in self.faces.iter().zip(corners) {
+                for (&v, w) in mesh.faces()[f].iter().zip(corners) {
+                    vertices[v as usize] += w;
+                }
+            }
+            vertices
+        };
+        Some(corners.into_iter().map(of_sum).collect())
+    }
+
+    /// True when a part of the skin is measured on panels.
+    pub fn has_panels(&self) -> bool {
+        !self.faces.is_empty()
     }
 }
 

@@ -41,7 +41,7 @@ fn by_jacobian(row: &Row, args: &[Value<Rev>], context: &Context) -> Result<Valu
     }
     // A number may be in several arguments.
     let mut inputs: Vec<Rev> = Vec::new();
-    let mut places: HashMap<u32, usize> = HashMap::new();
+    let mut places: HashMap<u64, usize> = HashMap::new();
     for x in args.iter().filter_map(Value::numbers).flatten().filter(|x| !x.is_constant()) {
         if !x.is_finite() {
             return Err(no_tape(row));

@@ -5,16 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping
+from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from moldloft.cli.console import Progress, emit, print_json, say
-from moldloft.errors import Error
 from moldloft.text_table import table
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from moldloft.study import Results, Study
 
 __all__ = ["add", "run"]
@@ -51,7 +49,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         verb.add_argument(
             "--cluster",
             metavar="ADDRESS",
-            help="a Dask scheduler, tcp://host:port, or `local`; needs moldloft[cluster]",
+            help="a Dask scheduler, tcp://host:port, `local`, or the jobs of a queue, such as "
+            "`slurm`; needs moldloft[cluster] or moldloft[jobqueue]",
+        )
+        verb.add_argument(
+            "--workers",
+            metavar="N",
+            type=_whole,
+            default=0,
+            help="processes or jobs at most of a cluster that is started; default: 2 or 10",
         )
         verb.add_argument(
             "--retry", choices=sorted(_RETRY), help="evaluate cases in these states again"
@@ -98,8 +104,11 @@ def run(options: argparse.Namespace) -> int:
 
 def _sweep(study: Study, options: argparse.Namespace) -> Results:
     from moldloft.study import sweep
+    from moldloft.study.cluster import ConnectedCluster
 
-    with Progress() as progress, _Cluster(options.cluster) as executor:
+    address = options.cluster
+    cluster = ConnectedCluster(address, options.workers) if address else nullcontext()
+    with Progress() as progress, cluster as executor:
         progress.stage("reading the model")
 
         def tell(number: int, count: int, states: Mapping[str, int]) -> None:
@@ -120,36 +129,6 @@ def _sweep(study: Study, options: argparse.Namespace) -> Results:
         except KeyboardInterrupt:
             print(f"stopped; `moldloft study resume {options.study}` continues", file=sys.stderr)
             raise
-
-
-class _Cluster:
-    """The executor of a Dask cluster, or None."""
-
-    def __init__(self, address: str | None) -> None:
-        self.address = address
-        self.client: Any = None
-
-    def __enter__(self) -> Executor | None:
-        if self.address is None:
-            return None
-        from moldloft.study.extras import needed
-
-        distributed = needed("distributed", "cluster", "a Dask cluster")
-        try:
-            make: Any = distributed.Client
-            if self.address == "local":
-                self.client = make(processes=True, dashboard_address=None)
-            else:
-                self.client = make(self.address, timeout=10)
-        except (OSError, TimeoutError, ValueError) as error:
-            raise Error(f"cannot reach the cluster at `{self.address}`: {error}") from None
-        from moldloft.study.cluster import executor_of
-
-        return executor_of(self.client)
-
-    def __exit__(self, *_: object) -> None:
-        if self.client is not None:
-            self.client.close()
 
 
 def _collect(study: Study, options: argparse.Namespace) -> Results:
@@ -234,12 +213,15 @@ def _files(study: Study, results: Results, options: argparse.Namespace) -> None:
         results.write(options.parquet)
     if options.html:
         from moldloft.study import Store
+        from moldloft.study.pictures import pictures
         from moldloft.study.report import html
 
         with Store(options.store) as store:
-            plan = store.facts().get("plan", "")
+            known = store.facts()
+        plan = known.get("plan", "")
         facts = {"model": study.model.name, "plan": plan, "cases": str(len(results))}
         saltelli = study.plan.count if plan == "saltelli" else 0
         tolerances = {each.name: each.tolerance for each in study.inputs if each.tolerance}
         title = f"Study {Path(options.study).stem}"
-        emit(options.html, html(results, title, facts, saltelli, tolerances))
+        drawn = pictures(study, results, known)
+        emit(options.html, html(results, title, facts, saltelli, tolerances, drawn))

@@ -14,6 +14,7 @@ array([[0.89442719, 0.4472136 ],
        [1.        , 2.        ]])
 """
 
+from moldloft.study.autodiff import jax_function, torch_function
 from moldloft.study.definition import (
     Analysis,
     Bound,
@@ -57,11 +58,13 @@ __all__ = [
     "Validity",
     "component",
     "function",
+    "jax_function",
     "optimize",
     "read",
     "sobol_indices",
     "spreads",
     "sweep",
+    "torch_function",
     "validity",
     "worst_cases",
 ]

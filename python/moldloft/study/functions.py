@@ -23,6 +23,10 @@ __all__ = ["Function", "function", "jacobian"]
 #: So many times more inputs than numbers of the outputs, and gradients take less time than columns.
 _FEW_NUMBERS = 4
 
+#: Half the distance between the gradients of a Hessian's product, relative to the point: rounding
+#: of the gradients and the third derivatives count about the same.
+_HESSIAN_STEP = 1e-5
+
 
 def jacobian(
     model: Model, expressions: Sequence[str], sizes: Sequence[int], inputs: Sequence[str]
@@ -222,6 +226,48 @@ class Function:
         return np.concatenate(
             _core.jvp(self.model._document, list(self.outputs.values()), directions)
         )
+
+    def hvp(self, x: ArrayLike, weights: ArrayLike, direction: ArrayLike) -> Floats:
+        """The change of the gradient of a weighted sum of the outputs in a direction.
+
+        Parameters
+        ----------
+        x
+            Values of the inputs, ``(inputs,)``.
+        weights
+            Weights of the outputs, ``(outputs,)``.
+        direction
+            A direction in the inputs, ``(inputs,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            The product of the sum's Hessian with the direction, ``(inputs,)``.
+
+        Raises
+        ------
+        Error
+            When weights or direction do not fit.
+
+        Notes
+        -----
+        The central difference of two exact gradients over 2e-5 of the point's size: about nine
+        digits where third derivatives are of the size of the second. The model is then at `x`.
+        """
+        at, along = (np.asarray(v, dtype=np.float64) for v in (x, direction))
+        if along.shape != (len(self.inputs),) or at.shape != along.shape:
+            raise Error(
+                f"a point and a direction ({len(self.inputs)},) are needed, {at.shape} and "
+                f"{along.shape} were given"
+            )
+        longest = float(np.abs(along).max())
+        if longest == 0.0:
+            return np.zeros_like(along)
+        step = _HESSIAN_STEP * max(float(np.abs(at).max()), 1.0) / longest
+        after, before = (self.vjp(at + s * step * along, weights) for s in (1.0, -1.0))
+        self._set(at)
+        found: Floats = (after - before) / (2.0 * step)
+        return found
 
     def value_and_jacobian(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Outputs and derivatives at these inputs.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from base64 import b64encode
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -114,6 +115,7 @@ def html(
     facts: Mapping[str, str],
     saltelli: int = 0,
     tolerances: Mapping[str, float] | None = None,
+    pictures: Sequence[tuple[str, bytes]] = (),
 ) -> bytes:
     """The page.
 
@@ -129,6 +131,8 @@ def html(
         The `count` of a plan by Saltelli's scheme.
     tolerances
         Tolerances of manufacture by input: spreads of the outputs are stated.
+    pictures
+        Pictures of variants as PNG, with their captions.
 
     Returns
     -------
@@ -170,6 +174,8 @@ def html(
             if results.front is not None:
                 parts.append(f"<p>Marked: the {results.front.sum()} points of the front.</p>")
         parts += ["<h2>Parallel coordinates</h2>", _parallel(results)]
+        if pictures:
+            parts += ["<h2>Variants</h2>", _plots([_picture(*each) for each in pictures])]
     parts += ["<h2>Cases</h2>", _listed(results)]
     body = "\n".join(parts)
     return (
@@ -368,6 +374,14 @@ def _failure_plots(results: Results) -> list[str]:
             f"<figcaption>{escape(label)}</figcaption></figure>"
         )
     return figures
+
+
+def _picture(caption: str, png: bytes) -> str:
+    text, data = escape(caption), b64encode(png).decode()
+    return (
+        f'<figure style="width:{WIDTH:.0f}px"><img alt="{text}" width="{WIDTH:.0f}" '
+        f'src="data:image/png;base64,{data}"><figcaption>{text}</figcaption></figure>'
+    )
 
 
 def _parallel(results: Results) -> str:

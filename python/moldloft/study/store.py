@@ -324,6 +324,21 @@ class Store:
         with self._named():
             return {key for (key,) in self._db.execute("SELECT key FROM results")}
 
+    def progress(self) -> tuple[int, dict[str, int]]:
+        """The number of cases of the plan, and the number of them in each state.
+
+        Returns
+        -------
+        tuple of int and dict
+            Cases without a result are in no state.
+        """
+        with self._named():
+            (planned,) = self._db.execute("SELECT count(*) FROM cases").fetchone()
+            states = self._db.execute(
+                "SELECT state, count(*) FROM cases JOIN results USING (key) GROUP BY state"
+            )
+            return int(planned), dict(states)
+
     def facts(self) -> dict[str, str]:
         """The definition as it was recorded."""
         with self._named():

@@ -131,7 +131,8 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
         finally:
             with _guard:
                 _busy.discard(worker)
-                if isinstance(answer, dict):
+                # A process that has replaced the one which ended answers the next request.
+                if answer is not None and worker.alive:
                     _idle.append(worker)
                 else:
                     worker.end()

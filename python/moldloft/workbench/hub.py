@@ -28,6 +28,8 @@ from moldloft.workbench.making import shape_functions
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.recent import recent_models
 from moldloft.workbench.shared_text import Reader, SharedText
+from moldloft.workbench.studies import KINDS as STUDY_KINDS
+from moldloft.workbench.studies import Studies
 from moldloft.workbench.text import read
 
 __all__ = ["Hub", "Tab"]
@@ -130,6 +132,7 @@ class Hub:
             )
             for room in (BOARD, DESK, FILES)
         ]  # fmt: skip
+        self.studies = Studies(self.path)
         self._jobs: list[_Job] = []
         self._wake = asyncio.Event()
         self._count = 0
@@ -164,6 +167,7 @@ class Hub:
         await self.engine.end()
         for room in self.rooms:
             await room.end()
+        await self.studies.close()
         for text in self.texts:
             text.close()
 
@@ -262,6 +266,8 @@ class Hub:
             self._to(tab, frame_of({"id": number, "formats": rows}, {}))
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
+        elif isinstance(kind, str) and kind in STUDY_KINDS:
+            self._later(self._study(tab, message))
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
             unsaved = ", ".join(Path(name).name for name, text in self.others.items() if text.dirty)
             if unsaved:
@@ -273,6 +279,16 @@ class Hub:
                 room.ask(tab.number, message, tab.outbox.put)
         else:
             self.refuse(tab, number, "no such request")
+
+    async def _study(self, tab: Tab, message: dict[str, Any]) -> None:
+        """Answer about the studies of the model; none of it waits for the engine."""
+        number = message.get("id", 0)
+        try:
+            found = await self.studies.answer(message, dirty=any(text.dirty for text in self.texts))
+        except (Error, OSError) as error:
+            self.refuse(tab, number, str(error))
+            return
+        self._to(tab, {"kind": "study", "id": number, **found})
 
     def _others(self) -> list[Path]:
         """Models that were opened before, but for this one."""

@@ -222,7 +222,7 @@ impl Document {
     }
 
     /// The normal axes of the symmetry planes of the model.
-    fn mirrors(&self) -> Vec<u8> {
+    pub(crate) fn mirrors(&self) -> Vec<u8> {
         let letters = self.symmetry();
         (0..3u8).filter(|&k| letters.contains(['x', 'y', 'z'][usize::from(k)])).collect()
     }

@@ -10,6 +10,7 @@ use crate::measures::expressions::Seeds;
 use crate::measures::gradients::{WeightedOutput, numbers};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
+use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_lang::SolveStatus;
 use moldloft_lang::run::program::STACK_BYTES;
 use moldloft_lang::source::env::Evaluation;
@@ -37,6 +38,9 @@ pub(crate) enum Pulled {
     Refused(Vec<String>),
 }
 
+/// Gradients of sums, and the vertices on whose panels a part of the figures is measured, with their weights.
+pub(crate) type PulledFigures = (Vec<Vec<f64>>, Option<WeightedOutput>);
+
 /// Outputs that are the mesh's, and all others.
 type Split<'a> = (Option<WeightedMesh>, Vec<&'a WeightedOutput>);
 
@@ -62,18 +66,8 @@ impl Document {
             if let Some(names) = refused {
                 return Ok(Pulled::Refused(if names.is_empty() { all() } else { names }));
             }
-            let rows: Vec<Vec<f64>> = adjoints
-                .iter_mut()
-                .map(|adjoints| {
-                    adjoints.pull();
-                    inputs.iter().map(|input| adjoints.of(*input)).collect()
-                })
-                .collect();
-            let finite = rows.iter().flatten().all(|x| x.is_finite());
-            if finite && adjoints.iter().all(Adjoints::are_sound) {
-                return Ok(Pulled::Gradients(rows));
-            }
-            Ok(Pulled::Refused(all()))
+            let rows = gradients(&mut adjoints, &inputs);
+            Ok(rows.map_or_else(|| Pulled::Refused(all()), Pulled::Gradients))
         });
         pulled.unwrap_or_else(|| Ok(Pulled::Refused(all())))
     }
@@ -125,19 +119,11 @@ impl Document {
         others: &[&WeightedOutput],
         adjoints: &mut [Adjoints],
     ) -> Result<Option<Vec<String>>, Vec<Diagnostic>> {
-        let seed = |name: &str, x: Rev| seeded(x, seeds.of(name), inputs);
-        let mut evaluation = Evaluation::<Rev>::default();
-        let unknowns = self.taped_unknowns(&mut evaluation, &seed, &seeds.objects);
-        let seed =
-            |name: &str, x: Rev| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
-        self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
-        // What this run did not come to would look like what has no reverse mode.
+        let Some(mut evaluation) = self.taped_run(seeds, inputs)? else {
+            return Ok(Some(Vec::new()));
+        };
         let budget = self.budget();
         let spent = || budget.poll().map_err(|spent| vec![unplaced(&CallError::from(spent))]);
-        spent()?;
-        if !DerivativeTape::is_sound() {
-            return Ok(Some(Vec::new()));
-        }
         for output in others {
             let numbers = self.taped_numbers(&mut evaluation, &output.name)?;
             spent()?;
@@ -156,6 +142,75 @@ impl Document {
         let pulled = panelled.panelling.pull(&evaluation.graph, weights, adjoints);
         spent()?;
         Ok((pulled.is_none() || !DerivativeTape::is_sound()).then(|| names.clone()))
+    }
+
+    /// The model on the tape of this thread; `None` when it has no reverse mode.
+    fn taped_run(
+        &mut self,
+        seeds: &Seeds,
+        inputs: &[Rev],
+    ) -> Result<Option<Evaluation<Rev>>, Vec<Diagnostic>> {
+        let seed = |name: &str, x: Rev| seeded(x, seeds.of(name), inputs);
+        let mut evaluation = Evaluation::<Rev>::default();
+        let unknowns = self.taped_unknowns(&mut evaluation, &seed, &seeds.objects);
+        let seed =
+            |name: &str, x: Rev| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
+        self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
+        // What this run did not come to would look like what has no reverse mode.
+        self.budget().poll().map_err(|spent| vec![unplaced(&CallError::from(spent))])?;
+        Ok(DerivativeTape::is_sound().then_some(evaluation))
+    }
+
+    /// The gradients of sums of hydrostatic figures, and the weights of vertices that what is
+    /// measured on panels leaves; `None` when they have no reverse mode.
+    ///
+    /// # Errors
+    /// As [`Document::pulled`].
+    pub(crate) fn pulled_floating(
+        &mut self,
+        outputs: &[&WeightedOutput],
+        by: &[String],
+    ) -> Result<Option<PulledFigures>, Vec<Diagnostic>> {
+        let seeds = self.seeds(by)?;
+        let mut figures: Vec<Vec<(&str, f64)>> = Vec::new();
+        for output in outputs {
+            // An unknown name is an error here.
+            self.eval(&output.name)?;
+            let name = self.whole_name(&output.name).map_or("", |(_, number)| number);
+            let weights = output.checked(1)?;
+            figures.resize(weights.len(), Vec::new());
+            figures.iter_mut().zip(weights).for_each(|(sum, w)| sum.push((name, w[0])));
+        }
+        let bodied = self.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
+        let panelled = self.entire_panels().map_err(|d| vec![d])?;
+        let mirrors = self.mirrors();
+        type Found = Option<(Vec<Vec<f64>>, Vec<Vec<Vec3>>)>;
+        let pulled = on_one_thread(STACK_BYTES, || -> Result<Found, Vec<Diagnostic>> {
+            DerivativeTape::clear();
+            DerivativeTape::probe();
+            let inputs: Vec<Rev> = by.iter().map(|_| DerivativeTape::input(0.0)).collect();
+            let Some(evaluation) = self.taped_run(&seeds, &inputs)? else { return Ok(None) };
+            let mut adjoints = vec![Adjoints::new(); figures.len()];
+            let vertices = bodied.skin.pull_hydrostatics(
+                &panelled.mesh,
+                &evaluation.graph,
+                bodied.accuracy,
+                &mirrors,
+                &figures,
+                &mut adjoints,
+            );
+            let Some(vertices) = vertices.filter(|_| DerivativeTape::is_sound()) else {
+                return Ok(None);
+            };
+            Ok(gradients(&mut adjoints, &inputs).map(|rows| (rows, vertices)))
+        });
+        let Some((rows, vertices)) = pulled.unwrap_or(Ok(None))? else { return Ok(None) };
+        let flat = |sum: Vec<Vec3>| sum.iter().flat_map(|w| w.to_array()).collect();
+        let on_panels = bodied.skin.has_panels().then(|| WeightedOutput {
+            name: "mesh".to_owned(),
+            weights: vertices.into_iter().map(flat).collect(),
+        });
+        Ok(Some((rows, on_panels)))
     }
 
     /// The unknowns on the tape of this thread: x_j with the derivatives of -(J^-1)_ji c_i, by the conditions c at the
@@ -209,6 +264,17 @@ impl Document {
         }
         Ok(self.eval_in(evaluation, name).ok().and_then(|value| numbers(&value)))
     }
+}
+
+/// The derivatives of all sums by the inputs; `None` when some are not finite.
+fn gradients(adjoints: &mut [Adjoints], inputs: &[Rev]) -> Option<Vec<Vec<f64>>> {
+    let row = |adjoints: &mut Adjoints| -> Vec<f64> {
+        adjoints.pull();
+        inputs.iter().map(|input| adjoints.of(*input)).collect()
+    };
+    let rows: Vec<Vec<f64>> = adjoints.iter_mut().map(row).collect();
+    let finite = rows.iter().flatten().all(|x| x.is_finite());
+    (finite && adjoints.iter().all(Adjoints::are_sound)).then_some(rows)
 }
 
 /// A number that the inputs of some directions are added to, each zero.

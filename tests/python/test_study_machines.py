@@ -1,0 +1,137 @@
+"""Studies on many machines: one table by all engines, clusters that grow, queues of jobs."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from moldloft import study
+from study_campaign import by_dask, killed, written
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+
+
+def test_one_table_by_all_engines(tmp_path: Path) -> None:
+    """Every sound case once and in order, whatever was killed on the way."""
+    count = 10_000 if SOAK else 120
+    path = written(tmp_path, count)
+    definition = study.read(path)
+    serial = study.sweep(definition, tmp_path / "serial.sqlite", processes=1)
+    a, b = serial.inputs["a"], serial.inputs["b"]
+    crashing = (a <= 0.95) & ((b * 1e6).astype(int) % 100 == 7)
+    assert (serial.state == np.select([a > 0.95, crashing], ["refused", "crashed"], "done")).all()
+    assert (serial.outputs["twice"][serial.done] == 2 * a[serial.done]).all()
+    assert serial.counts["refused"] > 0.03 * count
+    assert not SOAK or serial.counts["crashed"] > 0.005 * count
+    kept = killed(path, tmp_path / "two.sqlite", count)
+    left: list[int] = []
+    two = study.sweep(
+        definition, tmp_path / "two.sqlite", progress=lambda _, all_, __: left.append(all_)
+    )
+    assert two.csv() == serial.csv()
+    # What was stored before the kills was not evaluated again.
+    assert kept >= count // 3 and (left[0] if left else 0) == count - kept
+    pytest.importorskip("distributed")
+    assert by_dask(definition, tmp_path / "dask.sqlite", count) == serial.csv()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="copies of processes are of Linux")
+def test_a_crash_costs_a_copy_of_the_process(tmp_path: Path) -> None:
+    """The process that supervises goes on, and the next case has one with all imports."""
+    from moldloft.study.running import Cases
+    from moldloft.study.workers import _idle, end_workers, evaluate_apart
+
+    path = written(tmp_path, 4)
+    (tmp_path / "rare.py").write_text(
+        "import os\ndef rare(model):\n"
+        "    if model['a'] > 0.5: os._exit(3)\n    return os.getpid()\n"
+    )
+    end_workers()
+    with Cases(study.read(path)) as cases:
+        of = [evaluate_apart(cases.request(str(a), [a, 0.1])) for a in (0.1, 0.2, 0.9, 0.3)]
+        (worker,) = _idle
+    end_workers()
+    assert [answer["state"] for answer in of] == ["done", "done", "crashed", "done"]
+    assert of[2]["message"] == "the process of the case ended (status 3)"
+    first, second, last = (of[k]["outputs"]["twice"] for k in (0, 1, 3))
+    assert first == second != last and not worker.alive
+
+
+def test_a_local_cluster_grows_with_the_cases(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    from moldloft.study.cluster import ConnectedCluster
+
+    definition = study.read(written(tmp_path, 60))
+    serial = study.sweep(definition, tmp_path / "one.sqlite").csv()
+    cluster = ConnectedCluster("local", 2)
+    try:
+        table = study.sweep(definition, tmp_path / "two.sqlite", executor=cluster.executor).csv()
+    finally:
+        cluster.close()
+    assert table == serial
+
+
+#: Commands of SLURM that run a job at once on this machine.
+SLURM = {
+    "sbatch": """#!/bin/sh
+script=$(cat "$1" 2>/dev/null || cat)
+number=$$
+printf '%s' "$script" > "$JOBS/$number.sh"
+setsid sh "$JOBS/$number.sh" > "$JOBS/$number.log" 2>&1 &
+echo $! > "$JOBS/$number.pid"
+echo "Submitted batch job $number"
+""",
+    "scancel": """#!/bin/sh
+for number in "$@"; do
+  kill -TERM -- "-$(cat "$JOBS/$number.pid")" 2>/dev/null
+  : > "$JOBS/$number.cancelled"
+done
+""",
+}
+
+
+def test_jobs_of_a_queue_are_the_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By `dask-jobqueue` as it is, with commands of SLURM that start jobs here."""
+    pytest.importorskip("dask_jobqueue")
+    import dask
+
+    from moldloft.study.cluster import ConnectedCluster
+
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "jobs").mkdir()
+    for name, text in SLURM.items():
+        place = tmp_path / "bin" / name
+        place.write_text(text)
+        place.chmod(place.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setenv("JOBS", str(tmp_path / "jobs"))
+    definition = study.read(written(tmp_path, 40))
+    serial = study.sweep(definition, tmp_path / "one.sqlite").csv()
+    job: dict[str, Any] = {
+        "jobqueue.slurm.cores": 1,
+        "jobqueue.slurm.memory": "1GB",
+        "jobqueue.slurm.processes": 1,
+        "jobqueue.slurm.log-directory": None,
+        "jobqueue.slurm.local-directory": str(tmp_path),
+        "jobqueue.slurm.interface": None,
+        "jobqueue.slurm.python": sys.executable,
+        "jobqueue.slurm.scheduler-options": {"dashboard_address": ":0"},
+    }
+    with dask.config.set(job):
+        cluster = ConnectedCluster("slurm", 1)
+        try:
+            table = study.sweep(
+                definition, tmp_path / "two.sqlite", executor=cluster.executor
+            ).csv()
+        finally:
+            cluster.close()
+    assert table == serial
+    assert list((tmp_path / "jobs").glob("*.log"))
