@@ -126,6 +126,7 @@ pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report,
 pub use interrogate::{shape, surface};
 pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
+pub use net::arcs::NetworkArc;
 pub use net::condition_text::NamedCurves;
 pub use net::curves::{CurvePair, CurveSwing, SWING};
 pub use net::grid::{
