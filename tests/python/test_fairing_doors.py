@@ -72,10 +72,32 @@ OPTIONS = {
     "bound": ('bound = "curve"', {"bound": "curve"}, ["--bound", "curve"]),
     "points": ('bound = "points"', {"bound": "points"}, ["--bound", "points"]),
     "control": ('as = "control"', {"as_": "control"}, ["--as", "control"]),
-    "faithful": (
-        'mode = "faithful", as = "control"',
-        {"mode": "faithful", "as_": "control"},
-        ["--mode", "faithful", "--as", "control"],
+    "moved": (
+        'as = "points", spacing = "index"',
+        {"as_": "points", "spacing": "index"},
+        ["--as", "points", "--spacing", "index"],
+    ),
+    "index": ('spacing = "index"', {"spacing": "index"}, ["--spacing", "index"]),
+    "centripetal": (
+        'spacing = "centripetal"',
+        {"spacing": "centripetal"},
+        ["--spacing", "centripetal"],
+    ),
+    "x": (
+        'spacing = "x", goal = "fairest"',
+        {"spacing": "x", "goal": "fairest"},
+        ["--spacing", "x", "--goal", "fairest"],
+    ),
+    "faithful": ('mode = "faithful"', {"mode": "faithful"}, ["--mode", "faithful"]),
+    "faithful fit": (
+        'mode = "faithful", as = "fit"',
+        {"mode": "faithful", "as_": "fit"},
+        ["--mode", "faithful", "--as", "fit"],
+    ),
+    "bound of moved": (
+        'as = "points", bound = "curve"',
+        {"as_": "points", "bound": "curve"},
+        ["--as", "points", "--bound", "curve"],
     ),
     "keep": ('keep = {"area"}', {"keep": ["area"]}, ["--keep", "area"]),
 }
@@ -91,8 +113,10 @@ def of_data(name, rows, tol):
     k, m = n // 3, 2 * n // 3
     ring = np.linspace(0, 1, n + 1)
     ring[1:-1] += 0.2 / n * np.sin(np.arange(1, n))
-    knots = np.r_[[0.0] * 3, np.linspace(0, 1, n - 2), [1.0] * 3]
-    knots[4:-4] += 0.2 / n * np.sin(np.arange(n - 4))
+    # Beside the means of neighbouring parameters, so that the fit is well determined.
+    lengths = np.r_[0, np.cumsum(np.linalg.norm(np.diff(rows, axis=0), axis=1))]
+    means = np.convolve(lengths / lengths[-1], np.ones(3) / 3, "valid")[1:-1]
+    knots = np.r_[[0.0] * 4, means, [1.0] * 4]
     weights = 1 + 0.5 * np.sin(np.arange(n))
     tols = tol * (1 + 0.5 * np.cos(np.arange(n)))
     at = np.linspace(0, 1, n) ** 1.1
@@ -145,9 +169,25 @@ def of_data(name, rows, tol):
         ),
         "joins": (
             "joins = {before}",
-            {"joins": [moldloft.fairing.Spline(neighbour(rows))]},
-            None,
-            {},
+            {"joins": [moldloft.fairing.Spline.interpolate(neighbour(rows))]},
+            [],
+            {"--join": neighbour(rows)},
+        ),
+        "joins of fits": (
+            'joins = {before}, bound = "curve"',
+            {"joins": [moldloft.fairing.Spline.interpolate(neighbour(rows))], "bound": "curve"},
+            ["--bound", "curve"],
+            {"--join": neighbour(rows)},
+        ),
+        "joins and keep": (
+            'joins = {before}, keep = {"area"}, goal = "fairest"',
+            {
+                "joins": [moldloft.fairing.Spline.interpolate(neighbour(rows))],
+                "keep": ["area"],
+                "goal": "fairest",
+            },
+            ["--keep", "area", "--goal", "fairest"],
+            {"--join": neighbour(rows)},
         ),
         "least_move": (
             'mode = "faithful", as = "control", least_move = 0.5',
@@ -188,16 +228,16 @@ def of_data(name, rows, tol):
 #: Names of `of_data`.
 OF_DATA = (
     "breaks", "closed", "fixed", "release", "through", "tangents", "tolerances", "at", "count",
-    "energy", "weights", "knots", "period", "joins", "least_move", "least_drop", "stop_gap",
-    "stop_pieces", "literal", "vertex", "sweeps", "levels",
+    "energy", "weights", "knots", "period", "joins", "joins of fits", "joins and keep",
+    "least_move", "least_drop", "stop_gap", "stop_pieces", "literal", "vertex", "sweeps", "levels",
 )  # fmt: skip
 
 
 def neighbour(rows):
-    """Control points of a cubic curve that ends where the data begin, with their direction."""
+    """Points of a curve that ends where the data begin, with their direction."""
     step = rows[1] - rows[0]
-    lift = np.array([[0, 0.05], [0, 0.03], [0, 0], [0, 0], [0, 0]]) * np.ptp(rows)
-    return rows[0] - np.arange(4, -1, -1)[:, None] * step + lift
+    lift = np.array([[0, 0.05], [0, 0.03], [0, 0.01], [0, 0], [0, 0], [0, 0]]) * np.ptp(rows)
+    return rows[0] - np.arange(5, -1, -1)[:, None] * step + lift
 
 
 def program(rows, tol, text):
@@ -206,7 +246,7 @@ def program(rows, tol, text):
     if "before" in text:
         for k, (x, y) in enumerate(neighbour(rows)[:-1]):
             points.append(f"AbsPoint b{k}({float(x)!r}, {float(y)!r}, 0);")
-        points.append("BCurve before({b0, b1, b2, b3, p0}, 3);")
+        points.append('FairCurve before({b0, b1, b2, b3, b4, p0}, 0, spacing = "chord");')
     rest = f", {text}" if text else ""
     whole = " ".join(points) + f" FairCurve c({{{names}}}, {float(tol)!r}{rest});"
     return re.sub(r"(?<=\d)e-", "E-", whole)
@@ -219,7 +259,8 @@ def by_command(rows, tol, words, files, folder, capsys):
     given = {"--tol": repr(float(tol))}
     for word, values in files.items():
         given[word] = folder / f"{word.strip('-')}.txt"
-        given[word].write_text("\n".join(repr(float(x)) for x in values) + "\n")
+        lines = (",".join(repr(float(x)) for x in np.atleast_1d(row)) for row in values)
+        given[word].write_text("\n".join(lines) + "\n")
     capsys.readouterr()
     options = [str(part) for pair in given.items() for part in pair]
     status = main(["fair", str(path), *options, *words, "--json"])
@@ -245,27 +286,16 @@ def test_one_answer(name, tmp_path, capsys):
         except moldloft.FairingError:
             with pytest.raises(moldloft.Error):
                 moldloft.loads(written).eval("c(0)")
-            if words is not None:
-                status = by_command(rows, tol, words, files, tmp_path, capsys)
-                assert status == 1, here
+            assert by_command(rows, tol, words, files, tmp_path, capsys) == 1, here
             continue
         model = moldloft.loads(written)
         t = np.linspace(0, 1, 41)
-        drawn = faired
-        if options.get("as_") == "control":
-            # Those of models are control points of a clamped spline, which ends at them.
-            rest = {word: value for word, value in options.items() if word != "as_"}
-            drawn = moldloft.fair(moldloft.fairing.Spline(rows), bound, **rest)
-        elif "joins" in options:
-            # Those of models move the control points of the curve through the points.
-            drawn = moldloft.fair(rows, bound, bound="curve", spacing="index", **options)
-        wanted = drawn.spline(t)
+        wanted = faired.spline(t)
         found = np.array([model.eval(f"c({float(x)!r})") for x in t], float)
         size = np.ptp(rows, axis=0).max()
         assert np.abs(found - wanted).max() <= 1e-12 * size, here
-        if words is not None:
-            control = by_command(rows, tol, words, files, tmp_path, capsys)
-            assert np.abs(control - faired.control_points).max() <= 1e-12 * size, here
+        control = by_command(rows, tol, words, files, tmp_path, capsys)
+        assert np.abs(control - faired.control_points).max() <= 1e-12 * size, here
 
 
 def test_every_option_of_curves_is_asked_for():

@@ -368,7 +368,7 @@ CURVES = {
     "count": ("count = 9", {"count": 9}),
     "knots": (f"knots = {{{', '.join(map(str, KNOTS))}}}", {"knots": KNOTS}),
     "weights": ("weights = {weights}", {"weights": True}),
-    "faithful": ('mode = "faithful", spacing = "chord"', {"mode": "faithful"}),
+    "faithful": ('mode = "faithful", as = "fit"', {"mode": "faithful"}),
     "literal": ('mode = "literal", as = "points"', {"mode": "literal", "as_": "points"}),
     "vertex": (
         'mode = "vertex", as = "points", measure = "third", steps = 55',
@@ -433,8 +433,6 @@ def test_curves_of_models(name):
         options["weights"] = weights
     if options.get("knots") is True:
         options["knots"] = ring
-        # What is bounded there is the curve.
-        options["bound"] = "curve"
     elif options.get("knots"):
         tol = 0.03
     if options.pop("tol", False):

@@ -56,12 +56,63 @@ def test_parallel_bodies_and_flats_are_exact():
         assert np.abs(samples.points[inside, 1] - y[4, k]).max() <= 1e-9
         slopes = samples.first[:, 1] / samples.first[:, 0]
         assert np.abs(np.diff(slopes)).max() < 0.05
-    plain = network(points, curves, NOISE, names=names, motion=(0, 1, 0))
+    # With its body the network is nearer to the hull than without, and both than the data.
+    near = np.zeros(3)
+    for seed in range(4):
+        points, curves, names, exact = table(seed=seed)
+        options = {"names": names, "motion": (0, 1, 0)}
+        shaped = network(points, curves, NOISE, shape=[BODY, SIDE], **options)
+        plain = network(points, curves, NOISE, **options)
+        all_of = [offsets(shaped), offsets(plain), points[:, 1].reshape(exact.shape)]
+        near += [((y - exact) ** 2).mean() for y in all_of]
+    assert near[0] < near[1] < near[2]
 
-    def rms(y):
-        return np.sqrt(((y - exact) ** 2).mean())
 
-    assert rms(y) < rms(offsets(plain)) < rms(points[:, 1].reshape(exact.shape))
+def _bilges(seed, noise):
+    """Sections of an arc and a vertical side: the points, their curves, names, and the radius."""
+    rng = np.random.default_rng(seed)
+    radius = rng.uniform(0.8, 1.5)
+    angle = np.radians(np.linspace(25, 90, int(rng.integers(6, 9))))
+    z = np.r_[radius * (1 - np.cos(angle)), radius + np.array([0.4, 0.8, 1.2])]
+    x = np.linspace(0, 12, 7)
+    breadth = 3 - 0.02 * (x - rng.uniform(4, 8)) ** 2
+    turn = radius - np.sqrt(np.maximum(radius**2 - np.maximum(radius - z, 0) ** 2, 0))
+    y = breadth[:, None] - turn[None] + noise * rng.uniform(-1, 1, (len(x), len(z)))
+    points = np.stack([np.repeat(x, len(z)), y.ravel(), np.tile(z, len(x))], axis=-1)
+    at = np.arange(y.size).reshape(y.shape)
+    names = [f"station {k}" for k in range(len(x))] + [f"WL {k}" for k in range(len(z))]
+    return points, [*at.tolist(), *at.T.tolist()], names, radius, len(angle)
+
+
+def test_arcs_are_circles_tangent_to_runs():
+    for seed in range(60 if os.environ.get("MOLDLOFT_SOAK") else 4):
+        noise = (0.002, 0.01)[seed % 2]
+        points, curves, names, radius, last = _bilges(seed, noise)
+        count = len(curves[0])
+        beside = seed // 2 % 2
+        shape = [
+            f"station 0..station 6: arc=1-{last}",
+            f"station 0..station 6: straight={last + beside}-{count}:0,0,1",
+        ]
+        made = network(
+            points, curves, noise, names=names, motion=(0, 1, 0), shape=shape, fixed="none"
+        )
+        assert np.abs(made.points - points).max() <= noise * (1 + 1e-9)
+        for k in range(7):
+            own = made.points[curves[k]][:, 1:]
+            arc, side = own[:last], own[last - 1 + beside :]
+            # The circle by linear least squares: y^2 + z^2 = 2 a y + 2 b z + c.
+            rows = np.c_[2 * arc, np.ones(last)]
+            (a, b, c), *_ = np.linalg.lstsq(rows, (arc**2).sum(axis=1), rcond=None)
+            found = np.sqrt(c + a * a + b * b)
+            off = np.abs(np.hypot(arc[:, 0] - a, arc[:, 1] - b) - found).max()
+            assert off <= 1e-9, (seed, k, off)
+            assert np.ptp(side[:, 0]) <= 1e-9
+            assert abs(side[0, 0] - a - found) <= 1e-7, (seed, k)
+            assert abs(found - radius) < 30 * noise
+            text = f"station {k}: an arc from point {curves[k][0] + 1} "
+            (note,) = (note for note in made.notes if note.startswith(text))
+            assert float(note.split("radius ")[1]) == pytest.approx(found, rel=1e-4)
 
 
 def test_conditions_that_cannot_hold_are_named():
@@ -73,6 +124,8 @@ def test_conditions_that_cannot_hold_are_named():
         ("WL 3: round", "convex=4-10"),
         ("WL 3: straight=2-40", "WL 3"),
         ("WL 3: pieces=2", "single curves"),
+        ("WL 3: arc=2-4", "4 points of an arc"),
+        ("WL 3: arc=2-40", "WL 3"),
         ("WL 2: tangent=start:0,0,0", "direction"),
         ("station 2 at WL 0..WL 4: flat:1,0.1,0", "station 2"),
     ):
@@ -135,7 +188,8 @@ def least_third(x, y, tol, sign):
 
 def test_the_fairest_under_signs_is_that_of_another_solver():
     # Waterlines alone: the optimum of each is its own.
-    for seed in range(40 if os.environ.get("MOLDLOFT_SOAK") else 4):
+    draws, free = 40 if os.environ.get("MOLDLOFT_SOAK") else 6, 0
+    for seed in range(draws):
         rng = np.random.default_rng(seed)
         count, tol = int(rng.integers(9, 16)), float(rng.choice([0.005, 0.02]))
         x = np.cumsum(rng.uniform(0.6, 1.4, count))
@@ -153,7 +207,12 @@ def test_the_fairest_under_signs_is_that_of_another_solver():
             shape=f"1..{len(z)}: {word}",
         )  # fmt: skip
         least = sum(least_third(x, y[:, k], tol, -1) for k in range(len(z)))
-        assert abs(made.measure_after / least - 1) <= 1e-6, (seed, made.measure_after, least)
+        assert made.measure_after >= least * (1 - 1e-6), (seed, made.measure_after, least)
+        # That solver knows no limits between points.
+        if made.deviation_curves_certified < 1.499 * tol:
+            free += 1
+            assert abs(made.measure_after / least - 1) <= 1e-6, (seed, made.measure_after, least)
+    assert free >= draws // 6, free
 
 
 def test_the_displacement_and_its_centroid_stay():
@@ -325,6 +384,34 @@ def test_wrong_readings_of_a_table_are_the_first_suspects(of):
     assert five >= 0.9 * draws, (first, five)
     assert first >= 0.75 * draws, (first, five)
     assert near >= 0.9 * five, (near, five)
+
+
+def _vessel(x, z):
+    """A supply vessel: hard bilges that rise to the ends, a keel of no breadth, a full deck."""
+    fore, aft = np.clip((x - 36) / 24, 0, 1), np.clip((24 - x) / 24, 0, 1)
+    bilge = 0.18 + 0.7 * fore**2 + 0.35 * aft**2
+    rise = np.clip(z / 6, 0, 1) ** bilge * (1 - 0.85 * fore**2.2 * (1.1 - z / 6))
+    return 5 * np.where(z > 0, rise, 0) * (1 - 0.12 * aft**2)
+
+
+@pytest.mark.parametrize("of", [_vessel, _round, _fine, _wigley])
+def test_networks_are_no_farther_from_the_hull_than_their_data(of):
+    x, z = np.meshgrid(np.linspace(0, 60, 11), np.linspace(0, 6, 8), indexing="ij")
+    at = np.arange(x.size).reshape(x.shape)
+    curves = [*at.tolist(), *at.T.tolist()]
+    exact = of(x, z)
+    draws = 40 if os.environ.get("MOLDLOFT_SOAK") else 3
+    for tol in (0.01, 0.03, 0.1):
+        near, noisy = 0.0, 0.0
+        for seed in range(draws):
+            y = exact + np.random.default_rng(seed).uniform(-tol, tol, x.shape)
+            points = np.stack([x, y, z], -1).reshape(-1, 3)
+            made = network(points, curves, tol, motion=(0, 1, 0))
+            off = made.points[:, 1].reshape(x.shape) - exact
+            near += (off**2).mean()
+            noisy += ((y - exact) ** 2).mean()
+            assert made.deviation_curves_certified <= 1.5 * tol * (1 + 1e-6)
+        assert near <= noisy, (tol, np.sqrt(near / noisy))
 
 
 def crossed(seed):

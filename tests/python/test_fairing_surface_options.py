@@ -130,6 +130,29 @@ def test_methods_of_nets():
             seen.append(here)
 
 
+CONTROL = {
+    "plain": ("", {}),
+    "bound": ('bound = "curve"', {"bound": "curve"}),
+    "degrees": ("degree = 4, degree_v = 3", {"degree": (4, 3)}),
+    "rims": ('rims = "position"', {"rims": "position"}),
+    "faithful": ('mode = "faithful"', {"mode": "faithful"}),
+    "along": ("along = {0, 1, 0}", {"motion": (0, 1, 0)}),
+}
+
+
+@pytest.mark.parametrize("name", CONTROL)
+def test_control_points(name):
+    """Those of a uniform surface, as in Python."""
+    grid = hull()
+    text, options = CONTROL[name]
+    m = moldloft.loads(model(grid, ", ".join(filter(None, ['0.02, as = "control"', text]))))
+    wanted = moldloft.fair(grid, 0.02, as_="control", measure="second", **options)
+    t = np.linspace(0, 1, 6)
+    here = places(lambda u, v: m.eval(f"s({u}, {v})"))
+    assert np.abs(here - wanted.surface.grid(t, t)).max() <= 1e-12 * np.ptp(grid)
+    assert np.abs(here - wanted.original.grid(t, t)).max() > 1e-4
+
+
 def test_closed_surfaces():
     grid = tube()
     text = '0.02, measure = "variation", goal = "budget", spacing = "centripetal"'

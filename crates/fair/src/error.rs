@@ -244,6 +244,17 @@ impl fmt::Display for FairError {
 
 impl std::error::Error for FairError {}
 
+impl FairError {
+    /// A contradiction between single equations as one between those that ask for them.
+    pub(crate) fn owned_by(self, owners: &[usize]) -> Self {
+        let Self::Contradiction { conditions, ends, miss } = self else { return self };
+        let owner = |c: usize| owners.get(c).copied();
+        let mut conditions: Vec<usize> = conditions.into_iter().filter_map(owner).collect();
+        conditions.dedup();
+        Self::Contradiction { conditions, ends, miss }
+    }
+}
+
 /// Refuses points that are not finite, or too large or small for sixth differences to be squared.
 pub(crate) fn check_finite(points: &[moldloft_num::Vec3<f64>]) -> Result<(), FairError> {
     if let Some(index) = points.iter().position(|p| !p.is_finite()) {

@@ -95,9 +95,8 @@ pub mod words;
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};
 pub use curve::corners::{FitWithCorners, interpolate_with_corners};
-pub use curve::data::{
-    Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
-};
+pub use curve::data::{Data, DataFit, DataOptions, Merged, fair_data, merged};
+pub use curve::data_moved::{MovingFit, fair_data_with};
 pub use curve::demand::Demand;
 pub use curve::exact::{are_exact, is_exact};
 pub use curve::fit::{
@@ -127,6 +126,7 @@ pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report,
 pub use interrogate::{shape, surface};
 pub use kinds::{BUDGET as SURFACE_BUDGET, NETWORK_BUDGET, rows};
 pub use measure::{Measure, RowNorm, value};
+pub use net::arcs::NetworkArc;
 pub use net::condition_text::NamedCurves;
 pub use net::curves::{CurvePair, CurveSwing, SWING};
 pub use net::grid::{

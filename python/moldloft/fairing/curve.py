@@ -292,6 +292,8 @@ def fair_curve(
     if stay:
         limits = [0.0] * n
     conditions, labels = linear_conditions(through, tangents, keep)
+    if spline.weights is not None and (conditions or joins):
+        raise FairingError("through, tangents, keep and joins are for splines without weights")
     for k, join in enumerate(join_conditions(joins, spline)):
         kept[int(join[1])] = "position"
         conditions.append(join)

@@ -307,7 +307,8 @@ def network(
         Exact shapes of curves: ``"WL 2: convex"``, ``"WL 2: straight=3-9:1,0,0"``
         (points from 1), ``"WL 2..WL 5 at station 4..station 8: straight:1,0,0"`` (a parallel body:
         the points of these curves on those), the same with ``flat`` or ``flat:0,1,0`` (all
-        these points in one plane), ``"sheer: tangent=start:1,0,0"``; ``one-way``, ``concave``,
+        these points in one plane), ``"station 5: arc=3-9"`` (these points on one circle, tangent to
+        straight runs beside it), ``"sheer: tangent=start:1,0,0"``; ``one-way``, ``concave``,
         ``within`` and ``side`` as for :func:`~moldloft.fairing.fair`; ``all`` are all curves. For
         the optimum at parameters.
     breaks
@@ -326,10 +327,11 @@ def network(
         by curves as tolerances: ``{"": (0, 1, 0), "sheer": ("across", (1, 0, 0))}`` moves a sheer
         in the planes of the stations.
     bound
-        ``"points"``: the tolerance is that of the points, between which a curve may swing farther:
-        a note names those that are more than 1.5 tolerances off. ``"curve"``: no curve is farther
-        from its original than the smaller tolerance of the two points next to it, all along. Of the
-        optimum at parameters.
+        ``"points"``: the tolerance is that of the points, and between them no curve is more than
+        1.5 tolerances off; where conditions leave no such network, and in other modes, a note names
+        the curve, the place and the distance. ``"curve"``: no curve is farther from its original
+        than the smaller tolerance of the two points next to it, all along. Of the optimum at
+        parameters.
     keep
         ``"volume"`` and its ``"centroid"`` stay, by splines through the sections (curves in planes
         across x); where points move along one direction.
@@ -473,6 +475,11 @@ def network(
         f"{lines.name(curve)}: between points, beside point {point + 1}, up to {share:.2f} "
         "tolerances from its original; bound `curve` keeps it within them"
         for curve, point, share in reported["swings"]
+    ]
+    said += [
+        f"{lines.name(curve)}: an arc from point {lists[curve][0][first] + 1} to point "
+        f"{lists[curve][0][last] + 1}, radius {radius:.6g}"
+        for curve, (first, last), radius in reported["arcs"]
     ]
     shown = faired.copy()
     shown[~hull] = np.nan

@@ -13,19 +13,15 @@ use crate::curve::bends::BendCounter;
 use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
-use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::curve::thinning::CurvesBesideData;
-use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
-    moved, rounding,
-};
+use crate::optimum::goal::{Adaptation, Goal, GoalOptimum, RegularizationPath, rounding};
 use crate::optimum::ties::Ties;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
     ShapeConstraints, SparseRows, shape,
 };
-use moldloft_num::{Real, Vec3};
+use moldloft_num::Vec3;
 
 /// Data with their limits.
 #[derive(Clone, Debug)]
@@ -299,7 +295,7 @@ impl Data {
     }
 
     /// The control points beside the ends that these keep.
-    fn held(&self) -> Vec<usize> {
+    pub(super) fn held(&self) -> Vec<usize> {
         if self.layout.space.is_closed() {
             return Vec::new();
         }
@@ -319,7 +315,7 @@ impl Data {
     }
 
     /// Data that attract the curve: those with a positive, finite tolerance that were not released.
-    fn pulls(&self) -> Vec<bool> {
+    pub(super) fn pulls(&self) -> Vec<bool> {
         let open = released(&self.points, &self.limit.radii);
         let given = self.limit.radii.iter().map(|r| *r > 0.0 && r.is_finite());
         given.zip(open).map(|(given, open)| given && !open).collect()
@@ -807,157 +803,4 @@ impl Data {
         let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
         path.follow(goal, norm, conditioned, parts, &pull)
     }
-}
-
-/// A faired curve whose control points and knots carry derivatives.
-#[derive(Clone, Debug)]
-pub struct MovingFit<T> {
-    /// The control points on the layout's space.
-    pub points: Vec<Vec3<T>>,
-    /// The space's knots.
-    pub knots: Vec<T>,
-}
-
-impl<T: Real> MovingFit<T> {
-    /// A curve that stays as it is.
-    pub(super) fn still(layout: &InterpolationSpace, fit: &DataFit) -> Self {
-        let points = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
-        let knots = layout.space.knots().iter().map(|&k| T::from(k)).collect();
-        Self { points, knots }
-    }
-}
-
-/// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
-/// parts are those of the data. Derivatives follow from
-/// the conditions of optimality by the implicit function theorem, through knots and parameters
-/// too, where there are no conditions but those of the ends and inflections are not held back (`bends`).
-///
-/// # Errors
-/// As [`fair_data`]; [`FairError::NoDerivative`] for the goal `nearest`, and for sums of lengths on knots
-/// that move.
-pub fn fair_data_with<T: Real>(
-    data: &Data,
-    options: &DataOptions,
-    points: &[Vec3<T>],
-    tolerances: &[T],
-    at: &[T],
-) -> Result<(MovingFit<T>, DataFit), FairError> {
-    let mut plain = points.iter().flat_map(|p| p.to_array()).chain(at.iter().copied());
-    let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
-    if !options.shape.is_empty() || !options.conditions.is_empty() || !options.bends {
-        if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
-            return Err(FairError::NoDerivative(
-                "derivatives of curves with conditions on their shape, points or inflections are \
-                 not known: take the curve without them",
-            ));
-        }
-        let made = fair_data(data, options)?;
-        return Ok((MovingFit::still(&data.layout, &made), made));
-    }
-    if !data.layout.interpolates() {
-        if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
-            return Err(FairError::NoDerivative(
-                "derivatives of curves with fewer knots than points are not known: name a spacing",
-            ));
-        }
-        let made = fair_data(data, options)?;
-        return Ok((MovingFit::still(&data.layout, &made), made));
-    }
-    let job = data.job()?;
-    let mut parts = data.parts(options, &job)?;
-    let found = data.found(options, &job, &mut parts)?;
-    let (share, weight) = (found.share, found.weight);
-    let layout = &data.layout;
-    let (sites, knots) = layout.moving(at);
-    if plain.all(|x| x.is_constant()) && fixed(tolerances) {
-        let points = found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
-        return Ok((MovingFit { points, knots }, data.fit(found, &job)));
-    }
-    let space = MovingSpace { space: &layout.space, knots: &knots };
-    let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
-    let wanted = layout.data(points);
-    // Change of the control points for which the curve of `of` follows the data at the sites while
-    // knots and sites move.
-    let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
-        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
-        let change: Vec<Vec3<T>> = (0..wanted.len())
-            .map(|k| {
-                let off = wanted[k] - values.apply(k, &lifted);
-                off - Vec3::lifted(off.re())
-            })
-            .collect();
-        let change = layout.through(&change)?;
-        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
-    };
-    let start = through(&job.points, &job.points)?;
-    if share == 0.0 {
-        return Ok((MovingFit { points: start, knots }, data.fit(found, &job)));
-    }
-    if !fixed(&knots) {
-        check_single(&found, crate::measure::value(&parts.measure, parts.norm, &job.points))?;
-    }
-    if parts.norm != crate::RowNorm::Square {
-        return Err(FairError::NoDerivative(
-            "derivatives of a sum of lengths through moving knots are not known: take another \
-             measure, or spacing \"index\"",
-        ));
-    }
-    // The optimum for the weight found, with the factors that derivatives need.
-    let pull = data.pull(&parts);
-    check_unique(&mut parts, &found, &pull)?;
-    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-    let solved = parts.whole()?;
-    // Jumps have too few digits, and a softened problem gives approximate derivatives only.
-    if weight > 0.0 && options.measure != Measure::Jumps && !solved.is_decided() {
-        return Err(FairError::NoDerivative(
-            "which tolerances are reached is not decided to rounding, so that derivatives are not \
-             known: take another tolerance",
-        ));
-    }
-    let control = &solved.optimum.points;
-    let rows = space.measure(options.measure)?;
-    let mut forces: Vec<Vec3<T>> =
-        rows.slope(control).into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
-    // Forces at the sites act through rows that move.
-    let radii = layout.radii(&data.limit.radii);
-    let held = |k: &usize| layout.rows.row(*k).0.iter().all(|&c| parts.frozen[c as usize]);
-    let limited: Vec<usize> =
-        (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && !held(k)).collect();
-    let away: Vec<Vec3<f64>> = control.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
-    let pulls = data.pulls();
-    let pulled = |k: &usize| layout.owner[*k].filter(|&i| pulls[i]).map(|i| tolerances[i]);
-    for (&k, force) in limited.iter().zip(&solved.forces()) {
-        let mut force = *force;
-        if pulled(&k).is_some() {
-            force += layout.rows.apply(k, &away) * (weight / (radii[k] * radii[k]));
-        }
-        for &(c, f) in &values.rows[k] {
-            let change = f - T::from(f.re());
-            forces[c] += force.map_real(|x| change * x);
-        }
-    }
-    let owner = |k: &usize| layout.owner[*k].map(|i| tolerances[i]);
-    // A site that is no datum has the largest tolerance near it.
-    let largest = |k: usize| {
-        let near = layout.sources_of(k).map(|i| tolerances[i]);
-        near.reduce(|a, b| if b.re() > a.re() { b } else { a }).unwrap_or_else(T::zero)
-    };
-    let own: Vec<T> = (0..radii.len())
-        .filter(|&k| radii[k] > 0.0)
-        .map(|k| owner(&k).unwrap_or_else(|| largest(k)))
-        .collect();
-    let targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
-    let moving = GoalVariation {
-        originals: through(control, &job.points)?,
-        tolerances: &own,
-        pulled: limited.iter().filter_map(pulled).collect(),
-        targets: &targets,
-        forces,
-        rows: &rows,
-        bends: &[],
-        budget: T::zero(),
-        start: &start,
-    };
-    let points = moved(&parts, &solved, options.goal, &found, &pull, moving)?;
-    Ok((MovingFit { points, knots }, data.fit(found, &job)))
 }

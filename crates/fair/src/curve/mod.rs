@@ -8,6 +8,7 @@ pub(crate) mod chain;
 pub(crate) mod condition;
 pub(crate) mod corners;
 pub(crate) mod data;
+pub(crate) mod data_moved;
 pub(crate) mod demand;
 mod draft;
 pub(crate) mod exact;

@@ -1,8 +1,7 @@
 //! A curve near its points from a request: the same for models, Python and the command.
 
-use crate::curve::data::{
-    Data, DataFit, DataOptions, MovingFit, fair_data, fair_data_with, merged,
-};
+use crate::curve::data::{Data, DataFit, DataOptions, fair_data, merged};
+use crate::curve::data_moved::{DataNumbers, MovingFit, fair_data_under};
 use crate::curve::demand::Demand;
 use crate::curve::fit::{ParameterSpacing, parameters_across};
 use crate::curve::job::EndContinuity;
@@ -57,7 +56,7 @@ pub struct CurveRequest<T> {
     /// Shape conditions.
     pub shape: Vec<ShapeCondition>,
     /// Conditions at parameters in [0, 1].
-    pub conditions: Vec<(f64, Demand)>,
+    pub conditions: Vec<(f64, Demand<T>)>,
     /// True to allow more inflections and monotone pieces than the fairest curve has.
     pub bends: bool,
     /// Certified gap, relative to the measure; `None`: rounding, the smallest possible.
@@ -199,7 +198,9 @@ impl<T: Real> CurveRequest<T> {
         let tolerances = self.allowed(&plain)?;
         let at = self.at.iter().flatten().copied();
         let mut moving = points.iter().flat_map(|p| p.to_array()).chain(at);
-        let still = moving.all(|x| x.is_constant()) && tolerances.iter().all(|t| t.is_constant());
+        let still = moving.all(|x| x.is_constant())
+            && tolerances.iter().all(|t| t.is_constant())
+            && self.conditions.iter().all(|(_, demand)| demand.is_constant());
         let radii: Vec<f64> = tolerances.iter().map(|t| t.re()).collect();
         let one = merged(&plain, &radii, self.closed)?;
         if one.points.len() == n {
@@ -306,20 +307,12 @@ impl<T: Real> CurveRequest<T> {
         if !self.conditions.is_empty() {
             let control = data.layout.through(&data.layout.data(&data.points))?;
             for (k, &(t, demand)) in self.conditions.iter().enumerate() {
-                let all = demand.conditions(&data.layout.space, &control, t)?;
+                let all = demand.re().conditions(&data.layout.space, &control, t)?;
                 owners.extend(std::iter::repeat_n(k, all.len()));
                 options.conditions.extend(all);
             }
         }
-        let own = |error: FairError| match error {
-            FairError::Contradiction { conditions, ends, miss } => {
-                let mut conditions: Vec<usize> =
-                    conditions.into_iter().filter_map(|c| owners.get(c).copied()).collect();
-                conditions.dedup();
-                FairError::Contradiction { conditions, ends, miss }
-            }
-            other => other,
-        };
+        let own = |error: FairError| error.owned_by(&owners);
         if self.draft && still {
             let fit = data.drafted(&options).map_err(own)?;
             let made = MovingFit::still(&data.layout, &fit);
@@ -344,7 +337,8 @@ impl<T: Real> CurveRequest<T> {
             }
             options.bends = true;
         }
-        let (made, fit) = fair_data_with(&data, &options, points, tolerances, &at).map_err(own)?;
+        let numbers = DataNumbers { points, tolerances, at: &at, demands: &self.conditions };
+        let (made, fit) = fair_data_under(&data, &options, numbers).map_err(own)?;
         Ok(NearCurve { data, of, made, fit, measure })
     }
 }

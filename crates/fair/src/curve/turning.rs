@@ -7,7 +7,8 @@
 //! square root of the tangent angle. The curvature is that of the curve with the full squares of
 //! noise: a curve nearer to the data would turn with their noise.
 
-use crate::curve::data::{Data, DataOptions, MovingFit, fair_data_with};
+use crate::curve::data::{Data, DataOptions};
+use crate::curve::data_moved::{MovingFit, fair_data_with};
 use crate::curve::moving::MovingSpace;
 use crate::measure::gauss;
 use crate::optimum::goal::Goal;

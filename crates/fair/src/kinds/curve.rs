@@ -1,9 +1,9 @@
 //! `FairCurve`: a fair spline near points.
 
 use super::faired::{CurveContext, FairedSpline};
-use super::options::{curve_options, shared_options};
+use super::options::{CurveOptions, curve_options, shared_options};
 use super::shapes::AnchoredSpline;
-use crate::{Demand, FairError};
+use crate::{Demand, FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
@@ -23,8 +23,8 @@ shared_options! {
         /// noise that fills the tolerance), `fairest_used` (the same for the fairest curve) and
         /// `findings` (number of points that do not fit their neighbours).
         ///
-        /// Control points are moved instead of data with `as = "control"`, `joins`, `knots`,
-        /// `weights`, `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
+        /// Control points are moved instead of data with `as = "control"`, `knots`, `weights`,
+        /// `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
         /// Members are then `deviation` (largest move of a control point or point; with `knots`,
         /// `weights` or `count` the largest distance of a point), `value`, `gap`, and `active` for
         /// the optimum or `steps` for the other modes.
@@ -61,11 +61,12 @@ shared_options! {
         /// "variation" for data ("bending" below degree 3), "second" where control points move.
         #[field(default)]
         measure: Option<Arc<str>>,
-        /// Role of the points: "fit" (interpolated, then faired), "control" (control points) or
-        /// "points" (faired, then interpolated; for the optimum the same as "fit", except with
+        /// Role of the points: "fit" (data on the curve; default for the optimum), "control" (control
+        /// points of a uniform spline, whose ends are not at its points; default for the other modes)
+        /// or "points" (faired, then interpolated; for the optimum the same as "fit", except with
         /// `spacing = "index"`).
-        #[field(default = "fit")]
-        r#as: Arc<str>,
+        #[field(default)]
+        r#as: Option<Arc<str>>,
         /// Numbers of points, from 1, that are intended breaks: they do not move, nothing is
         /// smoothed across them, and the curve has corners there. A closed curve starts at the
         /// first of them.
@@ -99,7 +100,7 @@ shared_options! {
         /// Parametrisation of the points: "chord", "centripetal", a coordinate ("x", "y" or "z",
         /// for offsets at stations), "index", or "curvature" (chord lengths, extended where the
         /// curve turns). "auto" is "curvature" for the goals "near" and "budget" without further
-        /// conditions, otherwise "chord"; with control points, joins or single steps it is "index".
+        /// conditions, otherwise "chord"; with control points it is "index".
         #[field(default = "auto")]
         spacing: Arc<str>,
     }
@@ -124,7 +125,7 @@ const JOINS: FieldId = FairCurve::<f64>::JOINS;
 const SPACINGS: [&str; 8] = ["auto", "chord", "centripetal", "x", "y", "z", "index", "curvature"];
 
 impl<T: Real> FairCurve<T> {
-    fn kept(&self) -> Result<Vec<Demand>, CallError> {
+    fn kept(&self) -> Result<Vec<Demand<T>>, CallError> {
         let one = |(k, word): (usize, &Arc<str>)| {
             Demand::kept(word).ok_or_else(|| {
                 CallError::new("unknown-name", format!("`{word}` cannot be kept"))
@@ -139,9 +140,23 @@ impl<T: Real> FairCurve<T> {
 }
 
 impl<T: Real> FairCurve<T> {
+    /// First and last point of the spline with these control points.
+    fn ends_on(&self, space: &Space) -> [Vec3<T>; 2] {
+        let (start, end) = space.domain();
+        [start, end].map(|t| {
+            let (k, t) = space.locate(t);
+            let basis = space.basis(k, t);
+            let entries = space.columns(k).zip(basis.rows[0].iter());
+            entries.fold(Vec3::zero(), |s, (c, &b)| s + self.points[c].xyz.map(|x| x * b))
+        })
+    }
+
     /// For each end, the index of the curve to continue and its first and second derivative.
     #[expect(clippy::type_complexity, reason = "two ends, each with a place and derivatives")]
-    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], CallError> {
+    fn neighbours(
+        &self,
+        options: &CurveOptions<T>,
+    ) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], CallError> {
         let mut found = [None; 2];
         let joins = self.joins.as_deref().unwrap_or_default();
         let ([first, .., last], false) = (self.points.as_slice(), joins.is_empty()) else {
@@ -159,10 +174,10 @@ impl<T: Real> FairCurve<T> {
         if &*self.mode != "optimum" {
             return Err(only("is an optimum", &format!("mode = \"{}\"", self.mode)));
         }
-        if &*self.r#as == "points" {
-            return Err(only("has its points on it, or as control points", "as = \"points\""));
-        }
-        let own = [first, last].map(|p| p.xyz);
+        let own = match options.control_space(self.points.len())? {
+            Some(space) => self.ends_on(&space),
+            None => [first, last].map(|p| p.xyz),
+        };
         let extent =
             self.points.iter().map(|p| (p.xyz.re() - own[0].re()).norm()).fold(0.0, f64::max);
         for (k, other) in joins.iter().enumerate() {
@@ -202,8 +217,8 @@ impl<T: Real> FairCurve<T> {
     }
 }
 
-/// Error about one of the joined curves.
-fn unjoined(error: &FairError, joins: [Option<usize>; 2]) -> Option<CallError> {
+/// Error about one of the joined curves, whose conditions come after `others`.
+fn unjoined(error: &FairError, joins: [Option<usize>; 2], others: usize) -> Option<CallError> {
     let present: Vec<usize> = joins.iter().flatten().copied().collect();
     let about = |k: Option<&usize>, id: &'static str, message: String| {
         let fault = CallError::new(id, message);
@@ -211,7 +226,7 @@ fn unjoined(error: &FairError, joins: [Option<usize>; 2]) -> Option<CallError> {
     };
     Some(match error {
         FairError::Contradiction { conditions, miss, .. } if !present.is_empty() => {
-            let whose = conditions.first().and_then(|c| present.get(c / 6));
+            let whose = conditions.first().and_then(|c| present.get(c.checked_sub(others)?));
             let message = format!(
                 "the curvature of a curve that it joins cannot be met within the tolerance (missed \
                  by {miss:.3e})"
@@ -232,8 +247,8 @@ fn unjoined(error: &FairError, joins: [Option<usize>; 2]) -> Option<CallError> {
 
 impl<T: Real> Build<T> for FairCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let neighbours = self.neighbours()?;
         let options = curve_options!(self, POINTS);
+        let neighbours = self.neighbours(&options)?;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let plain: Vec<_> = points.iter().map(|p| p.re()).collect();
         let joins = neighbours.map(|n| n.map(|(k, _)| k));
@@ -247,7 +262,9 @@ impl<T: Real> Build<T> for FairCurve<T> {
             turns: true,
             spacings: &SPACINGS,
         };
-        let unmade = |error: &FairError| unjoined(error, joins);
+        let tangents = self.tangents.iter().flatten().count();
+        let others = context.through.len() + context.keep.len() + tangents;
+        let unmade = |error: &FairError| unjoined(error, joins, others);
         let FairedSpline { curve, members, kept } = options.faired(&points, context, unmade)?;
         let [first, .., last] = self.points.as_slice() else {
             return Err(

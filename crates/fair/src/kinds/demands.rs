@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(crate) struct Demands<T> {
     pub shape: Vec<ShapeCondition>,
     /// Conditions with their parameters in [0, 1].
-    pub conditions: Vec<(f64, Demand)>,
+    pub conditions: Vec<(f64, Demand<T>)>,
     pub tolerances: Option<Vec<T>>,
     /// Points, from 1.
     pub fixed: Vec<usize>,

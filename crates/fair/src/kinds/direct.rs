@@ -41,7 +41,7 @@ pub(crate) struct DirectCurve<T> {
     pub tolerances: Option<Vec<T>>,
     /// Numbers, from 1, of points that do not move.
     pub fixed: Vec<usize>,
-    pub conditions: Vec<(f64, Demand)>,
+    pub conditions: Vec<(f64, Demand<T>)>,
 }
 
 pub(crate) struct DirectResult<T> {
@@ -68,8 +68,8 @@ struct MovedControlPoints<T> {
     steps: Option<usize>,
 }
 
-const MOVING_KNOTS: &str = "derivatives of a bound on the curve, of steps or joins are not known where parameters \
-                            follow the points: take spacing \"index\"";
+const MOVING_KNOTS: &str = "derivatives of a bound on the curve or of steps are not known where parameters follow the \
+                            points: take spacing \"index\"";
 const FITTED: &str = "derivatives of fits by least squares and of fits with knots of their own are not known: name \
                       neither count nor knots";
 const STEPS: &str =
@@ -313,12 +313,14 @@ impl<T: Real> DirectCurve<T> {
                 .ends
                 .map(|e| end(e.unwrap_or(EndContinuity::of_control(self.role == PointRole::Fit)))),
         };
-        let (mut conditions, mut targets) = (Vec::new(), Vec::new());
-        for (at, other) in self.joins.iter().enumerate() {
-            let Some(other) = other else { continue };
+        let (mut conditions, mut targets, mut owners) = (Vec::new(), Vec::new(), Vec::new());
+        let joined_ends = self.joins.iter().enumerate();
+        let joined_ends = joined_ends.filter_map(|(at, other)| other.as_ref().map(|o| (at, o)));
+        for (k, (at, other)) in joined_ends.enumerate() {
             job.ends[at] = EndContinuity::Position;
             let plain = other.map(|v| v.re());
             conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
+            owners.resize(conditions.len(), self.conditions.len() + k);
             let aims = joined(end_jet(space, points, at == 1), *other)?;
             targets.extend(aims.iter().flat_map(|v| v.to_array()));
         }
@@ -327,8 +329,9 @@ impl<T: Real> DirectCurve<T> {
         if !self.conditions.is_empty() && !still {
             return Err(FairError::NoDerivative(CONDITIONS));
         }
-        for &(t, demand) in &self.conditions {
-            conditions.extend(demand.conditions(space, &job.points, t)?);
+        for (k, &(t, demand)) in self.conditions.iter().enumerate() {
+            conditions.extend(demand.re().conditions(space, &job.points, t)?);
+            owners.resize(conditions.len(), k);
         }
         let lifted =
             |points: Vec<Vec3<f64>>| points.into_iter().map(Vec3::lifted).collect::<Vec<Vec3<T>>>();
@@ -339,12 +342,13 @@ impl<T: Real> DirectCurve<T> {
             CurveMethod::Optimum => {
                 let mut options = OptimumOptions::of(measure);
                 options.bound = self.bound.unwrap_or(match self.role {
-                    PointRole::Points => Bound::ControlPoints,
-                    _ => Bound::Bezier,
+                    PointRole::Fit => Bound::Bezier,
+                    _ => Bound::ControlPoints,
                 });
                 options.accuracy = ACCURACY;
                 options.conditions = conditions;
-                let (points, best) = optimum_with(&job, &options, points, tolerances, &targets)?;
+                let made = optimum_with(&job, &options, points, tolerances, &targets);
+                let (points, best) = made.map_err(|error| error.owned_by(&owners))?;
                 let (certificate, active) = (Some(best.certificate), Some(best.active));
                 Ok(MovedControlPoints { points, certificate, active, steps: None })
             }

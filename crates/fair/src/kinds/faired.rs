@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Bound, Demand, EndContinuity, FairError, Goal, KnotRemovalOptions, Motion, ParameterSpacing,
-    PointSpacing, RemovalStep, Rule, Stops,
+    PointSpacing, RemovalStep, Rule, Space, Stops,
 };
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::{CallError, FieldId};
@@ -22,7 +22,7 @@ pub(crate) struct CurveContext<T> {
     pub joins: [Option<[Vec3<T>; 2]>; 2],
     /// Points on the curve, and quantities to preserve.
     pub through: Vec<Vec3<T>>,
-    pub keep: Vec<Demand>,
+    pub keep: Vec<Demand<T>>,
     /// Field of the preserved quantities.
     pub keep_field: FieldId,
     /// Minimum condition at the ends.
@@ -88,30 +88,64 @@ impl<T: Real> CurveOptions<T> {
         let unmade = |e: FairError| unmade(&e).unwrap_or_else(|| self.unmade(e));
         let demands = self.demands(points.len(), &context)?;
         let method = self.method()?;
-        let role = role(&self.role, self.fields.role)?;
+        let role = self.role()?;
         let bound = self.bound()?;
-        let (intent, spacing) = self.intent(&context)?;
-        let optimum = matches!(method, CurveMethod::Optimum);
-        let alone = context.joins.iter().all(Option::is_none);
+        let (mut intent, spacing) = self.intent(&context)?;
         let index = spacing == PointSpacing::Given(ParameterSpacing::Uniform);
         let own = self.own()?;
-        let given = own.knots.is_some() || own.weights.is_some();
+        let given = own.knots.is_some() || own.weights.is_some() || self.count.is_some();
         // With `as = "points"` the interpolating curve is faired.
-        let data = role != PointRole::Control && (!index || bound.is_some());
-        let near = data && optimum && alone && !given && self.count.is_none();
-        if near && matches!(bound, None | Some(None)) {
-            if let Some((what, field)) = self.stepwise_only() {
-                return Err(self.elsewhere(what, field, "mode = \"faithful\""));
-            }
-            let (curve, figures) = intent.near(points, demands, spacing).map_err(unmade)?;
-            // A free end leaves its point, and a closed curve has no ends.
-            let still = self.tolerance.re() == 0.0;
-            let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
-            let kept = intent.ends.map(|e| !intent.closed && (keeps(e) || still));
-            let members = figures.members().to_vec();
-            return Ok(FairedSpline { curve: FairedCurve::Moving(curve), members, kept });
+        let near = matches!(method, CurveMethod::Optimum)
+            && !given
+            && match role {
+                PointRole::Fit => matches!(bound, None | Some(None)),
+                PointRole::Points => bound.is_none() && !index,
+                PointRole::Control => false,
+            };
+        if !near {
+            return self.direct(
+                points,
+                context,
+                demands,
+                (role, method, bound, intent, own),
+                unmade,
+            );
         }
-        self.direct(points, context, demands, (role, method, bound, intent, own), unmade)
+        if let Some((what, field)) = self.stepwise_only() {
+            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+        }
+        let mut demands = demands;
+        for (end, other) in context.joins.iter().enumerate() {
+            let Some(other) = other else { continue };
+            intent.ends[end] = Some(EndContinuity::Position);
+            demands.conditions.push((end as f64, Demand::Join(*other)));
+        }
+        let (curve, figures) = intent.near(points, demands, spacing).map_err(unmade)?;
+        // A free end leaves its point, and a closed curve has no ends.
+        let still = self.tolerance.re() == 0.0;
+        let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
+        let kept = intent.ends.map(|e| !intent.closed && (keeps(e) || still));
+        let members = figures.members().to_vec();
+        Ok(FairedSpline { curve: FairedCurve::Moving(curve), members, kept })
+    }
+
+    /// The role of the points: by default data of the optimum, control points of the other modes.
+    pub fn role(&self) -> Result<PointRole, CallError> {
+        match self.role.as_deref() {
+            Some(word) => role(word, self.fields.role),
+            None if &*self.mode == "optimum" => Ok(PointRole::Fit),
+            None => Ok(PointRole::Control),
+        }
+    }
+
+    /// The space of an open spline whose control points are the points; none for data.
+    pub fn control_space(&self, count: usize) -> Result<Option<Space>, CallError> {
+        let moved = &*self.spacing == "index" || self.bound.is_some();
+        Ok(match self.role()? {
+            PointRole::Control => self.own()?.space(self.degree, count).ok(),
+            PointRole::Points if moved => Space::floating(self.degree, count).ok(),
+            _ => None,
+        })
     }
 
     /// A curve faired by moving control points.
@@ -135,7 +169,7 @@ impl<T: Real> CurveOptions<T> {
         if bound == Some(None) {
             let text = "the bound \"data\" is for optima near their points";
             return Err(CallError::new("not-near", text)
-                .expected("as = \"fit\", mode = \"optimum\", without joins, knots and count")
+                .expected("as = \"fit\", mode = \"optimum\", without knots, weights and count")
                 .found("bound = \"data\"")
                 .in_field(fields.bound));
         }
@@ -171,8 +205,11 @@ impl<T: Real> CurveOptions<T> {
         {
             return Err(self.elsewhere(what, field, "mode = \"faithful\""));
         }
-        if own.weights.is_some() && context.joins.iter().any(Option::is_some) {
-            return Err(CallError::new("not-control", "weights and joins do not go together")
+        let conditioned =
+            context.joins.iter().any(Option::is_some) || !demands.conditions.is_empty();
+        if own.weights.is_some() && conditioned {
+            let text = "weights do not go together with joins, through, tangents and keep";
+            return Err(CallError::new("not-control", text)
                 .expected("one of them")
                 .found("both")
                 .in_field(fields.weights));
@@ -200,11 +237,9 @@ impl<T: Real> CurveOptions<T> {
                 "as = \"fit\": the index is the parameter here",
             ));
         }
-        // Stepwise modes and joins are parametrised by index by default.
-        let by_chords = fitted || bound.is_some();
         intent.spacing = match &*self.spacing {
             "chord" | "centripetal" | "index" => intent.spacing,
-            "auto" if by_chords && role == PointRole::Fit => ParameterSpacing::Chord,
+            "auto" if role == PointRole::Fit => ParameterSpacing::Chord,
             "auto" => ParameterSpacing::Uniform,
             _ => {
                 let expected = "\"chord\", \"centripetal\" or \"index\"";
@@ -235,9 +270,11 @@ impl<T: Real> CurveOptions<T> {
         };
         let spline = spline
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(fields.points))?;
-        // Least-squares fits interpolate their ends too.
+        // Least-squares fits interpolate their ends too; control points without multiple end knots are
+        // no ends.
         let keeps = |e: Option<EndContinuity>| e.is_some_and(|e| e.kept() > 0);
-        let end = |at: usize| !closed && (keeps(kept[at]) || joined[at]);
+        let clamped = made.space.is_clamped();
+        let end = |at: usize| !closed && clamped && (keeps(kept[at]) || joined[at]);
         let members = made.figures.members_of_moves();
         Ok(FairedSpline { curve: FairedCurve::Still(spline), members, kept: [end(0), end(1)] })
     }
@@ -401,7 +438,7 @@ impl<T: Real> CurveOptions<T> {
                         .in_item(k)
                         .in_field(field));
                 }
-                let v = v.re();
+                let v = *v;
                 conditions.push((
                     t.re(),
                     if direction { Demand::Tangent(v) } else { Demand::Through(v) },
@@ -448,7 +485,9 @@ impl<T: Real> CurveOptions<T> {
 
     fn not_near(&self, what: &str, field: FieldId) -> CallError {
         CallError::new("not-near", format!("`{what}` is for curves near their points"))
-            .expected("as = \"fit\", mode = \"optimum\", without joins, knots, count and spacing \"index\"")
+            .expected(
+                "as = \"fit\", mode = \"optimum\", without knots, weights, count and another bound",
+            )
             .in_field(field)
     }
 

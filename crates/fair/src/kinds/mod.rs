@@ -127,13 +127,14 @@ pub(crate) struct GivenKnots {
 }
 
 impl GivenKnots {
-    /// Open space of `count` control points on the given knots, by default clamped uniform ones.
+    /// Open space of `count` control points on the given knots, by default uniform ones without
+    /// multiple ends.
     pub fn space(&self, degree: usize, count: usize) -> Result<Space, FairError> {
         let Some(knots) = &self.knots else {
             return if count < degree + 2 {
                 Err(FairError::TooFew { expected: degree + 2, actual: count })
             } else {
-                Space::clamped(degree, count)
+                Space::floating(degree, count)
             };
         };
         let (expected, actual) = (count + degree + 1, knots.len());

@@ -105,13 +105,15 @@ shared_options! {
         /// Steps per point of each curve and pass in the mode "faithful".
         #[field(default = 3, min = 1, max = 1000)]
         steps: usize,
-        /// What the tolerance bounds: "points", their moves; "curve": no curve is farther from the one
-        /// before than the smaller tolerance of the two points beside. No derivatives.
+        /// What the tolerance bounds: "points", their moves, and 1.5 tolerances between them; "curve": no
+        /// curve is farther from the one before than the smaller tolerance of the two points beside. No
+        /// derivatives of "curve".
         #[field(default = "points")]
         bound: Arc<str>,
         /// What curves have to have, exactly, by their numbers: "2: convex", "2: straight=3-9:1,0,0"
         /// (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points on the others), "2..5 at
-        /// 8..12: flat:0,1,0" (these in one plane), "1: tangent=start:1,0,0". No derivatives.
+        /// 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9" (on a circle, tangent to straight runs
+        /// beside it), "1: tangent=start:1,0,0". No derivatives.
         #[field(default)]
         shape: Option<Vec<Arc<str>>>,
         /// Numbers of curves, from 1, along which all curves that cross them break.

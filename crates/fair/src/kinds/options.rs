@@ -102,9 +102,10 @@ macro_rules! shared_options {
             #[field(default)]
             last_end: Option<Arc<str>>,
             /// Quantity that the tolerance bounds: "data" (distance of each point from the curve;
-            /// default for fits), "curve" (distance of the curve from the initial one, everywhere;
-            /// default for control points) or "points" (move of each control point). "curve" and
-            /// "points" have derivatives if the parameters are constant (`spacing = "index"`).
+            /// default for optima of data), "curve" (distance of the curve from the initial one,
+            /// everywhere; default for other fits) or "points" (move of each control point; default
+            /// for control points). "curve" and "points" have derivatives if the parameters are
+            /// constant (`spacing = "index"`).
             #[field(default)]
             bound: Option<Arc<str>>,
             /// Number of control points of a least-squares fit, less than the number of points. No
@@ -184,7 +185,7 @@ pub(crate) struct CurveOptions<T> {
     pub fields: CurveFields,
     pub tolerance: T,
     pub measure: Option<Arc<str>>,
-    pub role: Arc<str>,
+    pub role: Option<Arc<str>>,
     pub breaks: Vec<usize>,
     pub ends: Option<Arc<str>>,
     pub last_end: Option<Arc<str>>,

@@ -67,7 +67,7 @@ shared_options! {
         degree: usize,
         /// Parametrisation of the magnets along the path, as for `FairCurve`: "chord",
         /// "centripetal", "x" (u) or "y" (v) if monotone, "index" or "curvature". "auto" is
-        /// "chord", for single steps "index".
+        /// "chord", with control points "index".
         #[field(default = "auto")]
         spacing: Arc<str>,
     }
@@ -84,8 +84,8 @@ shared_options! {
         #[field(default)]
         through: Option<Vec<SurfacePoint<T>>>,
         /// Role of the magnets; see `FairCurve`.
-        #[field(default = "fit")]
-        r#as: Arc<str>,
+        #[field(default)]
+        r#as: Option<Arc<str>>,
         /// 1: closed path; the first magnet is not repeated.
         #[field(default = 0, min = 0, max = 1)]
         closed: usize,
@@ -166,9 +166,9 @@ impl<T: Real> Build<T> for FairSnake<T> {
             turns: false,
             spacings: &SPACINGS,
         };
-        let FairedSpline { curve, members, .. } = options.faired(&path, asked, |_| None)?;
-        let open = self.closed == 0;
-        let ends = [first.point.key, last.point.key].map(|key| key.filter(|_| open));
+        let FairedSpline { curve, members, kept } = options.faired(&path, asked, |_| None)?;
+        let end = |at: usize, magnet: &SurfacePoint<T>| magnet.point.key.filter(|_| kept[at]);
+        let ends = [end(0, first), end(1, last)];
         let shape = SplineOnSurface { surface: surface.clone(), path: curve, ends };
         let snake = CurveRef::snake(shape, surface, context.nesting);
         Ok(Value::Curve(snake.with_figures(&members)))

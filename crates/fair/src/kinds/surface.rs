@@ -62,7 +62,8 @@ shared_options! {
         /// Measure to minimise; see `FairCurve`.
         #[field(default = "second")]
         measure: Arc<str>,
-        /// Role of the points: "fit" (interpolated, then faired) or "control" (control points).
+        /// Role of the points: "fit" (interpolated, then faired) or "control" (control points of a
+        /// uniform surface, whose rims are not at its points).
         #[field(default = "fit")]
         r#as: Arc<str>,
         /// Polynomial degree along u, and along v without `degree_v`.

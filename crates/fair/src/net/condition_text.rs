@@ -8,7 +8,7 @@ use moldloft_num::Vec3;
 const GRAMMAR: &str = "a line, several as `WL 2..WL 5`, or where others cross them, as \
                        `WL 2..WL 5 at station 4..station 8`; a colon; and flat, flat:0,1,0 with its normal, \
                        tangent=start:0,1,0, tangent=end:0,1,0, or a shape of a curve such as convex=4-10, \
-                       straight:1,0,0, within=0,1,0:4.6";
+                       straight:1,0,0, arc=5-9, within=0,1,0:4.6";
 
 /// Curves as texts name them.
 #[derive(Clone, Copy, Debug)]

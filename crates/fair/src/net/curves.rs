@@ -14,15 +14,18 @@ use crate::{
 };
 use moldloft_num::Vec3;
 
-/// The displacement of a curve between its points, in tolerances, from which it is named where the
-/// bound is that of the points.
+/// The displacement of a curve between its points, in tolerances, that it has at most where the bound is that
+/// of the points; where conditions leave no such network a curve that is farther is named.
 pub const SWING: f64 = 1.5;
 
 /// How many times spans are halved, so that their Bézier points are near the curve.
-const HALVINGS: usize = 2;
+pub(super) const HALVINGS: usize = 2;
+
+/// Rounding of a certified distance, relative.
+const CERTIFIED_ROUNDING: f64 = 128.0 * f64::EPSILON;
 
 /// Rounding of that bound, relative.
-const SWING_SLACK: f64 = 1e-6;
+pub(super) const SWING_SLACK: f64 = 1e-6;
 
 /// A curve of a network before and after, on the same knots.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +45,16 @@ impl CurvePair {
     /// As [`Job::new`].
     pub fn deviation(&self) -> Result<Deviation, FairError> {
         let job = Job::new(self.space.clone(), self.before.clone(), 0.0)?;
-        Ok(deviation(&job, &self.after))
+        let mut deviation = deviation(&job, &self.after);
+        let moved: Vec<Vec3<f64>> =
+            self.after.iter().zip(&self.before).map(|(p, q)| *p - *q).collect();
+        let mut most = 0.0f64;
+        each_bezier(&self.space, HALVINGS, |entries| {
+            let off = entries.iter().fold(Vec3::zero(), |s, &(c, x)| s + moved[c] * x);
+            most = most.max(off.norm());
+        });
+        deviation.certified = deviation.certified.min(most * (1.0 + CERTIFIED_ROUNDING));
+        Ok(deviation)
     }
 }
 
@@ -138,7 +150,11 @@ impl Network {
     /// point.
     ///
     /// `halvings` of each span bring the Bézier points nearer to the curve.
-    fn bezier_limits(&self, k: usize, halvings: usize) -> Result<Vec<BezierLimit>, FairError> {
+    pub(super) fn bezier_limits(
+        &self,
+        k: usize,
+        halvings: usize,
+    ) -> Result<Vec<BezierLimit>, FairError> {
         let own = &self.strands[k].points;
         let Some(layout) = self.layout(k).transpose()? else { return Ok(Vec::new()) };
         let control = control_map(&layout, own.len())?;
@@ -158,17 +174,18 @@ impl Network {
             let factors: Vec<(usize, f64)> = factors.filter(|(_, f)| *f != 0.0).collect();
             let mut near: Vec<&(usize, f64)> = factors.iter().collect();
             near.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-            let radii_of = |near: &[&(usize, f64)]| {
-                let all = near.iter().map(|(i, _)| self.limit.radii[*i]);
-                all.filter(|&r| r > 0.0).reduce(f64::min)
+            let radii = &self.limit.radii;
+            let least_of = |near: &[&(usize, f64)]| {
+                let all = near.iter().map(|(i, _)| *i).filter(|&i| radii[i] > 0.0);
+                all.reduce(|a, b| if radii[b] < radii[a] { b } else { a })
             };
             let two = &near[..near.len().min(2)];
-            let free = two.iter().any(|(i, _)| self.limit.radii[*i].is_infinite());
-            let radius = radii_of(two).or_else(|| radii_of(&near)).filter(|_| !free);
+            let free = two.iter().any(|(i, _)| radii[*i].is_infinite());
+            let owner = least_of(two).or_else(|| least_of(&near)).filter(|_| !free);
             let single = factors.iter().filter(|(_, f)| f.abs() > 1e-12).count() < 2;
-            if let (Some(radius), false) = (radius, single) {
-                let beside = near[0].0;
-                out.push(BezierLimit { entries: factors, radius, beside });
+            if let (Some(owner), false) = (owner, single) {
+                let (radius, beside) = (radii[owner], near[0].0);
+                out.push(BezierLimit { entries: factors, radius, owner, beside });
             }
         });
         Ok(out)
@@ -176,7 +193,12 @@ impl Network {
 
     /// False where no Bézier point of curve `k` is displaced by more than `share` of its least
     /// tolerance.
-    fn may_swing(&self, k: usize, moves: &[Vec3<f64>], share: f64) -> Result<bool, FairError> {
+    pub(super) fn may_swing(
+        &self,
+        k: usize,
+        moves: &[Vec3<f64>],
+        share: f64,
+    ) -> Result<bool, FairError> {
         let own = &self.strands[k].points;
         let moved: Vec<Vec3<f64>> = own.iter().map(|&i| moves[i]).collect();
         if moved.iter().all(|&v| v == Vec3::zero()) {
@@ -195,7 +217,7 @@ impl Network {
     }
 
     /// Limits on the points alone.
-    fn point_limits(&self) -> DataLimits {
+    pub(super) fn point_limits(&self) -> DataLimits {
         let radii = self.limit.radii.clone();
         let rows = SparseRows::identity(self.points.len());
         // Without a bound on some there is no certificate.
@@ -264,22 +286,24 @@ impl Network {
         (off > share * largest).then(|| CurveSwing { curve: k, point, share: off / largest })
     }
 
-    fn moves(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+    pub(super) fn moves(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
         points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect()
     }
 }
 
 /// A Bézier point of a curve's displacement: its entries over the moves of the network's points, the
-/// tolerance next to it, and the point that moves it most.
-struct BezierLimit {
-    entries: Vec<(usize, f64)>,
-    radius: f64,
+/// tolerance next to it with the point that has it, and the point that moves it most.
+#[derive(Clone)]
+pub(super) struct BezierLimit {
+    pub entries: Vec<(usize, f64)>,
+    pub radius: f64,
+    pub owner: usize,
     beside: usize,
 }
 
 impl BezierLimit {
     /// Its displacement in tolerances.
-    fn share(&self, motion: Motion, moves: &[Vec3<f64>]) -> f64 {
+    pub fn share(&self, motion: Motion, moves: &[Vec3<f64>]) -> f64 {
         let off = self.entries.iter().fold(Vec3::zero(), |s, &(i, f)| s + moves[i] * f);
         let size = match motion {
             Motion::Box => off.x.abs().max(off.y.abs()).max(off.z.abs()),

@@ -6,6 +6,7 @@
 //! differences buy smoothness with a bend: where a curve bends more often than the fewest changes
 //! that fit within the tolerance, the signs of its second divided differences are held.
 
+use super::between::LimitsBetween;
 use super::line_patterns::ValueTube;
 use super::shapes::EquationSpan;
 use super::sign_room::SignRoom;
@@ -14,7 +15,7 @@ use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
     moved, rounding,
 };
-use crate::optimum::{Bend, BudgetOptimum, ControlInequality, Parts};
+use crate::optimum::{Bend, Bounded, BudgetOptimum, ControlInequality, Parts};
 use crate::{Certificate, Condition, FairError, Measure, Motion, Network, RowNorm, SparseRows};
 use moldloft_num::{Real, Vec3};
 
@@ -27,8 +28,12 @@ const ALIKE: f64 = 1e-3;
 /// Rounds of weights.
 const ROUNDS: usize = 3;
 
-/// Budgets, in the goal's own, that are tried where signs leave none within it.
-const WIDER: [f64; 3] = [1.0, 1.5, f64::INFINITY];
+/// The budget where signs leave no network within the goal's own, in the squares of the nearest network that has
+/// them.
+const BESIDE: f64 = 1.2;
+
+/// Accuracy of the squares of the nearest network.
+const NEAREST: f64 = 1e-6;
 
 /// By how much a sign may be left, as a share of what the tolerances let it vary.
 const LEFT: f64 = 1e-9;
@@ -109,8 +114,10 @@ pub(super) struct LineRound<'a> {
     scales: Vec<f64>,
     /// The budget of squares in the goal's own; infinite for the fairest.
     wider: f64,
-    /// True if it is known which signs are reached.
+    /// True if it is known which signs are reached, and they leave a network within the goal's own budget.
     decided: bool,
+    /// Limits between points.
+    between: LimitsBetween,
     /// Lines that bend more than the fewest changes within their tolerances: conditions or crossing
     /// lines leave their signs no room.
     pub bent: Vec<usize>,
@@ -130,6 +137,10 @@ struct LineFairing<'a> {
     ties: (f64, usize),
     /// Start of the searches, if signs have shown that they need one.
     begin: Vec<Vec3<f64>>,
+    /// Limits between points that the results reach; none where these are not limited, or cannot be.
+    between: Option<LimitsBetween>,
+    /// The budget that these signs and limits leave, where it is known: the same for all weights.
+    wider: Option<f64>,
 }
 
 /// A net within a network, with the places of its points there.
@@ -192,7 +203,7 @@ impl Network {
     ) -> Result<MovingRows<T>, FairError> {
         let rows = match at {
             Some(at) => {
-                let own = self.strands[k].divided(measure, at).into_iter();
+                let own = self.strands[k].divided(measure, at, &self.arcs_of(k)).into_iter();
                 let placed = |(c, f)| (self.strands[k].points[c], f);
                 own.map(|row| row.into_iter().map(placed).collect()).collect()
             }
@@ -232,13 +243,15 @@ impl Network {
         };
         let mut out = Vec::new();
         let mut bounds = vec![0];
-        bounds.extend(strand.marks.iter().chain(strand.runs.iter().flatten()).copied());
+        let arcs = self.arcs_of(k);
+        let shapes = strand.runs.iter().chain(&arcs);
+        bounds.extend(strand.marks.iter().chain(shapes.clone().flatten()).copied());
         bounds.push(strand.points.len() - 1);
         bounds.sort_unstable();
         bounds.dedup();
         for pair in bounds.windows(2) {
-            let straight = strand.runs.iter().any(|run| run[0] <= pair[0] && pair[1] <= run[1]);
-            if straight {
+            // Runs and arcs have the signs of their shape.
+            if shapes.clone().any(|run| run[0] <= pair[0] && pair[1] <= run[1]) {
                 continue;
             }
             // A curve does not bend back where it leaves a run.
@@ -406,7 +419,19 @@ impl Network {
         }
         let asked = parts.halves.clone();
         let (begin, ties) = (Vec::new(), (parts.ties.forced, parts.ties.removed));
-        let mut fairing = LineFairing { network: self, pull, share, ties, signs, asked, begin };
+        let limited = self.limits_between() && parts.ties.is_empty();
+        let between = limited.then(LimitsBetween::default);
+        let mut fairing = LineFairing {
+            network: self,
+            pull,
+            share,
+            ties,
+            signs,
+            asked,
+            begin,
+            between,
+            wider: None,
+        };
         let value = |(k, rows)| self.line_value(k, rows, &self.points);
         let whole: f64 = own.iter().enumerate().map(value).sum();
         let mut rounds: Vec<LineRound<'a>> = Vec::new();
@@ -470,8 +495,9 @@ impl Network {
         for round in rounds {
             if !round.decided {
                 return Err(FairError::NoDerivative(
-                    "which changes of curvature the network keeps from is not decided to rounding, so \
-                     its derivatives are not known: take the goal \"budget\"",
+                    "which changes of curvature the network keeps from is not decided to rounding, or they \
+                     leave none within the goal's budget, so its derivatives are not known: take the goal \
+                     \"budget\"",
                 ));
             }
             if round.found.share == 0.0 {
@@ -495,6 +521,8 @@ impl Network {
                 (round.found.weight > 0.0).then(|| pull.clone().scaled(round.found.weight.sqrt()));
             let solved = parts.whole()?;
             check_decided(&round.found, &solved)?;
+            round.between.check(&solved, &parts.bounded, &parts.frozen, ats)?;
+            let own = round.between.tolerances(tolerances);
             let slope = weighed.slope(&solved.optimum.points);
             let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
             let first = parts.conditions.len() - round.reached.len();
@@ -509,7 +537,7 @@ impl Network {
             let targets = self.sign_values(&parts.conditions[..first], &round.reached, numbers);
             let moving = GoalVariation {
                 originals: points.to_vec(),
-                tolerances,
+                tolerances: &own,
                 pulled: owners.iter().map(|&i| tolerances[i]).collect(),
                 targets: &targets,
                 forces,
@@ -540,10 +568,24 @@ impl LineFairing<'_> {
         self.pull.sum_sq(&moved)
     }
 
-    /// The optimum at weights, where no line has more changes of curvature than the fewest.
+    /// The optimum at weights, where no line has more changes of curvature than the fewest, and none swings
+    /// beyond its limits.
     fn round<'a>(&mut self, parts: &Parts<'a>) -> Result<LineRound<'a>, FairError> {
         loop {
-            let round = self.under_signs(parts)?;
+            let mut limited = parts.clone();
+            if let Some(between) = self.between.as_ref().filter(|between| !between.is_empty()) {
+                limited.bounded = between.bounded(self.network);
+            }
+            let round = match self.under_signs(&limited) {
+                Err(FairError::Shape { .. } | FairError::Contradiction { .. })
+                    if matches!(limited.bounded, Bounded::Data(_)) && self.between.is_some() =>
+                {
+                    // Conditions leave no such network: what is farther is named.
+                    (self.between, self.wider) = (None, None);
+                    continue;
+                }
+                other => other?,
+            };
             let points = &round.found.optimum.points;
             let mut more = false;
             for line in self.signs.iter_mut().filter(|line| !line.held) {
@@ -551,9 +593,19 @@ impl LineFairing<'_> {
                     (line.held, more) = (true, true);
                 }
             }
-            if !more {
-                return Ok(self.reported(round));
+            if let Some(between) = &mut self.between
+                && !more
+                && between.extend(self.network, points)?
+            {
+                // A start within the other limits may be beyond these.
+                self.begin = Vec::new();
+                more = true;
             }
+            if !more {
+                let between = self.between.clone().unwrap_or_default();
+                return Ok(LineRound { between, ..self.reported(round) });
+            }
+            self.wider = None;
         }
     }
 
@@ -579,10 +631,20 @@ impl LineFairing<'_> {
             if !self.begin.is_empty() {
                 parts.begin.clone_from(&self.begin);
             }
-            for wider in WIDER {
-                if let Some((found, wider)) = self.within_budget(&parts, wider)? {
-                    return Ok(self.settled(&parts, &held, found, wider));
-                }
+            if self.wider.is_none()
+                && let Some((found, wider)) = self.within_budget(&parts, 1.0)?
+            {
+                return Ok(self.settled(&parts, &held, found, wider));
+            }
+            if self.wider.is_none() {
+                self.wider = self.least_budget(&parts)?;
+            }
+            if let Some(wider) = self.wider
+                && let Some((found, wider)) = self.within_budget(&parts, wider)?
+            {
+                let round = self.settled(&parts, &held, found, wider);
+                // The budget follows the squares of the nearest network.
+                return Ok(LineRound { decided: false, ..round });
             }
             let costs: Vec<f64> = self.held().flat_map(|line| costs(&line.left)).collect();
             let room = SignRoom::of(&parts, self.asked.len(), &costs)?;
@@ -598,7 +660,7 @@ impl LineFairing<'_> {
             } else {
                 vec![true; held.len()]
             };
-            self.begin = room.moves;
+            (self.begin, self.wider) = (room.moves, None);
             let mut given_up = given_up.into_iter();
             for line in self.signs.iter_mut().filter(|line| line.held) {
                 line.left.retain_mut(|sign| {
@@ -618,6 +680,28 @@ impl LineFairing<'_> {
         let (forced, removed) = self.ties;
         let free = self.pull.len().saturating_sub(removed) as f64 / 3.0;
         self.share.map_or(f64::INFINITY, |share| forced + wider * share * free)
+    }
+
+    /// The budget, in the goal's own, that the nearest network under half-spaces leaves, and none where there
+    /// is no such network.
+    fn least_budget(&self, parts: &Parts<'_>) -> Result<Option<f64>, FairError> {
+        let Some(share) = self.share else { return Ok(None) };
+        let (forced, removed) = self.ties;
+        let own = share * self.pull.len().saturating_sub(removed) as f64 / 3.0;
+        let nearest = Parts {
+            measure: SparseRows::new(),
+            pull: Some(self.pull.clone()),
+            accuracy: NEAREST,
+            ..parts.clone()
+        };
+        match nearest.solve() {
+            Ok(found) => {
+                let squares = (self.squares(&found.points) - forced).max(0.0);
+                Ok(Some((BESIDE * squares / own).max(1.0)).filter(|wider| wider.is_finite()))
+            }
+            Err(FairError::Shape { .. } | FairError::Contradiction { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     fn held(&self) -> impl Iterator<Item = &LineSigns> {
@@ -696,7 +780,8 @@ impl LineFairing<'_> {
         found.optimum = near.optimum;
         let (parts, scales) = (parts.clone(), Vec::new());
         let (reached, bent) = (Vec::new(), Vec::new());
-        LineRound { parts, scales, found, reached, wider, decided: false, bent }
+        let between = LimitsBetween::default();
+        LineRound { parts, scales, found, reached, wider, decided: false, between, bent }
     }
 
     /// The optimum where these signs are conditions.
@@ -735,7 +820,7 @@ impl LineFairing<'_> {
         let held = !self.network.conditions.is_empty();
         let found = path.follow(goal, norm, held, &mut parts, self.pull)?;
         parts.pull = None;
-        let (scales, bent) = (Vec::new(), Vec::new());
-        Ok(LineRound { parts, scales, found, reached, wider, decided: true, bent })
+        let (scales, bent, between) = (Vec::new(), Vec::new(), LimitsBetween::default());
+        Ok(LineRound { parts, scales, found, reached, wider, decided: true, between, bent })
     }
 }

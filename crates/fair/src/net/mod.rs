@@ -1,5 +1,7 @@
 //! Nets of surfaces, networks of curves, and surfaces with common edges.
 
+pub mod arcs;
+mod between;
 pub mod condition_text;
 mod conditions;
 pub mod curves;

@@ -27,6 +27,8 @@ pub struct Network {
     pub bound: Bound,
     /// Its conditions.
     pub(super) conditions: Vec<NetworkCondition>,
+    /// The circular arcs among them: the curve, and the places of its points.
+    pub(super) arcs: Vec<(usize, [usize; 2])>,
     /// Directions in which single points do not move.
     pub(super) held: Vec<(usize, Vec3<f64>)>,
     /// The one direction in which the points of each curve move, if there is one.
@@ -73,7 +75,7 @@ impl Network {
     }
 
     fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {
-        let (kept, conditions, held, ways, patches, seams, across) = Default::default();
+        let (kept, conditions, arcs, held, ways, patches, seams, across) = Default::default();
         let bound = Bound::ControlPoints;
         Self {
             points,
@@ -82,6 +84,7 @@ impl Network {
             kept,
             bound,
             conditions,
+            arcs,
             held,
             ways,
             net: None,
@@ -285,7 +288,7 @@ impl Network {
         let own = &strand.points;
         let mut all = SparseRows::new();
         if let Some(at) = &strand.at {
-            for row in strand.divided(measure, at) {
+            for row in strand.divided(measure, at, &self.arcs_of(k)) {
                 all.push(row.into_iter().map(|(c, f)| (own[c], f)));
             }
             return Ok(all);

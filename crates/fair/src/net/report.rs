@@ -1,5 +1,6 @@
 //! Reports of the fairing of networks.
 
+use crate::net::arcs::NetworkArc;
 use crate::net::curves::CurveSwing;
 use crate::optimum::certificate::gap;
 use crate::{Bound, Certificate, Condition, FairError, Goal, Measure, Network};
@@ -25,6 +26,8 @@ pub struct NetworkReport {
     /// Curves with more inflections than their points within the tolerances require, under the goal
     /// [`Goal::Near`]: conditions or crossing curves leave no others.
     pub bent: Vec<usize>,
+    /// The circular arcs that it was asked to have.
+    pub arcs: Vec<NetworkArc>,
     /// Curves that are farther from their originals than their bound: all along, or 1.5 tolerances
     /// where it is that of the points.
     pub swings: Vec<CurveSwing>,
@@ -96,6 +99,7 @@ impl Network {
             certificate,
             used,
             bent,
+            arcs: self.arcs_at(&points),
             swings: if self.net_parts().is_none() && self.patches.is_empty() {
                 self.swings(&points)?
             } else {

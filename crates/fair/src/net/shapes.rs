@@ -7,6 +7,7 @@
 
 use crate::curve::shaping::ShapeConstraints;
 use crate::interrogate::shape;
+use crate::net::arcs::FEWEST_POINTS;
 use crate::optimum::{ControlInequality, HeldDirections, MotionAxes};
 use crate::{Condition, FairError, InterpolationSpace, Motion, Network, ShapeCondition};
 use moldloft_num::{Vec3, gauss_points};
@@ -192,15 +193,45 @@ impl Network {
                         ));
                     }
                 }
-                ShapeCondition::Arc { .. } | ShapeCondition::Pieces(_) => {
-                    return Err(refused(owner, "arcs and counts of pieces are for single curves"));
+                ShapeCondition::Arc { between } => self.arcs.push((k, *between)),
+                ShapeCondition::Pieces(_) => {
+                    return Err(refused(owner, "counts of pieces are for single curves"));
                 }
                 _ => {}
             }
         }
+        self.check_arcs(&wanted)?;
         self.conditions = wanted;
         self.check()?;
         Ok(self)
+    }
+
+    /// Refuses arcs that overlap others, runs or breaks.
+    fn check_arcs(&self, wanted: &[NetworkCondition]) -> Result<(), FairError> {
+        for (owner, condition) in wanted.iter().enumerate() {
+            let NetworkCondition::Curve { curve, shape: ShapeCondition::Arc { between } } =
+                condition
+            else {
+                continue;
+            };
+            let strand = &self.strands[*curve];
+            let found = between[1] - between[0] + 1;
+            if found < FEWEST_POINTS {
+                let why =
+                    format!("expected {FEWEST_POINTS} points of an arc or more, found {found}");
+                return Err(refused(owner, why));
+            }
+            let arcs = self.arcs_of(*curve);
+            let overlaps = |other: &&[usize; 2]| other[0] < between[1] && between[0] < other[1];
+            let twice = arcs.iter().filter(overlaps).count() > 1;
+            if twice || strand.runs.iter().any(|run| overlaps(&run)) {
+                return Err(refused(owner, "an arc overlaps a straight run or another arc"));
+            }
+            if strand.marks.iter().any(|&m| between[0] < m && m < between[1]) {
+                return Err(refused(owner, "there is a break within the arc"));
+            }
+        }
+        Ok(())
     }
 
     /// Largest distance of a point from the first.
@@ -223,6 +254,9 @@ impl Network {
                         let ids = self.strands[*curve].points[between[0]..=between[1]].to_vec();
                         straight(ids, *along, points)
                             .ok_or_else(|| refused(owner, "the direction has no length"))?
+                    }
+                    ShapeCondition::Arc { between } => {
+                        self.arc(*curve, *between, points).map_err(|why| refused(owner, why))?
                     }
                     ShapeCondition::OneSided { direction } => {
                         let d = direction.normalized().filter(|d| d.is_finite());

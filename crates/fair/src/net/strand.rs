@@ -26,20 +26,30 @@ pub struct NetworkCurve {
 }
 
 impl NetworkCurve {
-    /// The rows of a measure over its own points, at parameters that may carry derivatives.
-    pub(super) fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
+    /// The rows of a measure over its own points, at parameters that may carry derivatives; nothing is smoothed
+    /// along `arcs`, nor across their ends but the tangent.
+    pub(super) fn divided<T: Real>(
+        &self,
+        measure: Measure,
+        at: &[T],
+        arcs: &[[usize; 2]],
+    ) -> Vec<Vec<(usize, T)>> {
         let (closed, degree) = (self.space.is_closed(), self.space.degree());
         let mut rows = measure.divided(at, closed, degree);
-        let ends = |c: &usize| self.marks.contains(c) || self.runs.iter().flatten().any(|e| e == c);
+        let shapes = || self.runs.iter().chain(arcs);
+        let ends = |c: &usize| self.marks.contains(c) || shapes().flatten().any(|e| e == c);
         let within = |c: usize, run: &[usize; 2]| run[0] <= c && c <= run[1];
+        let shaped =
+            |row: &[(usize, T)]| shapes().any(|run| row.iter().all(|&(c, _)| within(c, run)));
         rows.retain(|row| {
             let inner = &row[1..row.len() - 1];
-            let straight = self.runs.iter().any(|run| row.iter().all(|&(c, _)| within(c, run)));
-            !straight && !inner.iter().any(|(c, _)| ends(c))
+            !shaped(row) && !inner.iter().any(|(c, _)| ends(c))
         });
         let n = at.len();
         let order = measure.order(degree);
-        for &run in &self.runs {
+        for (&run, round) in
+            self.runs.iter().map(|r| (r, false)).chain(arcs.iter().map(|r| (r, true)))
+        {
             for (end, back) in [(run[1], false), (run[0], true)] {
                 // The end counts twice, the second time as the tangent of the run.
                 let step = |k: usize| if back { end.checked_sub(k) } else { Some(end + k) };
@@ -50,21 +60,47 @@ impl NetworkCurve {
                 };
                 let nodes: Option<Vec<(usize, T)>> = (0..order).map(place).collect();
                 let Some(nodes) = nodes.filter(|_| !self.marks.contains(&end)) else { continue };
-                if order < 2 || nodes[1..order - 1].iter().any(|(c, _)| ends(c)) {
+                if order < 2 || nodes[1..order - 1].iter().any(|(c, _)| ends(c)) || shaped(&nodes) {
                     continue;
                 }
                 let nodes: Vec<(usize, T)> =
                     nodes.into_iter().map(|(c, round)| (c, at[c] + round)).collect();
-                rows.push(beside_run(&nodes, run.map(|c| (c, at[c]))));
+                let slope = if round {
+                    let last = if back { run[0] + 3 } else { run[1] - 3 };
+                    let near = last.min(end)..=last.max(end);
+                    slope_at(at, near, end)
+                } else {
+                    let length = at[run[1]] - at[run[0]];
+                    vec![(run[0], -T::one() / length), (run[1], T::one() / length)]
+                };
+                rows.push(beside_run(&nodes, &slope));
             }
         }
         rows
     }
 }
 
+/// The slope at one of some points of the polynomial through them.
+fn slope_at<T: Real>(
+    at: &[T],
+    points: std::ops::RangeInclusive<usize>,
+    place: usize,
+) -> Vec<(usize, T)> {
+    let others = |k: usize| points.clone().filter(move |&l| l != k);
+    let weight = |k: usize| {
+        if k == place {
+            return others(k).fold(T::zero(), |s, l| s + T::one() / (at[k] - at[l]));
+        }
+        let above =
+            others(k).filter(|&l| l != place).fold(T::one(), |s, l| s * (at[place] - at[l]));
+        above / others(k).fold(T::one(), |s, l| s * (at[k] - at[l]))
+    };
+    points.clone().map(|k| (k, weight(k))).collect()
+}
+
 /// The weighted divided difference, as [`Measure::divided`] has it, of nodes of which the first counts
-/// twice: its slope is that of a run.
-fn beside_run<T: Real>(nodes: &[(usize, T)], run: [(usize, T); 2]) -> Vec<(usize, T)> {
+/// twice: its slope is that of a run or an arc, a sum over points.
+fn beside_run<T: Real>(nodes: &[(usize, T)], own: &[(usize, T)]) -> Vec<(usize, T)> {
     let (end, others) = (nodes[0], &nodes[1..]);
     let order = nodes.len();
     let factorial: f64 = (1..=order).map(|i| i as f64).product();
@@ -81,11 +117,10 @@ fn beside_run<T: Real>(nodes: &[(usize, T)], run: [(usize, T); 2]) -> Vec<(usize
         let product = beside.fold(apart * apart, |s, (_, l)| s * (o.1 - l.1));
         row.push((o.0, weight / product));
     }
-    let length = run[1].1 - run[0].1;
-    for (sign, (c, _)) in [(-T::one(), run[0]), (T::one(), run[1])] {
+    for &(c, weight) in own {
         match row.iter_mut().find(|e| e.0 == c) {
-            Some(entry) => entry.1 += slope * sign / length,
-            None => row.push((c, slope * sign / length)),
+            Some(entry) => entry.1 += slope * weight,
+            None => row.push((c, slope * weight)),
         }
     }
     row

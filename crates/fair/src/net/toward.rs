@@ -2,6 +2,7 @@
 
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::MovingRows;
+use crate::net::between::LimitsBetween;
 use crate::net::lines::{LineNumbers, LineRound};
 use crate::net::shapes::{EquationSpan, KEPT, MET, ROUNDS, SETTLED};
 use crate::net::strand::NetworkCurve;
@@ -13,6 +14,9 @@ use crate::optimum::{Bounded, ControlInequality, Optimum, Parts};
 use crate::{Bound, Certificate, Condition, FairError, Measure, Motion, Network, SparseRows};
 use moldloft_num::{Real, Vec3};
 
+/// Rounds in which the rest of conditions is put right.
+const LAST_ROUNDS: usize = 3;
+
 /// A goal reached, with the rows that pull and the points whose rows these are.
 struct ReachedGoal<'a> {
     found: GoalOptimum,
@@ -20,6 +24,8 @@ struct ReachedGoal<'a> {
     owners: Vec<usize>,
     /// Line by line: the rounds of the fairest, then those under a budget.
     rounds: Vec<Vec<LineRound<'a>>>,
+    /// Limits between points, of all lines together.
+    between: LimitsBetween,
 }
 
 impl Network {
@@ -65,8 +71,13 @@ impl Network {
                 && missed.0 > 0.5 * before.0
                 && let Some(mut made) = made.take()
             {
-                let span = EquationSpan::of(self, &parts.equations());
-                made.found.optimum.points = span.nearest(self, &made.found.optimum.points);
+                for _ in 0..LAST_ROUNDS {
+                    let points = &made.found.optimum.points;
+                    let mut all = base.conditions.clone();
+                    all.extend(self.linear_conditions(points)?.equations.into_iter().map(|e| e.0));
+                    let nearest = EquationSpan::of(self, &all).nearest(self, points);
+                    made.found.optimum.points = nearest;
+                }
                 return Ok(made);
             }
             let equations = self.independent(linear.equations)?;
@@ -128,12 +139,12 @@ impl Network {
         let shaped = !self.conditions.is_empty();
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
-        let mut rounds = Vec::new();
+        let (mut rounds, mut between) = (Vec::new(), LimitsBetween::default());
         if let (Goal::Near(share), true) = (goal, shaped || !conditioned) {
             if !shaped && self.exact() {
                 let value = crate::measure::value(&rows, norm, &self.points);
                 let found = GoalOptimum::unmoved(&self.points, value, false);
-                return Ok(ReachedGoal { found, pull, owners, rounds });
+                return Ok(ReachedGoal { found, pull, owners, rounds, between });
             }
             if self.has_lines(norm) && !pull.is_empty() {
                 rounds.push(self.by_lines(parts, measure, &pull, None)?);
@@ -145,7 +156,7 @@ impl Network {
                     rounds.last().and_then(|own| own.last()).map(|round| round.found.clone());
                 let mut found = last.expect("there are rounds");
                 found.fairest_used = fairest_used;
-                return Ok(ReachedGoal { found, pull, owners, rounds });
+                return Ok(ReachedGoal { found, pull, owners, rounds, between });
             }
         }
         let path = RegularizationPath {
@@ -161,8 +172,26 @@ impl Network {
             known: None,
             moves: None,
         };
-        let found = path.follow(goal, norm, conditioned, parts, &pull)?;
-        Ok(ReachedGoal { found, pull, owners, rounds })
+        let mut found = path.follow(goal, norm, conditioned, parts, &pull)?;
+        if self.limits_between() && parts.ties.is_empty() {
+            while between.extend(self, &found.optimum.points)? {
+                let mut limited = parts.clone();
+                limited.bounded = between.bounded(self);
+                match path.follow(goal, norm, conditioned, &mut limited, &pull) {
+                    Err(FairError::Shape { .. } | FairError::Contradiction { .. }) => {
+                        // Conditions leave no such network: what is farther is named.
+                        between = LimitsBetween::default();
+                        break;
+                    }
+                    other => found = other?,
+                }
+                *parts = limited;
+            }
+        }
+        if !matches!(parts.bounded, Bounded::Data(_)) {
+            between = LimitsBetween::default();
+        }
+        Ok(ReachedGoal { found, pull, owners, rounds, between })
     }
 
     /// The result of a goal, with a ball round each point; see [`Goal`].
@@ -212,7 +241,7 @@ impl Network {
     ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
         let mut parts = self.parts(measure, self.bound, Vec::new(), accuracy)?;
         let reached = self.found(&mut parts, measure, goal, false)?;
-        let ReachedGoal { found, pull, owners, rounds } = reached;
+        let ReachedGoal { found, pull, owners, rounds, between } = reached;
         let fit = NetworkFit {
             certificate: found.optimum.certificate,
             active: found.optimum.active,
@@ -270,6 +299,8 @@ impl Network {
         parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
         let solved = parts.whole()?;
         check_decided(&found, &solved)?;
+        between.check(&solved, &parts.bounded, &parts.frozen, ats)?;
+        let own_tolerances = between.tolerances(tolerances);
         let each = self.all_moving_rows(measure, ats)?;
         let rows = MovingRows { rows: each.into_iter().flat_map(|own| own.rows).collect() };
         let forces = if parts.norm == crate::RowNorm::Square {
@@ -280,7 +311,7 @@ impl Network {
         };
         let moving = |forces, budget| GoalVariation {
             originals: points.to_vec(),
-            tolerances,
+            tolerances: &own_tolerances,
             pulled: owners.iter().map(|&i| tolerances[i]).collect(),
             targets: &[],
             forces,
@@ -292,8 +323,12 @@ impl Network {
         let mut budget = T::zero();
         if let (Goal::Near(share), true) = (goal, found.between) {
             // The squares of the fairest change, too.
-            let parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
+            let mut parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
+            if !between.is_empty() {
+                parts.bounded = between.bounded(self);
+            }
             let fairest = parts.whole()?;
+            between.check(&fairest, &parts.bounded, &parts.frozen, ats)?;
             let slope = rows.slope(&fairest.optimum.points);
             let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
             let optimum = fairest.optimum.clone();

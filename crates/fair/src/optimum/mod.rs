@@ -170,6 +170,13 @@ impl Solved {
         self.solution.active.is_some()
     }
 
+    /// The limits of the problem that are reached; none where it is not known which.
+    pub fn reached(&self) -> Option<Vec<usize>> {
+        let groups = if self.problem.bounds.separate { self.problem.dimension } else { 1 };
+        let active = self.solution.active.as_ref()?;
+        Some(active.cones.iter().map(|&c| c as usize / groups).collect())
+    }
+
     /// The forces of the limits on what they limit, one per limit of the problem.
     pub fn forces(&self) -> Vec<Vec3<f64>> {
         let groups = if self.problem.bounds.separate { self.problem.dimension } else { 1 };
@@ -260,7 +267,7 @@ pub(crate) struct Parts<'a> {
 
 impl DataLimits {
     /// The limits that say something: neither infinite nor on points that do not move.
-    fn used<'a>(&'a self, frozen: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+    pub fn used<'a>(&'a self, frozen: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
         (0..self.rows.len()).filter(|&k| {
             self.radii[k].is_finite() && self.rows.row(k).0.iter().any(|&c| !frozen[c as usize])
         })

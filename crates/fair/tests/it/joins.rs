@@ -59,7 +59,15 @@ fn curvature_runs_on_at_both_ends() {
     for role in ["fit", "control"] {
         for turned in [false, true] {
             let joins = Value::list([neighbour(&aft, turned), neighbour(&fore, turned)]);
-            let named = vec![("joins", joins), ("as", Value::text(role))];
+            // Control points are ends on knots that say so.
+            let inner = middle.len() - 2;
+            let knots = (0..inner).map(|k| k as f64 / (inner - 1) as f64);
+            let knots = [0.0; 3].into_iter().chain(knots).chain([1.0; 3]).map(Value::Number);
+            let clamped = ("knots", Value::list(knots.collect::<Vec<_>>()));
+            let mut named = vec![("joins", joins), ("as", Value::text(role))];
+            if role == "control" {
+                named.extend([clamped, ("bound", Value::text("curve"))]);
+            }
             let curve = call(vec![list(&middle), Value::Number(TOLERANCE)], named).unwrap();
             let [a, b] = [&fore, &aft].map(|p| {
                 let Value::Curve(c) = neighbour(p, false) else { panic!() };
@@ -151,7 +159,12 @@ fn what_cannot_be_joined_is_refused() {
     for words in [("closed", Value::Number(1.0)), ("mode", Value::text("faithful"))] {
         assert_eq!(fault(&middle, 0.1, vec![one(), words]).0, "not-joined");
     }
-    assert_eq!(fault(&middle, 0.1, vec![one(), ("as", Value::text("points"))]).0, "not-joined");
+    // Control points of a uniform spline are not its ends.
+    for words in [("as", "control"), ("bound", "curve")] {
+        let mut named = vec![one(), (words.0, Value::text(words.1))];
+        named.extend((words.0 == "bound").then_some(("as", Value::text("points"))));
+        assert_eq!(fault(&middle, 0.1, named).0, "no-common-end");
+    }
     // An end with another curvature, and a tolerance far too small for it.
     let all = joins(vec![neighbour(&aft, false), neighbour(&fore, false)]);
     let (id, place, text) = fault(&middle, 1e-7, vec![all]);

@@ -498,6 +498,8 @@ fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, Py
     let swings: Vec<(usize, usize, f64)> =
         r.swings.iter().map(|s| (s.curve, s.point, s.share)).collect();
     dict.set_item("swings", swings)?;
+    let arc = |a: &moldloft::fair::NetworkArc| (a.curve, a.between, a.radius);
+    dict.set_item("arcs", r.arcs.iter().map(arc).collect::<Vec<_>>())?;
     dict.set_item("certificate", certificate(py, &r.certificate)?)?;
     Ok(dict)
 }
