@@ -237,7 +237,8 @@ impl<T: Real> Body<T> {
         // All of it is submerged, and moments are about its middle.
         let moved = self.mapped(|p| p - Vec3::lifted(centre), false);
         let above = T::from(2.0 * self.size + bounds.diagonal());
-        let all = moved.wanted_integrals(above, [T::zero(); 2], Wanted::Skin);
+        let accuracy = moved.quadrature_accuracy();
+        let all = moved.wanted_integrals(above, [T::zero(); 2], Wanted::Skin, accuracy);
         let Immersed { sums, errors, .. } = &all;
         let fit = self.fit_errors(&bounds);
         let volume = (sums.forms[0] + sums.forms[1]) * 0.5;
@@ -265,12 +266,22 @@ impl<T: Real> Body<T> {
 
     /// The integrals below `level` about (x0, y0).
     pub(crate) fn integrals(&self, level: T, origin: [T; 2]) -> Immersed<T> {
-        self.wanted_integrals(level, origin, Wanted::All)
+        self.wanted_integrals(level, origin, Wanted::All, self.quadrature_accuracy())
     }
 
-    /// As [`Self::integrals`], with only the `wanted` ones to the accuracy.
-    pub(crate) fn wanted_integrals(&self, level: T, origin: [T; 2], wanted: Wanted) -> Immersed<T> {
-        let accuracy = (SHARE * self.accuracy).max(FINEST);
+    /// The relative accuracy of integrals for figures of this accuracy.
+    pub(crate) fn quadrature_accuracy(&self) -> f64 {
+        (SHARE * self.accuracy).max(FINEST)
+    }
+
+    /// As [`Self::integrals`], with the `wanted` ones to a relative accuracy.
+    pub(crate) fn wanted_integrals(
+        &self,
+        level: T,
+        origin: [T; 2],
+        wanted: Wanted,
+        accuracy: f64,
+    ) -> Immersed<T> {
         immersed(&self.cells, level, origin, self.size, accuracy, wanted)
     }
 

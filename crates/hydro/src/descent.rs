@@ -46,7 +46,7 @@ impl EquilibriumProblem<'_, f64> {
         let attitude = Attitude::of(at);
         let turned = attitude.turned(self.body);
         let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
-        let sums = displaced(&turned, level, [g.x, g.y], self.count);
+        let sums = displaced(&turned, level, [g.x, g.y], self.count, self.accuracy);
         let volume = sums.forms[2];
         let [trims, heels] = self.tilts(trim);
         let slopes = [trims * sums.moment.x / volume, heels * sums.moment.y / volume];

@@ -109,14 +109,18 @@ const LOOSE: f64 = 1e-9;
 /// Residual from which one Newton step reaches rounding level.
 const POLISHED: f64 = 1e-10;
 
+/// Relative accuracy of the integrals of a search up to its last steps, and the residual at which these begin.
+const ROUGH: f64 = 1e-4;
+const NEARLY: f64 = 1e-3;
+
 /// Maximum rotation of a step, in radians.
 const LARGEST_TURN: f64 = 0.2;
 
 /// The equilibrium attitude, from `start` (whose level is not used): level, and trim and heel if
 /// free.
 /// First the level is solved for at the given trim and heel by bracketed Newton steps, then all
-/// unknowns together by damped Newton steps with exact derivatives, without derivatives in `T`; if
-/// these do not converge, by descent of the energy. From an unstable equilibrium the search
+/// unknowns together by damped Newton steps with exact derivatives, without derivatives in `T`, and
+/// with rough integrals up to the last steps; if these do not converge, by descent of the energy. From an unstable equilibrium the search
 /// continues, heeling to both sides, to the nearest stable one, if any. A last step in `T` gives
 /// the derivatives of the solution (implicit function theorem).
 ///
@@ -141,18 +145,23 @@ pub fn equilibrium<T: Real>(
     }
     let real = body.re();
     let problem = EquilibriumProblem::new(&real, water, loading)?;
-    let from = [problem.level(start.trim.re(), start.heel.re())?, start.trim.re(), start.heel.re()];
-    let (mut at, mut iterations, mut residual) = problem.rest(from);
+    let [trim, heel] = [start.trim.re(), start.heel.re()];
+    let level = match problem.rough() {
+        Some(rough) if problem.free.len() > 1 => rough.level(trim, heel),
+        _ => problem.level(trim, heel),
+    };
+    let mut found = problem.rest([level?, trim, heel]);
     let loose = problem.loose();
     let mut lolls = false;
-    if residual <= loose
+    if found.residual <= loose
         && loading.free_heel
-        && !problem.stable(at)
-        && let Some((found, steps, left)) = problem.beyond(at)
+        && !problem.stable(found.at)
+        && let Some(beyond) = problem.beyond(found.at)
     {
-        (at, residual, lolls) = (found, left, true);
-        iterations += steps;
+        lolls = true;
+        found = Found { steps: found.steps + beyond.steps, ..beyond };
     }
+    let Found { at, steps: iterations, residual, here } = found;
     let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 
     // One Newton step in T makes the derivative of the residual vanish, and its real part removes
@@ -162,11 +171,16 @@ pub fn equilibrium<T: Real>(
     let seeded = [constant[0], start.trim, start.heel];
     let fixed: [T; 3] =
         std::array::from_fn(|k| if problem.free.contains(&k) { constant[k] } else { seeded[k] });
-    let (free, count, size) = (problem.free.clone(), problem.count, problem.size);
-    let exact = EquilibriumProblem { body, water, loading, free, count, size };
-    let off = exact.residual(fixed);
+    let free = problem.free.clone();
+    let EquilibriumProblem { count, size, accuracy, tight: end, .. } = problem;
+    let exact =
+        EquilibriumProblem { body, water, loading, free, count, size, accuracy, tight: end };
+    let off = match T::PARTS {
+        1 => problem.residual_of(&here).map(T::from),
+        _ => exact.residual(fixed),
+    };
     let mut unknowns = fixed;
-    if let Some(step) = problem.step(&problem.slopes(at), off) {
+    if let Some(step) = problem.step(&problem.slopes_of(at, &here), off) {
         for (&k, dx) in problem.free.iter().zip(step) {
             unknowns[k] += if tight { dx } else { dx - dx.re() };
         }
@@ -187,6 +201,18 @@ pub(crate) struct EquilibriumProblem<'m, T: Real> {
     pub(crate) count: f64,
     /// Diagonal of the body.
     pub(crate) size: f64,
+    /// Relative accuracy of the integrals.
+    pub(crate) accuracy: f64,
+    /// Residual at which a search ends.
+    tight: f64,
+}
+
+/// The best attitude that a search has found.
+struct Found {
+    at: [f64; 3],
+    steps: usize,
+    residual: f64,
+    here: Displacement<f64>,
 }
 
 /// Step of heel, in radians, in the search beyond an unstable attitude.
@@ -214,12 +240,35 @@ impl<'m> EquilibriumProblem<'m, f64> {
         };
         // The sign of the volume of the half-submerged body gives the orientation of the normals.
         let middle = bounds.centre();
-        let volume = displaced(body, middle.z, [middle.x, middle.y], 1.0).forms[2];
+        let accuracy = body.quadrature_accuracy();
+        let origin = [middle.x, middle.y];
+        let volume = displaced(body, middle.z, origin, 1.0, ROUGH.max(accuracy)).forms[2];
         if volume == 0.0 {
             return Err(FloatError::NoBody);
         }
         let sides = if water.symmetry == Symmetry::MirroredTwice { 2.0 } else { 1.0 };
-        Ok(Self { body, water, loading, free, count: sides * volume.signum(), size })
+        Ok(Self {
+            body,
+            water,
+            loading,
+            free,
+            count: sides * volume.signum(),
+            size,
+            accuracy,
+            tight: TIGHT,
+        })
+    }
+
+    /// The same with rough integrals, where they are not rough already.
+    fn rough(&self) -> Option<Self> {
+        let rough = || Self { accuracy: ROUGH, tight: NEARLY, ..self.with(self.free.clone()) };
+        (self.accuracy < ROUGH).then(rough)
+    }
+
+    /// The same with other free unknowns.
+    fn with(&self, free: Vec<usize>) -> Self {
+        let Self { body, water, loading, count, size, accuracy, tight, .. } = *self;
+        Self { body, water, loading, free, count, size, accuracy, tight }
     }
 
     /// Maximum residual of an equilibrium.
@@ -235,7 +284,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let wanted = self.loading.mass / density;
         let middle = bounds.centre();
         let volume = |z: f64| {
-            let sums = displaced(&turned, z, [middle.x, middle.y], self.count);
+            let sums = displaced(&turned, z, [middle.x, middle.y], self.count, self.accuracy);
             (sums.forms[2] - wanted, sums.plane[0])
         };
         let lowest = turned.lowest(Vec3::of(0.0, 0.0, 1.0)).unwrap_or(bounds.low.z);
@@ -259,7 +308,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let mut before = f64::INFINITY;
         for _ in 0..200 {
             let (off, slope) = volume(z);
-            if off.abs() <= TIGHT * wanted {
+            if off.abs() <= self.tight * wanted {
                 break;
             }
             if off > 0.0 {
@@ -330,44 +379,53 @@ impl<'m> EquilibriumProblem<'m, f64> {
         self.free.iter().map(|&k| residual[k].abs()).fold(0.0, f64::max)
     }
 
-    /// The equilibrium reached from `from`, with the number of steps and the residual.
-    fn rest(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
+    /// The equilibrium reached from `from`.
+    fn rest(&self, from: [f64; 3]) -> Found {
         let mut best = self.newton(from);
-        let improved = |best: &mut ([f64; 3], usize, f64), from: [f64; 3]| {
+        let improved = |best: &mut Found, from: [f64; 3]| {
             let Some((at, steps)) = self.descended(from) else { return };
             let found = self.newton(at);
-            best.1 += steps + found.1;
-            if found.2 < best.2 {
-                (best.0, best.2) = (found.0, found.2);
+            let all = best.steps + steps + found.steps;
+            if found.residual < best.residual {
+                *best = found;
             }
+            best.steps = all;
         };
-        if self.free.len() > 1 && best.2 > self.loose() {
-            let near = best.0;
+        if self.free.len() > 1 && best.residual > self.loose() {
+            let near = best.at;
             improved(&mut best, near);
-            if best.2 > self.loose() {
+            if best.residual > self.loose() {
                 improved(&mut best, from);
             }
         }
         best
     }
 
-    fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
+    /// The best attitude that Newton's method finds from `from`.
+    fn newton(&self, from: [f64; 3]) -> Found {
+        let Some(rough) = self.rough() else { return self.newton_steps(from) };
+        let near = rough.newton_steps(from);
+        let found = self.newton_steps(near.at);
+        Found { steps: near.steps + found.steps, ..found }
+    }
+
+    fn newton_steps(&self, from: [f64; 3]) -> Found {
         let height = self.size;
         let mut at = from;
         // Residual and derivatives use the same integrals, which take nearly all of the time.
         let mut here = self.displacement(at);
-        let mut residual = self.residual_of(&here);
-        let mut worst = self.worst(residual);
+        let mut off = self.residual_of(&here);
+        let mut residual = self.worst(off);
         let mut steps = 0;
-        while worst > TIGHT && steps < MOST_STEPS {
-            let Some(step) = self.step(&self.slopes_of(at, &here), residual) else { break };
+        while residual > self.tight && steps < MOST_STEPS {
+            let Some(step) = self.step(&self.slopes_of(at, &here), off) else { break };
             let mut share: f64 = 1.0;
             for (&k, dx) in self.free.iter().zip(&step) {
                 let most = if k == 0 { 0.25 * height } else { LARGEST_TURN };
                 share = share.min(most / dx.abs().max(f64::MIN_POSITIVE));
             }
             let mut better = false;
-            let tries = if worst < 1e-10 { 1 } else { 12 };
+            let tries = if residual < 1e-10 { 1 } else { 12 };
             for _ in 0..tries {
                 let mut next = at;
                 for (&k, dx) in self.free.iter().zip(&step) {
@@ -375,9 +433,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 }
                 let there = self.displacement(next);
                 let found = self.residual_of(&there);
-                let off = self.worst(found);
-                if off < worst {
-                    (at, here, residual, worst, better) = (next, there, found, off, true);
+                let left = self.worst(found);
+                if left < residual {
+                    (at, here, off, residual, better) = (next, there, found, left, true);
                     break;
                 }
                 share *= 0.5;
@@ -387,7 +445,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 break;
             }
         }
-        (at, steps, worst)
+        Found { at, steps, residual, here }
     }
 
     fn stable(&self, at: [f64; 3]) -> bool {
@@ -395,50 +453,39 @@ impl<'m> EquilibriumProblem<'m, f64> {
         found.stable.unwrap_or(true)
     }
 
-    /// From an unstable equilibrium: the nearest stable one on either side in heel, with the number
-    /// of steps and the residual. The arm is evaluated at fixed heel; where it changes from
-    /// overturning to righting, all unknowns are solved for together.
-    fn beyond(&self, at: [f64; 3]) -> Option<([f64; 3], usize, f64)> {
-        let held = EquilibriumProblem {
-            body: self.body,
-            water: self.water,
-            loading: self.loading,
-            free: self.free.iter().copied().filter(|&k| k != 2).collect(),
-            count: self.count,
-            size: self.size,
-        };
-        let side = |sign: f64| -> Option<([f64; 3], usize, f64)> {
+    /// From an unstable equilibrium: the nearest stable one on either side in heel, with the steps of
+    /// the search. The arm is evaluated at fixed heel; where it changes from overturning to righting,
+    /// all unknowns are solved for together.
+    fn beyond(&self, at: [f64; 3]) -> Option<Found> {
+        let held = self.with(self.free.iter().copied().filter(|&k| k != 2).collect());
+        let side = |sign: f64| -> Option<Found> {
             let (mut now, mut count) = (at, 0);
             let mut before = -1.0;
             while (now[2] - at[2]).abs() < std::f64::consts::PI {
                 let mut next = now;
                 next[2] += sign * HEEL_STEP;
                 next[0] = held.level(next[1], next[2]).ok()?;
-                let (next, steps, left) = held.rest(next);
-                count += steps;
-                if left > self.loose() {
+                let rest = held.rest(next);
+                count += rest.steps;
+                if rest.residual > self.loose() {
                     return None;
                 }
-                let arm = self.residual(next)[2] * sign;
+                let arm = self.residual_of(&rest.here)[2] * sign;
                 if before < 0.0 && arm >= 0.0 {
                     // Between two heels the arm is nearly linear.
-                    let (found, steps, left) = self.newton(next);
-                    let near = (found[2] - next[2]).abs() <= 3.0 * HEEL_STEP;
-                    return (left <= self.loose() && near && self.stable(found)).then_some((
-                        found,
-                        count + steps,
-                        left,
-                    ));
+                    let found = self.newton(rest.at);
+                    let near = (found.at[2] - rest.at[2]).abs() <= 3.0 * HEEL_STEP;
+                    let good = found.residual <= self.loose() && near && self.stable(found.at);
+                    return good.then(|| Found { steps: count + found.steps, ..found });
                 }
                 before = arm;
-                now = next;
+                now = rest.at;
             }
             None
         };
         let [up, down] = [side(1.0), side(-1.0)];
-        let turned = |f: &Option<([f64; 3], usize, f64)>| {
-            f.map_or(f64::INFINITY, |f| (f.0[2] - at[2]).abs())
-        };
+        let turned =
+            |f: &Option<Found>| f.as_ref().map_or(f64::INFINITY, |f| (f.at[2] - at[2]).abs());
         if turned(&down) < turned(&up) * (1.0 - 1e-9) { down } else { up }
     }
 }
@@ -457,7 +504,8 @@ impl<T: Real> EquilibriumProblem<'_, T> {
         let attitude = Attitude::of(unknowns);
         let turned = attitude.turned(self.body);
         let centre = attitude.earth_from(self.loading.centre.unwrap_or_default());
-        let sums = displaced(&turned, attitude.level, [centre.x, centre.y], self.count);
+        let (level, origin) = (attitude.level, [centre.x, centre.y]);
+        let sums = displaced(&turned, level, origin, self.count, self.accuracy);
         Displacement { centre, sums }
     }
 

@@ -24,14 +24,15 @@ pub(crate) struct Displaced<T> {
 }
 
 /// Volume, moments and waterplane below `level` about (x0, y0); `count` is 1, or 2 for both sides
-/// of a half body, and negative for normals that point inward.
+/// of a half body, and negative for normals that point inward. Volume and moments have the relative `accuracy`.
 pub(crate) fn displaced<T: Real>(
     body: &Body<T>,
     level: T,
     origin: [T; 2],
     count: f64,
+    accuracy: f64,
 ) -> Displaced<T> {
-    let sums = body.wanted_integrals(level, origin, Wanted::Displacement).sums;
+    let sums = body.wanted_integrals(level, origin, Wanted::Displacement, accuracy).sums;
     let times = |x: T| x * count;
     Displaced {
         forms: sums.forms.map(times),
