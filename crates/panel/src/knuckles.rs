@@ -105,7 +105,8 @@ impl Knuckles {
         }
     }
 
-    /// Adds a line of the whole, where it is a knuckle and none that is known.
+    /// Adds a line of the whole, where it is a knuckle and none that is known. It takes the place of a row or column that
+    /// is straight only by chance: the ends of a line of the whole move apart.
     fn add_chain(
         &mut self,
         surface: &dyn Surface<f64>,
@@ -113,18 +114,19 @@ impl Knuckles {
         at: f64,
         path: Vec<[f64; 2]>,
     ) {
-        let known = |k: usize| {
-            let near = |b: &f64| path.iter().all(|w| (w[k] - b).abs() < SAME_LINE);
-            self.straight[k].iter().any(near)
-        };
-        if known(0) || known(1) || !turns_along(surface, &path) {
+        if !turns_along(surface, &path) {
             return;
         }
+        let is = |k: usize, b: f64| path.iter().all(|w| (w[k] - b).abs() < SAME_LINE);
+        let known = (0..2).any(|k| self.straight[k].iter().any(|&b| is(k, b)));
         let ends = [path[0], path[path.len() - 1]].map(edge_at);
         let [Some(first), Some(last)] = ends else {
-            self.loose = self.loose.or(Some(path[path.len() / 2]));
+            self.loose = self.loose.or(Some(path[path.len() / 2]).filter(|_| !known));
             return;
         };
+        for k in 0..2 {
+            self.straight[k].retain(|&b| !is(k, b));
+        }
         let line = KnuckleLine { plane, axis, at, ends: [first, last], path };
         if self.across.iter().any(|other| other.is_same(&line)) {
             return;
