@@ -151,7 +151,8 @@ pub(crate) fn bracketed(row: &[f64]) -> f64 {
         }
         let newton = t - x / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 1e-16 || high - low <= 1e-16 {
+        // Beyond this, steps only follow rounding.
+        if (next - t).abs() <= 4.0 * f64::EPSILON || high - low <= f64::EPSILON {
             t = next;
             break;
         }

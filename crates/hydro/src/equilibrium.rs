@@ -287,10 +287,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
             let sums = displaced(&turned, z, [middle.x, middle.y], self.count, self.accuracy);
             (sums.forms[2] - wanted, sums.plane[0])
         };
-        let lowest = turned.lowest(Vec3::of(0.0, 0.0, 1.0)).unwrap_or(bounds.low.z);
-        let highest = -turned.lowest(Vec3::of(0.0, 0.0, -1.0)).unwrap_or(-bounds.high.z);
         // Slightly above the top, so that panels in the top are submerged.
-        let (mut low, mut high) = (lowest, highest + 1e-9 * self.size);
+        let (mut low, mut high) = (bounds.low.z, bounds.high.z + 1e-9 * self.size);
         // An open body displaces no more once its rim is immersed.
         let full = turned.lowest_rim().map_or(high, |z| z.min(high));
         let when_full = volume(full).0;

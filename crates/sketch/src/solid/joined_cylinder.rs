@@ -92,7 +92,7 @@ pub(super) fn joined_surface<T: Real>(
         (Extent { levels: [0.0, 1.0], angles: [0.0, sweep.re()] }, Vec::new());
     let way = (end - centre).re();
     let level = |p: Vec3| way.dot(p - centre.re()) / way.norm_sq();
-    let angle = |p: Vec3| b.re().dot(p - centre.re()).atan2(a.re().dot(p - centre.re()));
+    let angle = |p: Vec3| libm::atan2(b.re().dot(p - centre.re()), a.re().dot(p - centre.re()));
     for other in face.sources[1..].iter().map(surface) {
         let own = round_cylinder(other)?;
         kinks.extend((1..T::PARTS).filter(|k| parts_from(&base, &own, *k)).map(|part| {
@@ -119,7 +119,7 @@ pub(super) fn joined_surface<T: Real>(
         if kept {
             return SmoothPiece::Conic { centre, a, b, sweep };
         }
-        let (c, s) = (T::from(from.cos()), T::from(from.sin()));
+        let (c, s) = (T::from(libm::cos(from)), T::from(libm::sin(from)));
         let (a, b) = (a * c + b * s, b * c - a * s);
         SmoothPiece::Conic { centre, a, b, sweep: T::from(to - from) }
     };
