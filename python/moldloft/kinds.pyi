@@ -7653,8 +7653,8 @@ def FairCurve(
     noise that fills the tolerance), `fairest_used` (the same for the fairest curve) and
     `findings` (number of points that do not fit their neighbours).
 
-    Control points are moved instead of data with `as = "control"`, `joins`, `knots`,
-    `weights`, `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
+    Control points are moved instead of data with `as = "control"`, `knots`, `weights`,
+    `count`, a `bound` of "curve" or "points" and every `mode` except "optimum".
     Members are then `deviation` (largest move of a control point or point; with `knots`,
     `weights` or `count` the largest distance of a point), `value`, `gap`, and `active` for
     the optimum or `steps` for the other modes.
@@ -7684,9 +7684,10 @@ def FairCurve(
         "bending" or "variation" (integral of the squared second or third derivative). Default:
         "variation" for data ("bending" below degree 3), "second" where control points move.
     as : text, optional
-        Role of the points: "fit" (interpolated, then faired), "control" (control points) or
-        "points" (faired, then interpolated; for the optimum the same as "fit", except with
-        `spacing = "index"`). Default fit.
+        Role of the points: "fit" (data on the curve; default for the optimum), "control"
+        (control points of a uniform spline, whose ends are not at its points; default for the
+        other modes) or "points" (faired, then interpolated; for the optimum the same as "fit",
+        except with `spacing = "index"`).
     breaks : list of integer, optional
         Numbers of points, from 1, that are intended breaks: they do not move, nothing is
         smoothed across them, and the curve has corners there. A closed curve starts at the
@@ -7720,8 +7721,7 @@ def FairCurve(
         Parametrisation of the points: "chord", "centripetal", a coordinate ("x", "y" or "z",
         for offsets at stations), "index", or "curvature" (chord lengths, extended where the
         curve turns). "auto" is "curvature" for the goals "near" and "budget" without further
-        conditions, otherwise "chord"; with control points, joins or single steps it is "index".
-        Default auto.
+        conditions, otherwise "chord"; with control points it is "index". Default auto.
     goal : text, optional
         Selects the result within the tolerance: "near" (residuals up to the level of noise that
         fills the tolerance; data with little to gain do not move), "budget" (the same, without
@@ -7769,9 +7769,10 @@ def FairCurve(
         Condition at the end, if different from the start (`ends`).
     bound : text, optional
         Quantity that the tolerance bounds: "data" (distance of each point from the curve;
-        default for fits), "curve" (distance of the curve from the initial one, everywhere;
-        default for control points) or "points" (move of each control point). "curve" and
-        "points" have derivatives if the parameters are constant (`spacing = "index"`).
+        default for optima of data), "curve" (distance of the curve from the initial one,
+        everywhere; default for other fits) or "points" (move of each control point; default for
+        control points). "curve" and "points" have derivatives if the parameters are constant
+        (`spacing = "index"`).
     count : integer, optional
         Number of control points of a least-squares fit, less than the number of points. No
         derivatives. At least 3.
@@ -7890,7 +7891,7 @@ def FairSnake(
     spacing : text, optional
         Parametrisation of the magnets along the path, as for `FairCurve`: "chord",
         "centripetal", "x" (u) or "y" (v) if monotone, "index" or "curvature". "auto" is
-        "chord", for single steps "index". Default auto.
+        "chord", with control points "index". Default auto.
     goal : text, optional
         Selects the result within the tolerance: "near" (residuals up to the level of noise that
         fills the tolerance; data with little to gain do not move), "budget" (the same, without
@@ -7935,9 +7936,10 @@ def FairSnake(
         Condition at the end, if different from the start (`ends`).
     bound : text, optional
         Quantity that the tolerance bounds: "data" (distance of each point from the curve;
-        default for fits), "curve" (distance of the curve from the initial one, everywhere;
-        default for control points) or "points" (move of each control point). "curve" and
-        "points" have derivatives if the parameters are constant (`spacing = "index"`).
+        default for optima of data), "curve" (distance of the curve from the initial one,
+        everywhere; default for other fits) or "points" (move of each control point; default for
+        control points). "curve" and "points" have derivatives if the parameters are constant
+        (`spacing = "index"`).
     count : integer, optional
         Number of control points of a least-squares fit, less than the number of points. No
         derivatives. At least 3.
@@ -7975,7 +7977,7 @@ def FairSnake(
     through : list of magnet, optional
         Magnets on the path at `through_at`. No derivatives.
     as : text, optional
-        Role of the magnets; see `FairCurve`. Default fit.
+        Role of the magnets; see `FairCurve`.
     closed : integer, optional
         1: closed path; the first magnet is not repeated. 0 to 1, default 0.
     relabel : relabel, optional
@@ -8062,8 +8064,8 @@ def FairSurf(
     measure : text, optional
         Measure to minimise; see `FairCurve`. Default second.
     as : text, optional
-        Role of the points: "fit" (interpolated, then faired) or "control" (control points).
-        Default fit.
+        Role of the points: "fit" (interpolated, then faired) or "control" (control points of a
+        uniform surface, whose rims are not at its points). Default fit.
     degree : integer, optional
         Polynomial degree along u, and along v without `degree_v`. 2 to 9, default 3.
     breaks_u : list of integer, optional
@@ -8261,14 +8263,14 @@ def FairNet(
     steps : integer, optional
         Steps per point of each curve and pass in the mode "faithful". 1 to 1000, default 3.
     bound : text, optional
-        What the tolerance bounds: "points", their moves; "curve": no curve is farther from the
-        one before than the smaller tolerance of the two points beside. No derivatives. Default
-        points.
+        What the tolerance bounds: "points", their moves, and 1.5 tolerances between them;
+        "curve": no curve is farther from the one before than the smaller tolerance of the two
+        points beside. No derivatives of "curve". Default points.
     shape : list of text, optional
         What curves have to have, exactly, by their numbers: "2: convex", "2:
         straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points
-        on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "1:
-        tangent=start:1,0,0". No derivatives.
+        on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9" (on a
+        circle, tangent to straight runs beside it), "1: tangent=start:1,0,0". No derivatives.
     knuckles : list of integer, optional
         Numbers of curves, from 1, along which all curves that cross them break.
     release : list of point, optional

@@ -267,7 +267,7 @@ class Hub:
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
         elif isinstance(kind, str) and kind in STUDY_KINDS:
-            self._later(self._study(tab, message))
+            self.later(self._study(tab, message))
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
             unsaved = ", ".join(Path(name).name for name, text in self.others.items() if text.dirty)
             if unsaved:
