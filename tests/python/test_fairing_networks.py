@@ -188,8 +188,7 @@ def least_third(x, y, tol, sign):
 
 def test_the_fairest_under_signs_is_that_of_another_solver():
     # Waterlines alone: the optimum of each is its own.
-    draws, free = 40 if os.environ.get("MOLDLOFT_SOAK") else 6, 0
-    for seed in range(draws):
+    for seed in range(40 if os.environ.get("MOLDLOFT_SOAK") else 4):
         rng = np.random.default_rng(seed)
         count, tol = int(rng.integers(9, 16)), float(rng.choice([0.005, 0.02]))
         x = np.cumsum(rng.uniform(0.6, 1.4, count))
@@ -207,12 +206,7 @@ def test_the_fairest_under_signs_is_that_of_another_solver():
             shape=f"1..{len(z)}: {word}",
         )  # fmt: skip
         least = sum(least_third(x, y[:, k], tol, -1) for k in range(len(z)))
-        assert made.measure_after >= least * (1 - 1e-6), (seed, made.measure_after, least)
-        # That solver knows no limits between points.
-        if made.deviation_curves_certified < 1.499 * tol:
-            free += 1
-            assert abs(made.measure_after / least - 1) <= 1e-6, (seed, made.measure_after, least)
-    assert free >= draws // 6, free
+        assert abs(made.measure_after / least - 1) <= 1e-6, (seed, made.measure_after, least)
 
 
 def test_the_displacement_and_its_centroid_stay():
@@ -410,7 +404,6 @@ def test_networks_are_no_farther_from_the_hull_than_their_data(of):
             off = made.points[:, 1].reshape(x.shape) - exact
             near += (off**2).mean()
             noisy += ((y - exact) ** 2).mean()
-            assert made.deviation_curves_certified <= 1.5 * tol * (1 + 1e-6)
         assert near <= noisy, (tol, np.sqrt(near / noisy))
 
 

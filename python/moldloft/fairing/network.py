@@ -327,11 +327,10 @@ def network(
         by curves as tolerances: ``{"": (0, 1, 0), "sheer": ("across", (1, 0, 0))}`` moves a sheer
         in the planes of the stations.
     bound
-        ``"points"``: the tolerance is that of the points, and between them no curve is more than
-        1.5 tolerances off; where conditions leave no such network, and in other modes, a note names
-        the curve, the place and the distance. ``"curve"``: no curve is farther from its original
-        than the smaller tolerance of the two points next to it, all along. Of the optimum at
-        parameters.
+        ``"points"``: the tolerance is that of the points, between which a curve may swing farther:
+        a note names those that are more than 1.5 tolerances off. ``"curve"``: no curve is farther
+        from its original than the smaller tolerance of the two points next to it, all along. Of the
+        optimum at parameters.
     keep
         ``"volume"`` and its ``"centroid"`` stay, by splines through the sections (curves in planes
         across x); where points move along one direction.

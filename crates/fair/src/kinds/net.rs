@@ -105,9 +105,8 @@ shared_options! {
         /// Steps per point of each curve and pass in the mode "faithful".
         #[field(default = 3, min = 1, max = 1000)]
         steps: usize,
-        /// What the tolerance bounds: "points", their moves, and 1.5 tolerances between them; "curve": no
-        /// curve is farther from the one before than the smaller tolerance of the two points beside. No
-        /// derivatives of "curve".
+        /// What the tolerance bounds: "points", their moves; "curve": no curve is farther from the one
+        /// before than the smaller tolerance of the two points beside.
         #[field(default = "points")]
         bound: Arc<str>,
         /// What curves have to have, exactly, by their numbers: "2: convex", "2: straight=3-9:1,0,0"

@@ -1,9 +1,9 @@
-//! Limits between the points of curves, where these would swing farther than their points move.
+//! Limits all along curves, also between their points, where these may swing farther than their points move.
 //!
 //! All of them are conditions of a network; in a search are those that are reached, or nearly. The
 //! optimum under these is that under all as soon as none of the others is passed.
 
-use crate::net::curves::{BezierLimit, HALVINGS, SWING, SWING_SLACK};
+use crate::net::curves::{BezierLimit, HALVINGS, SWING_SLACK};
 use crate::optimum::{Bounded, Solved};
 use crate::{Bound, FairError, Network};
 use moldloft_num::{Real, Vec3};
@@ -31,14 +31,14 @@ impl LimitsBetween {
             // A curve through a point without limit follows that.
             let strand = &network.strands[curve];
             let limited = strand.points.iter().all(|&i| network.limit.radii[i].is_finite());
-            if strand.at.is_none() || !limited || !network.may_swing(curve, &moves, SWING)? {
+            if strand.at.is_none() || !limited || !network.may_swing(curve, &moves, NEAR)? {
                 continue;
             }
             for (number, limit) in network.bezier_limits(curve, HALVINGS)?.into_iter().enumerate() {
                 let share = limit.share(network.limit.motion, &moves);
                 let place = [curve, number];
-                if share > SWING * NEAR && self.limits.iter().all(|own| own.0 != place) {
-                    passed |= share > SWING * (1.0 + SWING_SLACK);
+                if share > NEAR && self.limits.iter().all(|own| own.0 != place) {
+                    passed |= share > 1.0 + SWING_SLACK;
                     found.push((place, limit));
                 }
             }
@@ -53,7 +53,7 @@ impl LimitsBetween {
     pub fn bounded(&self, network: &Network) -> Bounded {
         let mut all = network.point_limits();
         for (_, limit) in &self.limits {
-            all.radii.push(SWING * limit.radius);
+            all.radii.push(limit.radius);
             all.rows.push(limit.entries.iter().copied());
         }
         Bounded::Data(all)
@@ -61,7 +61,7 @@ impl LimitsBetween {
 
     /// The tolerances of all limits, in their order.
     pub fn tolerances<T: Real>(&self, of_points: &[T]) -> Vec<T> {
-        let own = self.limits.iter().map(|(_, limit)| of_points[limit.owner] * SWING);
+        let own = self.limits.iter().map(|(_, limit)| of_points[limit.owner]);
         of_points.iter().copied().chain(own).collect()
     }
 
@@ -104,6 +104,11 @@ impl LimitsBetween {
 impl Network {
     /// True if limits between points are part of the search.
     pub(super) fn limits_between(&self) -> bool {
-        self.bound == Bound::ControlPoints && self.runs_through_points()
+        self.bound == Bound::Bezier && self.runs_through_points()
+    }
+
+    /// The bound that a search begins with: limits between points are added as they are passed.
+    pub(super) fn first_bound(&self) -> Bound {
+        if self.limits_between() { Bound::ControlPoints } else { self.bound }
     }
 }

@@ -14,8 +14,8 @@ use crate::{
 };
 use moldloft_num::Vec3;
 
-/// The displacement of a curve between its points, in tolerances, that it has at most where the bound is that
-/// of the points; where conditions leave no such network a curve that is farther is named.
+/// The displacement of a curve between its points, in tolerances, from which it is named where the
+/// bound is that of the points.
 pub const SWING: f64 = 1.5;
 
 /// How many times spans are halved, so that their Bézier points are near the curve.

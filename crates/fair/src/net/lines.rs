@@ -15,7 +15,7 @@ use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
     moved, rounding,
 };
-use crate::optimum::{Bend, Bounded, BudgetOptimum, ControlInequality, Parts};
+use crate::optimum::{Bend, BudgetOptimum, ControlInequality, Parts};
 use crate::{Certificate, Condition, FairError, Measure, Motion, Network, RowNorm, SparseRows};
 use moldloft_num::{Real, Vec3};
 
@@ -137,7 +137,7 @@ struct LineFairing<'a> {
     ties: (f64, usize),
     /// Start of the searches, if signs have shown that they need one.
     begin: Vec<Vec3<f64>>,
-    /// Limits between points that the results reach; none where these are not limited, or cannot be.
+    /// Limits between points that the results reach; none where these are not limited.
     between: Option<LimitsBetween>,
     /// The budget that these signs and limits leave, where it is known: the same for all weights.
     wider: Option<f64>,
@@ -419,8 +419,7 @@ impl Network {
         }
         let asked = parts.halves.clone();
         let (begin, ties) = (Vec::new(), (parts.ties.forced, parts.ties.removed));
-        let limited = self.limits_between() && parts.ties.is_empty();
-        let between = limited.then(LimitsBetween::default);
+        let between = self.limits_between().then(LimitsBetween::default);
         let mut fairing = LineFairing {
             network: self,
             pull,
@@ -576,16 +575,7 @@ impl LineFairing<'_> {
             if let Some(between) = self.between.as_ref().filter(|between| !between.is_empty()) {
                 limited.bounded = between.bounded(self.network);
             }
-            let round = match self.under_signs(&limited) {
-                Err(FairError::Shape { .. } | FairError::Contradiction { .. })
-                    if matches!(limited.bounded, Bounded::Data(_)) && self.between.is_some() =>
-                {
-                    // Conditions leave no such network: what is farther is named.
-                    (self.between, self.wider) = (None, None);
-                    continue;
-                }
-                other => other?,
-            };
+            let round = self.under_signs(&limited)?;
             let points = &round.found.optimum.points;
             let mut more = false;
             for line in self.signs.iter_mut().filter(|line| !line.held) {

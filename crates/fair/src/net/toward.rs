@@ -83,7 +83,7 @@ impl Network {
             let equations = self.independent(linear.equations)?;
             *parts = base.clone();
             // Limits all along curves do not hold at the positions of ties.
-            let direct = matches!(parts.bounded, Bounded::ControlPoints);
+            let direct = matches!(parts.bounded, Bounded::ControlPoints) && !self.limits_between();
             let equations = if direct {
                 let (ties, others, frozen) = self.tied(equations)?;
                 (parts.ties, parts.frozen) = (ties, frozen);
@@ -173,23 +173,9 @@ impl Network {
             moves: None,
         };
         let mut found = path.follow(goal, norm, conditioned, parts, &pull)?;
-        if self.limits_between() && parts.ties.is_empty() {
-            while between.extend(self, &found.optimum.points)? {
-                let mut limited = parts.clone();
-                limited.bounded = between.bounded(self);
-                match path.follow(goal, norm, conditioned, &mut limited, &pull) {
-                    Err(FairError::Shape { .. } | FairError::Contradiction { .. }) => {
-                        // Conditions leave no such network: what is farther is named.
-                        between = LimitsBetween::default();
-                        break;
-                    }
-                    other => found = other?,
-                }
-                *parts = limited;
-            }
-        }
-        if !matches!(parts.bounded, Bounded::Data(_)) {
-            between = LimitsBetween::default();
+        while self.limits_between() && between.extend(self, &found.optimum.points)? {
+            parts.bounded = between.bounded(self);
+            found = path.follow(goal, norm, conditioned, parts, &pull)?;
         }
         Ok(ReachedGoal { found, pull, owners, rounds, between })
     }
@@ -218,7 +204,7 @@ impl Network {
         accuracy: f64,
     ) -> Result<(GoalOptimum, Vec<usize>), FairError> {
         let conditioned = !conditions.is_empty();
-        let mut parts = self.parts(measure, self.bound, conditions, accuracy)?;
+        let mut parts = self.parts(measure, self.first_bound(), conditions, accuracy)?;
         let reached = self.found(&mut parts, measure, goal, conditioned)?;
         let last = reached.rounds.last().and_then(|rounds| rounds.last());
         let bent = last.map_or_else(Vec::new, |round| round.bent.clone());
@@ -239,7 +225,7 @@ impl Network {
         tolerances: &[T],
         ats: &[Option<Vec<T>>],
     ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
-        let mut parts = self.parts(measure, self.bound, Vec::new(), accuracy)?;
+        let mut parts = self.parts(measure, self.first_bound(), Vec::new(), accuracy)?;
         let reached = self.found(&mut parts, measure, goal, false)?;
         let ReachedGoal { found, pull, owners, rounds, between } = reached;
         let fit = NetworkFit {
@@ -260,7 +246,7 @@ impl Network {
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
         }
-        if self.bound != Bound::ControlPoints {
+        if self.first_bound() != Bound::ControlPoints {
             return Err(FairError::NoDerivative(
                 "derivatives of a network with limits all along its curves are not known: take limits of \
                  its points",

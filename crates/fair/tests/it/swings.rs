@@ -70,9 +70,9 @@ fn farthest(network: &Network, points: &[Vec3<f64>]) -> f64 {
 }
 
 #[test]
-fn curves_swing_no_farther_than_their_bound() {
+fn curves_that_swing_beyond_their_bound_are_named() {
     let draws = moldloft_testing::rounds(4, 100) as u64;
-    let mut reached = 0;
+    let mut named = 0;
     for seed in 0..draws {
         let mut network = crossed(seed, Motion::Along(Vec3::of(0.0, 1.0, 0.0)));
         for goal in [Goal::Fairest, Goal::Near(NETWORK_BUDGET), Goal::Budget(0.5)] {
@@ -80,16 +80,15 @@ fn curves_swing_no_farther_than_their_bound() {
             network.bound = Bound::ControlPoints;
             let made = network.report(Measure::Third, mode).unwrap();
             let far = farthest(&network, &made.points);
-            reached += usize::from(far > 0.9 * SWING && goal == Goal::Fairest);
-            assert!(made.swings.is_empty(), "{seed} {goal:?}: {:?}", made.swings);
-            assert!(far <= SWING * (1.0 + 1e-6), "{seed} {goal:?}: {far}");
+            named += usize::from(!made.swings.is_empty() && goal == Goal::Fairest);
+            assert!(far <= SWING * (1.0 + 1e-6) || !made.swings.is_empty(), "{seed}: {far}");
             network.bound = Bound::Bezier;
             let made = network.report(Measure::Third, mode).unwrap();
             assert!(made.swings.is_empty(), "{seed} {goal:?}: {:?}", made.swings);
             assert!(farthest(&network, &made.points) <= 1.0 + 1e-6);
         }
     }
-    assert!(2 * reached as u64 >= draws, "{reached}");
+    assert!(2 * named as u64 >= draws, "{named}");
 }
 
 /// Derivatives under limits between points agree with differences, of one side where these are kinks.
@@ -98,7 +97,8 @@ fn derivatives_go_through_limits_between_points() {
     let draws = moldloft_testing::rounds(3, 60) as u64;
     let (mut equal, mut kinks, mut refused) = (0, 0, 0);
     for seed in 0..draws {
-        let network = crossed(seed, Motion::Along(Vec3::of(0.0, 1.0, 0.0)));
+        let mut network = crossed(seed, Motion::Along(Vec3::of(0.0, 1.0, 0.0)));
+        network.bound = Bound::Bezier;
         let tolerance = network.limit.radii[0];
         let moving = network.strands[1].points[3];
         let goal = Goal::Budget(0.8);
