@@ -8263,9 +8263,8 @@ def FairNet(
     steps : integer, optional
         Steps per point of each curve and pass in the mode "faithful". 1 to 1000, default 3.
     bound : text, optional
-        What the tolerance bounds: "points", their moves, and 1.5 tolerances between them;
-        "curve": no curve is farther from the one before than the smaller tolerance of the two
-        points beside. No derivatives of "curve". Default points.
+        What the tolerance bounds: "points", their moves; "curve": no curve is farther from the
+        one before than the smaller tolerance of the two points beside. Default points.
     shape : list of text, optional
         What curves have to have, exactly, by their numbers: "2: convex", "2:
         straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points
