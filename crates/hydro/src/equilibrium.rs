@@ -159,9 +159,9 @@ pub fn equilibrium<T: Real>(
         && let Some(beyond) = problem.beyond(found.at)
     {
         lolls = true;
-        found = Found { steps: found.steps + beyond.steps, ..beyond };
+        found = FoundAttitude { steps: found.steps + beyond.steps, ..beyond };
     }
-    let Found { at, steps: iterations, residual, here } = found;
+    let FoundAttitude { at, steps: iterations, residual, here } = found;
     let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 
     // One Newton step in T makes the derivative of the residual vanish, and its real part removes
@@ -208,7 +208,7 @@ pub(crate) struct EquilibriumProblem<'m, T: Real> {
 }
 
 /// The best attitude that a search has found.
-struct Found {
+struct FoundAttitude {
     at: [f64; 3],
     steps: usize,
     residual: f64,
@@ -378,9 +378,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 
     /// The equilibrium reached from `from`.
-    fn rest(&self, from: [f64; 3]) -> Found {
+    fn rest(&self, from: [f64; 3]) -> FoundAttitude {
         let mut best = self.newton(from);
-        let improved = |best: &mut Found, from: [f64; 3]| {
+        let improved = |best: &mut FoundAttitude, from: [f64; 3]| {
             let Some((at, steps)) = self.descended(from) else { return };
             let found = self.newton(at);
             let all = best.steps + steps + found.steps;
@@ -400,14 +400,14 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 
     /// The best attitude that Newton's method finds from `from`.
-    fn newton(&self, from: [f64; 3]) -> Found {
+    fn newton(&self, from: [f64; 3]) -> FoundAttitude {
         let Some(rough) = self.rough() else { return self.newton_steps(from) };
         let near = rough.newton_steps(from);
         let found = self.newton_steps(near.at);
-        Found { steps: near.steps + found.steps, ..found }
+        FoundAttitude { steps: near.steps + found.steps, ..found }
     }
 
-    fn newton_steps(&self, from: [f64; 3]) -> Found {
+    fn newton_steps(&self, from: [f64; 3]) -> FoundAttitude {
         let height = self.size;
         let mut at = from;
         // Residual and derivatives use the same integrals, which take nearly all of the time.
@@ -443,7 +443,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 break;
             }
         }
-        Found { at, steps, residual, here }
+        FoundAttitude { at, steps, residual, here }
     }
 
     fn stable(&self, at: [f64; 3]) -> bool {
@@ -454,9 +454,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
     /// From an unstable equilibrium: the nearest stable one on either side in heel, with the steps of
     /// the search. The arm is evaluated at fixed heel; where it changes from overturning to righting,
     /// all unknowns are solved for together.
-    fn beyond(&self, at: [f64; 3]) -> Option<Found> {
+    fn beyond(&self, at: [f64; 3]) -> Option<FoundAttitude> {
         let held = self.with(self.free.iter().copied().filter(|&k| k != 2).collect());
-        let side = |sign: f64| -> Option<Found> {
+        let side = |sign: f64| -> Option<FoundAttitude> {
             let (mut now, mut count) = (at, 0);
             let mut before = -1.0;
             while (now[2] - at[2]).abs() < std::f64::consts::PI {
@@ -474,7 +474,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
                     let found = self.newton(rest.at);
                     let near = (found.at[2] - rest.at[2]).abs() <= 3.0 * HEEL_STEP;
                     let good = found.residual <= self.loose() && near && self.stable(found.at);
-                    return good.then(|| Found { steps: count + found.steps, ..found });
+                    return good.then(|| FoundAttitude { steps: count + found.steps, ..found });
                 }
                 before = arm;
                 now = rest.at;
@@ -482,8 +482,9 @@ impl<'m> EquilibriumProblem<'m, f64> {
             None
         };
         let [up, down] = [side(1.0), side(-1.0)];
-        let turned =
-            |f: &Option<Found>| f.as_ref().map_or(f64::INFINITY, |f| (f.at[2] - at[2]).abs());
+        let turned = |f: &Option<FoundAttitude>| {
+            f.as_ref().map_or(f64::INFINITY, |f| (f.at[2] - at[2]).abs())
+        };
         if turned(&down) < turned(&up) * (1.0 - 1e-9) { down } else { up }
     }
 }

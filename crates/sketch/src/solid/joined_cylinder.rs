@@ -89,7 +89,7 @@ pub(super) fn joined_surface<T: Real>(
     };
     let SmoothPiece::Conic { centre: end, .. } = far else { return None };
     let (mut extent, mut kinks) =
-        (Extent { levels: [0.0, 1.0], angles: [0.0, sweep.re()] }, Vec::new());
+        (PatchExtent { levels: [0.0, 1.0], angles: [0.0, sweep.re()] }, Vec::new());
     let way = (end - centre).re();
     let level = |p: Vec3| way.dot(p - centre.re()) / way.norm_sq();
     let angle = |p: Vec3| libm::atan2(b.re().dot(p - centre.re()), a.re().dot(p - centre.re()));
@@ -128,12 +128,12 @@ pub(super) fn joined_surface<T: Real>(
 }
 
 /// Part of a cylinder: along the axis by the first face's length, and by angles from its start in its sense.
-struct Extent {
+struct PatchExtent {
     levels: [f64; 2],
     angles: [f64; 2],
 }
 
-impl Extent {
+impl PatchExtent {
     /// Makes it hold an arc, turned by whole turns to where least is added.
     fn add_arc(&mut self, middle: f64, half: f64) {
         let [from, to] = self.angles;
