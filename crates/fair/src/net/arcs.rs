@@ -6,9 +6,6 @@
 use crate::{Condition, Network};
 use moldloft_num::{Dual4, Real, Vec3};
 
-/// Fewest points of an arc: three are always on a circle.
-pub(super) const FEWEST_POINTS: usize = 4;
-
 /// The area of the triangle of an arc, relative to the square of its chord, below which it is straight.
 const STRAIGHT: f64 = 1e-9;
 

@@ -143,13 +143,6 @@ struct LineFairing<'a> {
     wider: Option<f64>,
 }
 
-/// A net within a network, with the places of its points there.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PlacedNet {
-    pub net: Network,
-    pub places: Vec<usize>,
-}
-
 impl Network {
     /// True for curves through points, which have measures of their own.
     pub(super) fn has_lines(&self, norm: RowNorm) -> bool {

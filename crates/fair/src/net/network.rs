@@ -2,7 +2,6 @@
 //! buttocks.
 
 use crate::error::check_finite;
-use crate::net::lines::PlacedNet;
 use crate::net::seam::SeamCondition;
 use crate::net::shapes::{NetworkCondition, one_way};
 use crate::net::strand::NetworkCurve;
@@ -41,6 +40,13 @@ pub struct Network {
     /// Conditions across their seams, and their dependence on the given points.
     pub(crate) seams: Vec<Condition>,
     pub(crate) across: Vec<SeamCondition>,
+}
+
+/// A net within a network, with the places of its points there.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlacedNet {
+    pub net: Network,
+    pub places: Vec<usize>,
 }
 
 impl Network {

@@ -12,7 +12,7 @@
 //! at every control point along the edge, hence everywhere on it. b and c are one number each for an
 //! edge, read from the surfaces as given by least squares; with them fixed the conditions are linear.
 
-use super::lines::PlacedNet;
+use super::network::PlacedNet;
 use super::seam::SeamCondition;
 use crate::optimum::Bend;
 use crate::{EndContinuity, FairError, Limit, Network, Space};

@@ -7,7 +7,6 @@
 
 use crate::curve::shaping::ShapeConstraints;
 use crate::interrogate::shape;
-use crate::net::arcs::FEWEST_POINTS;
 use crate::optimum::{ControlInequality, HeldDirections, MotionAxes};
 use crate::{Condition, FairError, InterpolationSpace, Motion, Network, ShapeCondition};
 use moldloft_num::{Vec3, gauss_points};
@@ -47,6 +46,9 @@ pub enum NetworkCondition {
         centre: bool,
     },
 }
+
+/// Fewest points of an arc: three are always on a circle.
+const FEWEST_ARC_POINTS: usize = 4;
 
 /// Rounds in which conditions are made linear.
 pub(super) const ROUNDS: usize = 20;
@@ -216,9 +218,9 @@ impl Network {
             };
             let strand = &self.strands[*curve];
             let found = between[1] - between[0] + 1;
-            if found < FEWEST_POINTS {
+            if found < FEWEST_ARC_POINTS {
                 let why =
-                    format!("expected {FEWEST_POINTS} points of an arc or more, found {found}");
+                    format!("expected {FEWEST_ARC_POINTS} points of an arc or more, found {found}");
                 return Err(refused(owner, why));
             }
             let arcs = self.arcs_of(*curve);
