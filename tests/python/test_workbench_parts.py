@@ -113,17 +113,41 @@ def board(tmp_path: Path, browser: Any) -> Iterator[BoardHand]:
 
 
 def on_page(part: Part, chance: random.Random) -> list[tuple[float, float]]:
-    """Where a hand draws the corners: the axes at scales of their own, none of them right."""
+    """Where a hand draws the corners: the axes at scales of their own, none of them right, and
+    so chosen that no corner is drawn on another one or on a line that it is not of."""
     sizes = [max(c[k] for c in part.corners) - min(c[k] for c in part.corners) for k in range(3)]
-    scales = [chance.uniform(170, 300) / size for size in sizes]
     ways = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in AXES]
-    return [
-        tuple(
-            sum(c[k] * scales[k] * ways[k][i] for k in range(3)) + chance.uniform(-NOISE, NOISE)
-            for i in range(2)
-        )
-        for c in part.corners
-    ]  # type: ignore[return-value]
+    lines = [pair for c in part.chains for pair in itertools.pairwise(c)] + part.strokes
+
+    def drawn() -> list[tuple[float, float]]:
+        scales = [chance.uniform(170, 300) / size for size in sizes]
+        return [
+            tuple(
+                sum(c[k] * scales[k] * ways[k][i] for k in range(3)) + chance.uniform(-NOISE, NOISE)
+                for i in range(2)
+            )
+            for c in part.corners
+        ]  # type: ignore[misc]
+
+    def room(places: list[tuple[float, float]]) -> float:
+        apart = [math.dist(p, q) for p, q in itertools.combinations(places, 2)]
+        beside = [
+            distance(places[k], places[i], places[j])
+            for i, j in lines
+            for k in range(len(places))
+            if k not in (i, j)
+        ]
+        return min(*apart, *beside)
+
+    return max((drawn() for _ in range(40)), key=room)
+
+
+def distance(at: tuple[float, float], p: tuple[float, float], q: tuple[float, float]) -> float:
+    """From a place to a line."""
+    u, v = q[0] - p[0], q[1] - p[1]
+    t = ((at[0] - p[0]) * u + (at[1] - p[1]) * v) / (u * u + v * v)
+    t = min(1.0, max(0.0, t))
+    return math.dist(at, (p[0] + t * u, p[1] + t * v))
 
 
 def type_of(p: Place, q: Place) -> str:
@@ -139,13 +163,7 @@ def away(p: tuple[float, float], q: tuple[float, float], others: list[Any]) -> t
     """The place on a line that is farthest from all others."""
 
     def gap(at: tuple[float, float]) -> float:
-        def to(a: tuple[float, float], b: tuple[float, float]) -> float:
-            u, v = b[0] - a[0], b[1] - a[1]
-            t = ((at[0] - a[0]) * u + (at[1] - a[1]) * v) / (u * u + v * v)
-            t = min(1.0, max(0.0, t))
-            return math.dist(at, (a[0] + t * u, a[1] + t * v))
-
-        return min(to(*other) for other in others)
+        return min(distance(at, *other) for other in others)
 
     steps = [k / 20 for k in range(3, 18)]
     return max(((p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])) for t in steps), key=gap)
