@@ -116,7 +116,7 @@ def strut_on_ball(rng: np.random.Generator) -> tuple[list[str], str, Distance]:
 
 
 def vessel(rng: np.random.Generator, taper: float) -> tuple[list[str], str, Distance]:
-    """A shaft on the half of a cone that lies across it."""
+    """A shaft across the half of a cone."""
     e, radius = frame(rng), rng.uniform(1.4, 2)
     # A turn about e0 from `out` passes through -e2, where the shaft comes from.
     out = -e[1] * np.dot(np.cross(e[0], e[1]), e[2])

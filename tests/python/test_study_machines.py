@@ -45,7 +45,7 @@ def test_one_table_by_all_engines(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="copies of processes are of Linux")
 def test_a_crash_costs_a_copy_of_the_process(tmp_path: Path) -> None:
-    """The process that supervises goes on, and the next case has one with all imports."""
+    """The supervising process continues, and the next case has one with all imports."""
     from moldloft.study.running import Cases
     from moldloft.study.workers import _idle, end_workers, evaluate_apart
 

@@ -128,7 +128,7 @@ def test_a_run_is_started_watched_and_stopped(model: Path) -> None:
     assert not stopped["running"] and 0 < sum(stopped["counts"].values()) <= 64
     assert stopped["failed"] == "" == ended["failed"]
     assert sum(ended["counts"].values()) == 64 and ended["counts"]["refused"] > 0
-    # The rows are those of the table, in the order that is asked for.
+    # The rows of the table, in the requested order.
     with study.Store(model.parent / "hull-study.sqlite") as store:
         table = store.results()
     page = studies.rows(

@@ -201,7 +201,7 @@ def test_files_are_tabs_with_one_history(beside: Callable[[], Bench], folder: Pa
     b.page.locator(".cm-lintRange-error:visible").first.wait_for()
     b.page.keyboard.press("Control+z")
     b.hand("settled()")
-    # The engine goes, and then the server: what was typed is still there, and counts.
+    # The engine ends, then the server: what was typed is kept and counts.
     for child in children(b.process.pid):
         os.kill(child, signal.SIGKILL)
     typed("z.csv", "9", "8")

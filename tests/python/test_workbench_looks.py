@@ -1,4 +1,4 @@
-"""First views of examples at four sizes in both themes, and what readers of screens are told.
+"""First views of examples at four sizes in both themes, and what screen readers announce.
 
 Under `MOLDLOFT_SOAK` all examples are drawn into the folder `MOLDLOFT_LOOKS`, to be looked at;
 in the ordinary run one.

@@ -7,7 +7,7 @@ export interface Shape {
   words: string
   /** Its key; none for those that are rarely wanted. */
   key: string
-  /** What is asked for. */
+  /** The request. */
   asks: string
   command(answer: string): string
   /** Whether it comes after what makes the body. */

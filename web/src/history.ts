@@ -76,7 +76,7 @@ interface Step {
 
 const count = (list: Step[], of: EditorView) => list.filter((s) => s.of === of).length
 
-/** Drops so many steps of a text, the first ones. */
+/** Drops the first steps of a text. */
 function drop(list: Step[], of: EditorView, many: number): void {
   for (let k = 0; many > 0 && k < list.length; )
     if (list[k].of === of) {

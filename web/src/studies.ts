@@ -153,7 +153,7 @@ export class Studies {
     return this.list.find((d) => d.name === this.chosen)
   }
 
-  /** Looks at the run now, and again while it goes on. */
+  /** Polls the run while it lasts. */
   private async watch(): Promise<void> {
     clearTimeout(this.timer)
     if (!this.chosen || this.element.hidden) return this.drawProgress()

@@ -441,7 +441,7 @@ fn linked(crossings: &BTreeMap<SampleEdge, [f64; 2]>) -> (Vec<Vec<[f64; 2]>>, Op
         let mut chain = vec![crossings[first]];
         let mut cell = cells(first).next();
         while let Some(here) = cell {
-            // Two lines in a cell are too near to be told apart.
+            // Two lines in a cell are too near to be distinguished.
             if of_cell(here).count() != 2 {
                 lost = lost.or(chain.last().copied());
                 break;

@@ -105,7 +105,7 @@ class SharedText:
             "recovered": self.recovered,
         }
 
-    # What pages are told.
+    # Messages to pages.
 
     def _tell(
         self, kind: str, state: Callable[[Reader], dict[str, Any]], but: int | None = None
