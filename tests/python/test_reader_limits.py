@@ -81,8 +81,8 @@ def test_reading_is_limited_in_time(tmp_path: Path) -> None:
     pytest.importorskip("ezdxf")
     path = tmp_path / "long.dxf"
     path.write_text(nested(4))
-    moldloft.limits(seconds=0.05)
-    with pytest.raises(moldloft.FileError, match=r"long\.dxf`: .*longer than the 0\.05 s"):
+    moldloft.limits(seconds=1e-3)
+    with pytest.raises(moldloft.FileError, match=r"long\.dxf`: .*longer than the 0\.001 s"):
         overlays.read(path)
 
 
