@@ -267,6 +267,7 @@ def test_random_parts_across_random_breaks(seed: int) -> None:
     step = np.array([[1e-5, 0], [0, 0], [0, 0], [0, 0]])
     slope = (area(corners + step) - area(corners - step)) / 2e-5
     assert m.eval("part.area") == pytest.approx(exact, rel=1e-9)
+    assert m.derivative("part.area", "s") == pytest.approx(slope, rel=1e-8)
     panels = m.eval("mesh.area")
     warnings = [d for d in m.diagnostics if d.id == "knuckle-across-panels"]
     if warnings:

@@ -319,7 +319,7 @@ impl<T: Real> CellFrame<'_, T> {
     /// The points of the surface of which a cell is made.
     pub fn points(&self, surface: &dyn Surface<T>) -> Vec<Vec3<T>> {
         let shares = &tables().nodes;
-        if self.moves() {
+        if self.is_one_sided() {
             self.moving_places(surface, shares)
         } else {
             self.places(surface, shares)
@@ -374,9 +374,10 @@ impl<T: Real> CellFrame<'_, T> {
         }
     }
 
-    /// True when it depends on a parameter of the model.
-    fn moves(&self) -> bool {
-        self.chart.is_some_and(Chart::moves) || !self.ends.iter().all(|t| t.is_constant())
+    /// True when derivatives at its edges are those beside them, inside: edges move with a parameter
+    /// of the model, or may touch a line at which the parent surface is not smooth.
+    fn is_one_sided(&self) -> bool {
+        T::PARTS > 1 && (self.chart.is_some() || !self.ends.iter().all(|t| t.is_constant()))
     }
 }
 
@@ -481,14 +482,31 @@ fn moving_chart<T: Real>(
     us: &[T],
     vs: &[T],
 ) -> Vec<Vec3<T>> {
-    let inside = |t: f64| t.clamp(BESIDE, 1.0 - BESIDE);
+    // Where a line leaves it a chart narrows to a point: there the middle is inside.
+    let inside = |place: [f64; 2]| -> [f64; 2] {
+        let beside = place.map(|t| t.clamp(BESIDE, 1.0 - BESIDE));
+        std::array::from_fn(|axis| {
+            if beside[axis] == place[axis] {
+                return place[axis];
+            }
+            let across = |t: f64| {
+                let mut end = beside;
+                end[axis] = t;
+                chart.real(end)
+            };
+            let ([a, b], [c, d]) = (across(0.0), across(1.0));
+            let width = (c - a).abs().max((d - b).abs());
+            let step = if width > 2.0 * BESIDE { BESIDE / width } else { 0.5 };
+            place[axis].clamp(step, 1.0 - step)
+        })
+    };
     let mut points = Vec::with_capacity(us.len() * vs.len());
     let mut exact = Vec::with_capacity(us.len() * vs.len());
     for &u in us {
         for &v in vs {
             let place = [u, v];
             let at = chart.at(place);
-            let [x, y] = chart.real(place.map(|t| inside(t.re())));
+            let [x, y] = chart.real(inside(place.map(|t| t.re())));
             // The derivatives beside the boundary; the point on it.
             let jet = surface.jet(T::from(x), T::from(y), Order::First);
             points.push(jet.p + jet.u * (at[0] - x) + jet.v * (at[1] - y));

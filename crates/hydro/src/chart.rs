@@ -131,10 +131,6 @@ impl<T: Real> ChartBoundary<T> {
         }
         self
     }
-
-    fn is_constant(&self) -> bool {
-        self.0.iter().all(|c| c.is_constant())
-    }
 }
 
 /// The roots of that polynomial on [0, 1].
@@ -198,11 +194,6 @@ impl<T: Real> Chart<T> {
         let [u, v] = self.at(place.map(T::from)).map(T::re);
         let within = |w: f64, closed: bool| if closed { w } else { w.clamp(0.0, 1.0) };
         [within(u, self.closed[0]), within(v, self.closed[1])]
-    }
-
-    /// True when it depends on a parameter of the model.
-    pub fn moves(&self) -> bool {
-        T::PARTS > 1 && !self.cuts.iter().flat_map(|cut| &cut.sides).all(ChartBoundary::is_constant)
     }
 
     /// The part between two boundaries along a parameter, over a range of the other.
