@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.interpolate import BSpline
+from scipy.optimize import brentq
 
 import moldloft
 import random_models
@@ -128,6 +130,28 @@ def test_hydrostatics_by_a_reverse_sweep():
     rows, ahead = _core.vjp(m._document, flat, by, "reverse")
     both = np.array(list(weights.values())) @ np.array(m.derivatives(list(weights), by))
     assert ahead == [] and np.abs(rows[0] - both).max() < OF_QUADRATURE * np.abs(both).max()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_a_wall_of_vertical_lines_by_a_reverse_sweep(degree):
+    """A transom alone: as it is raised its wetted area falls by its breadth at the water."""
+    y, z = np.array([0, 1.63, 2.206, 2.643]), np.array([-1.743, -0.893, -0.0792, 1.863])
+    inner = np.linspace(0, 1, 5 - degree)[1:-1]
+    knots = np.concatenate([[0] * (degree + 1), inner, [1] * (degree + 1)])
+    outline = BSpline(knots, np.column_stack([y, z]), degree)
+    points = [f"AbsPoint P{k}(34, {y[k]}, {z[k]} + up);" for k in range(4)]
+    text = (
+        f'Model info(symmetry = "y"); {"".join(points)}'
+        f"BCurve c({{P0, P1, P2, P3}}, degree = {degree});"
+        'ProjCurve q(c, "y=0"); RuledSurf wall(c, q, divisions = {8, 4});'
+    )
+    for up in np.linspace(-1.8, 1.7, 15).tolist():
+        m = moldloft.loads(f"param float up = {up!r}; {text}")
+        # Without a hull it is open.
+        m.partial = True
+        breadth = 2 * outline(brentq(lambda t, up=up: outline(t)[1] + up, 0, 1))[0]
+        rows, _ = of_figures(m, ["wetted_area"], ["up"], "reverse")
+        assert rows[0, 0] == pytest.approx(-breadth, rel=1e-8), up
 
 
 def test_hydrostatics_of_panels_by_a_reverse_sweep():

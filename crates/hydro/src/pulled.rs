@@ -12,7 +12,7 @@ use crate::cell::{CellFrame, PolynomialCell, SurfaceDivision, interpolated, pull
 use crate::figures::{of_integrals, origin_of};
 use crate::hydrostatics::Symmetry;
 use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, integrated, rule_points};
-use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
+use crate::strip::{CoordinatePlane, Strip, StripLine, strips};
 use moldloft_num::{Adjoints, DerivativeTape, Dual, Real, Rev, Vec3, gauss_rule};
 use moldloft_parallel::on_one_thread;
 use std::sync::Arc;
@@ -210,9 +210,7 @@ impl NetPull<'_> {
             return;
         }
         let whole = match &found[..] {
-            [strip] if strip.wet == Wet::All && Arc::ptr_eq(&strip.cell, &leaf.cell) => {
-                Some(pulled_whole(strip, self.origin, sums))
-            }
+            [strip] if strip.is_all_of(&leaf.cell) => Some(pulled_whole(strip, self.origin, sums)),
             _ => None,
         };
         let count = self.body.cells().len();

@@ -244,6 +244,14 @@ impl<T: Real> Strip<T> {
         self.wet != Wet::All
     }
 
+    /// True when it is this whole cell. Wet lines alone do not make it one: where the plane cuts
+    /// along the lines, they end at the cut.
+    pub fn is_all_of(&self, cell: &Arc<PolynomialCell<T>>) -> bool {
+        self.wet == Wet::All
+            && (self.from.re(), self.to.re()) == (0.0, 1.0)
+            && Arc::ptr_eq(&self.cell, cell)
+    }
+
     /// 1 if the cross product of the inner and the outer derivative points outward, otherwise -1.
     pub fn sign(&self) -> f64 {
         if self.cell.reversed == (self.inner == 0) { -1.0 } else { 1.0 }
