@@ -333,7 +333,8 @@ class Floating:
         Raises
         ------
         ModelError
-            If the body cannot carry the mass.
+            If the body cannot carry the mass, or the skin is open below the water upright and at
+            every heel.
 
         Examples
         --------
@@ -347,9 +348,11 @@ class Floating:
             ("displacement", float(displacement), float(trim), float(heel), free_trim, False)
             for heel in heels
         ]
-        return RightingCurve(
-            self._floating(rows, cg, density, gravity, "both", by, accuracy, flooded=True)
-        )
+        found = self._floating(rows, cg, density, gravity, "both", by, accuracy, flooded=True)
+        if found and all(math.isnan(state.gz) for state in found):
+            upright = ("displacement", float(displacement), float(trim), 0.0, free_trim, False)
+            self._floating([upright], cg, density, gravity, "both", by, accuracy)
+        return RightingCurve(found)
 
     def _floating(
         self,

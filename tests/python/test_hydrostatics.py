@@ -135,6 +135,7 @@ def test_a_hull_without_a_bottom_has_no_figures(cli, model_file):
     asked = [
         model.hydrostatics,
         lambda: model.hydrostatics(draft=0.2),
+        lambda: model.righting_curve([0.1, 0.2], 0.5, cg=(2, 0, 0), density=1),
         lambda: model.eval("hydrostatics.volume"),
         lambda: model.derivatives(["hydrostatics.volume"], by=["a.z"]),
         lambda: moldloft.loads(BOTTOMLESS + "float v = hydrostatics.volume;"),
