@@ -89,11 +89,12 @@ def rows() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "yacht opened", lambda: moldloft.load(yacht)
     yield "yacht after a change", edits(moldloft.load(yacht))
     merchant = moldloft.load(GALLERY / "merchant.sdl")
-    mass = merchant.hydrostatics(density=1.025).displacement
+    floating = merchant.hydrostatics(density=1.025)
+    mass, cg = floating.displacement, (floating.lcb, 0, 5)
     heels = np.radians(np.arange(0, 61, 5.0))
     yield (
         "righting arms at 13 heels, free trim",
-        lambda: merchant.righting_curve(heels, mass, cg=(0, 0, 5), density=1.025),
+        lambda: merchant.righting_curve(heels, mass, cg=cg, density=1.025),
     )
 
 
