@@ -6,22 +6,12 @@ Chromium, as the tests of the page do.
 
 from __future__ import annotations
 
-import io
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
-from playwright.sync_api import sync_playwright
+from page_pictures import opened_page, picture
 
-ROOT = Path(__file__).resolve().parents[1]
-IMAGES = ROOT / "docs" / "images"
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-SIZE = {"width": 1500, "height": 900}
+SIZE = (1500, 900)
 PANELS = '{"left": 190, "right": 190, "messages": 80}'
 WIDTH = 1100
 """Picture points of a page's width."""
@@ -69,17 +59,10 @@ def run(page: Any, *commands: str) -> None:
         settle(page)
 
 
-def picture(page: Any, name: str) -> None:
-    """The desk alone, in 128 colours."""
+def shown(page: Any, name: str) -> None:
+    """The desk alone."""
     page.mouse.move(4, 4)
-    with Image.open(io.BytesIO(page.locator(".desk").screenshot())) as drawn:
-        height = round(drawn.height * WIDTH / drawn.width)
-        small = drawn.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
-    out = io.BytesIO()
-    few = small.quantize(128, Image.Quantize.MAXCOVERAGE, kmeans=10, dither=Image.Dither.NONE)
-    few.save(out, "PNG", optimize=True)
-    (IMAGES / f"{name}.png").write_bytes(out.getvalue())
-    print(f"{name}.png: {len(out.getvalue()) / 1000:.0f} kB")
+    picture(page.locator(".desk"), name, WIDTH)
 
 
 def draw(page: Any) -> None:
@@ -87,34 +70,17 @@ def draw(page: Any) -> None:
     opened(page, "section.csv", section())
     run(page, "knuckle 21", "tolerance 0.02")
     page.locator(".desk-shape").focus()
-    picture(page, "desk-section")
+    shown(page, "desk-section")
     page.get_by_role("button", name="Open").click()
     opened(page, "hull.csv", hull())
     run(page, "tolerance 0.005", "cut y 1.4")
     page.get_by_role("listbox", name="lines").get_by_text("waterline 1.23").click()
     settle(page)
-    picture(page, "desk-hull")
-
-
-def main() -> None:
-    """Draws them."""
-    chromium = next(filter(None, map(shutil.which, ["chromium", "chromium-browser"])), None)
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        model = Path(folder) / "boat.sdl"
-        model.write_text("AbsPoint A(0, 0, 0);\n")
-        command = [sys.executable, "-m", "moldloft", "view", str(model), "--no-browser"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-            assert server.stdout is not None
-            browser = play.chromium.launch(executable_path=chromium, args=FLAGS)
-            page = browser.new_page(viewport=SIZE)
-            # The program and the panels give way.
-            page.add_init_script(f"localStorage.setItem('moldloft.sizes', '{PANELS}')")
-            page.goto(server.stdout.readline().strip())
-            page.locator("body[data-state=alive]").wait_for(timeout=60_000)
-            draw(page)
-            browser.close()
-            server.terminate()
+    shown(page, "desk-hull")
 
 
 if __name__ == "__main__":
-    main()
+    # The program and the panels give way.
+    sizes = f"localStorage.setItem('moldloft.sizes', '{PANELS}')"
+    with opened_page("AbsPoint A(0, 0, 0);\n", SIZE, sizes) as page_of_desk:
+        draw(page_of_desk)

@@ -6,22 +6,12 @@ A browser opens an empty model in the page of `moldloft view` and takes the step
 
 from __future__ import annotations
 
-import io
 import re
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 from typing import Any
 
-from PIL import Image
-from playwright.sync_api import sync_playwright
+from page_pictures import opened_page, picture
 
-ROOT = Path(__file__).resolve().parents[1]
-IMAGES = ROOT / "docs" / "images"
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-SIZE = {"width": 1400, "height": 800}
+SIZE = (1400, 800)
 WIDTH = 1000
 """Picture points of a picture's width."""
 
@@ -35,18 +25,11 @@ def settle(page: Any) -> None:
     page.wait_for_timeout(600)
 
 
-def picture(page: Any, name: str) -> None:
-    """The page in 128 colours."""
+def shown(page: Any, name: str) -> None:
+    """The page as it is."""
     settle(page)
     page.mouse.move(4, 4)
-    with Image.open(io.BytesIO(page.screenshot())) as drawn:
-        height = round(drawn.height * WIDTH / drawn.width)
-        small = drawn.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
-    out = io.BytesIO()
-    few = small.quantize(128, Image.Quantize.MAXCOVERAGE, kmeans=10, dither=Image.Dither.NONE)
-    few.save(out, "PNG", optimize=True)
-    (IMAGES / f"{name}.png").write_bytes(out.getvalue())
-    print(f"{name}.png: {len(out.getvalue()) / 1000:.0f} kB")
+    picture(page, name, WIDTH)
 
 
 def form(page: Any, kind: str) -> Any:
@@ -95,7 +78,7 @@ def draw(page: Any) -> None:
     """All pictures."""
     start = page.get_by_role("region", name="start")
     start.get_by_role("checkbox").check()
-    picture(page, "by-hand-start")
+    shown(page, "by-hand-start")
     start.get_by_role("button", name="Begin with points").click()
     for x, beam, keel in SECTIONS:
         points(page, (x, beam, 1.2), (x, beam, 0.3), (x, beam / 2, keel), (x, 0, keel))
@@ -104,7 +87,7 @@ def draw(page: Any) -> None:
     for k in range(4):
         panel = picked(page, "BCurve", *(f"P{4 * k + j}" for j in (1, 2, 3, 4)), degree="2")
         if k == 1:
-            picture(page, "by-hand-section")
+            shown(page, "by-hand-section")
         add(page, panel)
         curves.append(f"c{k + 1}")
     add(page, picked(page, "CLoftSurf", *curves))
@@ -117,28 +100,11 @@ def draw(page: Any) -> None:
     page.keyboard.press("Escape")
     page.get_by_role("application", name="model").focus()
     page.keyboard.press("f")
-    picture(page, "by-hand-boat")
+    shown(page, "by-hand-boat")
     page.keyboard.press("q")
-    picture(page, "by-hand-views")
-
-
-def main() -> None:
-    """Draws them."""
-    chromium = next(filter(None, map(shutil.which, ["chromium", "chromium-browser"])), None)
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        model = Path(folder) / "boat.sdl"
-        model.write_text("")
-        command = [sys.executable, "-m", "moldloft", "view", str(model), "--no-browser"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-            assert server.stdout is not None
-            browser = play.chromium.launch(executable_path=chromium, args=FLAGS)
-            page = browser.new_page(viewport=SIZE)
-            page.goto(server.stdout.readline().strip())
-            page.locator("body[data-state=alive]").wait_for(timeout=60_000)
-            draw(page)
-            browser.close()
-            server.terminate()
+    shown(page, "by-hand-views")
 
 
 if __name__ == "__main__":
-    main()
+    with opened_page("", SIZE) as opened:
+        draw(opened)
