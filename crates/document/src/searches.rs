@@ -94,8 +94,8 @@ impl CommonPoints {
 }
 
 impl Searches {
-    /// The points of a curve or surface that are nearest to given ones; `None` for anything else.
-    /// When `budget` is spent the answer is incomplete.
+    /// The points of a curve or surface nearest to given ones; `None` for anything else. The answer
+    /// is incomplete when `budget` is spent.
     pub fn nearest(
         &self,
         name: &str,

@@ -428,7 +428,7 @@ impl<T: Real> Cutter<'_, T> {
             let place = if along == 0 { [s, t] } else { [t, s] };
             cutter.inside(line.plane, chart, place)[line.axis] - line.at
         };
-        // Where the line enters or leaves across a side.
+        // Positions where the line enters or leaves across a side.
         for side in [0.0, 1.0] {
             let step = |k: usize| k as f64 / STEPS as f64;
             for k in 0..STEPS {

@@ -122,7 +122,7 @@ fn side(patch: usize, direction: usize) -> Node {
 /// whether its direction is reversed.
 type IntervalShares = HashMap<(IntervalId, u32), (bool, Shares)>;
 
-/// The counts of divisions of another state of a model, to be kept where they are free.
+/// The counts of divisions of a model in another state, used where counts are free.
 #[derive(Clone, Debug, Default)]
 pub struct Nominal(pub(crate) Arc<HashMap<(Arc<str>, Option<u32>), Counts>>);
 

@@ -229,7 +229,7 @@ def _run(arguments: list[str]) -> int:
     return status
 
 
-#: The options of all commands, and how many values each takes: they may stand before the command.
+#: Options of all commands, with their numbers of values; they are accepted before the command.
 _COMMON = {"--color": 1, "--limit": 1, "--traceback": 0}
 
 

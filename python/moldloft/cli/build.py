@@ -154,7 +154,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             sources = _build_watched(options)
         except Error as error:
-            # What was read before is still what the model is made of.
+            # The model still depends on the files read before.
             print(error.rendered, file=sys.stderr)
         watch.end(sources)
         print(f"watching {', '.join(sources)}", file=sys.stderr)

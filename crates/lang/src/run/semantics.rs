@@ -178,10 +178,10 @@ impl<'a> Semantics<'a> {
             self.say(
                 Diagnostic::warning(
                     "missing-return",
-                    format!("not every way through `{word}` returns a value"),
+                    format!("not every path through `{word}` returns a value"),
                 )
                 .at(routine.name.span)
-                .expected("`return` with a value at the end of each way")
+                .expected("`return` with a value at the end of each path")
                 .help("add one at the end of the function"),
             );
         }

@@ -193,6 +193,7 @@ macro_rules! bead_and_ring {
         }
 
         #[doc = $what]
+        /// The same on a snake, as a ring.
         ///
         /// The same on a snake, as a ring.
         #[derive(Kind)]

@@ -63,7 +63,7 @@ impl<T: Real> PlainSecond<'_, T> {
     }
 }
 
-/// Points of a piece that its polynomials go through.
+/// Number of points interpolated by the polynomial of a piece.
 pub(super) const NODES: usize = 8;
 
 /// Powers of the length along a piece.
@@ -407,7 +407,7 @@ pub(super) struct CutView<T: Real> {
 }
 
 impl<T: Real> CutView<T> {
-    /// The surface that it is on; the first where the second shape is none.
+    /// Its surface; the first one if the second shape is not a surface.
     pub fn surface(&self) -> &SurfaceRef<T> {
         let second = self.cut.both.second.surface().filter(|_| self.side == 1);
         second.unwrap_or(&self.cut.both.first)
