@@ -122,7 +122,7 @@ class Hydrostatics:
     vcb: float | None = None
     """Centre of buoyancy, z."""
     waterplane_area: float | None = None
-    """Area of the cut with the water."""
+    """Area of the waterplane."""
     lcf: float | None = None
     """Centre of flotation, x."""
     tcf: float | None = None

@@ -78,7 +78,7 @@ pub fn foot(
     (off <= 0.5 * accuracy && p.distance(start) <= reach).then_some(p)
 }
 
-/// The same on one surface.
+/// The point of a single surface next to `start`.
 fn foot_on_one(
     field: &SurfaceField<'_>,
     surface: u32,

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Number of parameters in each direction at which the distance of a patch is measured.
 const DISTANCES: usize = 8;
 
-/// Those tried first.
+/// The rows whose combinations are measured first.
 const TRIED: [usize; 2] = [1, 5];
 
 /// Parameters in each direction at which the normal of a patch is compared with that of the

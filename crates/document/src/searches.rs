@@ -36,9 +36,9 @@ struct SearchCache {
 
 /// Nearest points, in the order of the points given.
 pub enum NearestPoints {
-    /// Of a curve.
+    /// The results for a curve.
     Curve(Vec<Nearest<1>>),
-    /// Of a surface.
+    /// The results for a surface.
     Surface(Vec<Nearest<2>>),
 }
 

@@ -55,7 +55,7 @@ impl View {
         }
     }
 
-    /// The same as a word of names.
+    /// The view's name as one word, for names of layers and files.
     fn word(self) -> String {
         self.title().replace(' ', "-")
     }

@@ -271,7 +271,7 @@ pub enum Edge<T> {
     Own,
     /// Along a chain of pieces.
     Pieces(SmallVec<[Piece<T>; 1]>),
-    /// The same line as edge 0..4 of this surface, in the same direction (a closed surface).
+    /// The edge is the line of edge 0..4 of this surface, in the same direction (a closed surface).
     SameAs(u8),
     /// A single point, with its object if it has one.
     Pole(Option<Key>),
@@ -358,7 +358,7 @@ pub enum Face<T> {
         /// Its edges.
         edges: Box<Edges<T>>,
     },
-    /// The same as face 0..6 of the solid (a closed solid), at equal parameters.
+    /// The face coincides with face 0..6 of the solid (a closed solid), at equal parameters.
     SameAs(u8),
 }
 

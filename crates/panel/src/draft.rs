@@ -50,7 +50,7 @@ pub(crate) type SharedKnuckles = Arc<Knuckles>;
 /// The knuckles of surfaces; an image breaks where its original does.
 struct KnuckleFinder<'g> {
     graph: &'g Graph<f64>,
-    /// Those of an earlier state, with the graph's last change at that time.
+    /// The knuckles of an earlier state, with the graph's last change at that time.
     before: Option<(&'g HashMap<Key, SharedKnuckles>, u64)>,
     found: HashMap<Key, SharedKnuckles>,
 }

@@ -264,22 +264,22 @@ impl Row {
         }
     }
 
-    /// The same, documented.
+    /// Sets the documentation.
     pub fn doc(self, doc: impl Into<Cow<'static, str>>) -> Self {
         Self { doc: doc.into(), ..self }
     }
 
-    /// The same with arguments.
+    /// Sets the arguments.
     pub fn fields(self, fields: Vec<FieldSpec>) -> Self {
         Self { fields: fields.into(), ..self }
     }
 
-    /// The same with an example.
+    /// Sets the example.
     pub fn example(self, example: impl Into<Cow<'static, str>>) -> Self {
         Self { example: example.into(), ..self }
     }
 
-    /// The same, called without a cache.
+    /// Marks the kind as cheap: its values are not cached.
     pub fn cheap(self) -> Self {
         Self { cheap: true, ..self }
     }

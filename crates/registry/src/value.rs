@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// last index runs fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<E> {
-    /// The one or two extents.
+    /// The extents.
     pub shape: ArrayShape,
     /// The elements, `[i * n + j]`.
     pub items: Vec<E>,

@@ -66,7 +66,7 @@ pub enum EdgeChoice {
     Along(CoordinateAxis),
     /// Edges of faces.
     Of(FaceChoice),
-    /// Those between two faces.
+    /// Edges between two faces.
     Between(FaceChoice, FaceChoice),
 }
 

@@ -24,7 +24,7 @@ def map_of(shape: Any, kind: Any) -> Any:
 
 
 def faces_of(shape: Any, kind: Any) -> list[Any]:
-    """The same as a list."""
+    """The parts of a shape with a given type as a list, each once."""
     shapes = map_of(shape, kind)
     return [shapes.FindKey(k) for k in range(1, shapes.Extent() + 1)]
 

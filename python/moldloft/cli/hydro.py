@@ -449,7 +449,7 @@ def _warn(rows: list[Hydrostatics]) -> None:
         print(text + "enters: no figures of a body", file=sys.stderr)
     lost = sum(row.status == "not-converged" for row in rows)
     if lost:
-        print(f"warning: {lost} of {len(rows)} attitudes did not come to rest", file=sys.stderr)
+        print(f"warning: no equilibrium found for {lost} of {len(rows)} attitudes", file=sys.stderr)
     if any(row.stable is False for row in rows):
         print("warning: unstable: small turns are not righted in this attitude", file=sys.stderr)
     if any(row.lolls for row in rows):

@@ -165,7 +165,7 @@ impl Data {
         self.parts_at(options, job, &job.points)
     }
 
-    /// The same with the shape made linear at a curve.
+    /// `parts_at` with the shape made linear at a curve.
     fn parts_at<'a>(
         &self,
         options: &DataOptions,

@@ -599,7 +599,8 @@ impl InterpolationSpace {
         Ok(size(&all[..n]))
     }
 
-    /// The same by some of the sites: of each control point the one where it counts most.
+    /// The reach of control points that only some of the sites limit: of each control point the
+    /// site with the largest coefficient.
     fn thin_reach(&self, radii: &[f64]) -> Result<Vec<f64>, FairError> {
         let n = self.space.count();
         let mut best: Vec<Option<(f64, usize)>> = vec![None; n];

@@ -84,11 +84,12 @@ const CHANCE: f64 = 0.01;
 /// had a false finding away from the ends.
 const SCORES: [f64; 2] = [4.0, 5.0];
 
-/// The same where fewer than `CLOSE` neighbours are on one side: there a cubic is extrapolated, and a
-/// straight end or a trailing edge looks like a slip.
+/// The score from which a point is proposed where fewer than `CLOSE` neighbours are on one side: a
+/// cubic is extrapolated there, and a straight end or a trailing edge looks like a slip.
 const END_SCORE: f64 = 7.0;
 
-/// The same between the two, where there are more on one side than on the other.
+/// The score from which a point is proposed between these two cases: where there are more
+/// neighbours on one side than on the other.
 const ASIDE_SCORE: f64 = 6.0;
 
 /// Leaving a point out cures when no neighbour has a larger score without it.

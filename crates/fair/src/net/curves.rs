@@ -273,8 +273,8 @@ impl Network {
         Ok(out)
     }
 
-    /// The same of a curve without parameters, whose spline has even ones, against its largest
-    /// tolerance; the point is the one that moves farthest.
+    /// The swing of a curve without parameters, measured against its largest tolerance: its spline
+    /// has even parameters. The point is that which moves farthest.
     fn even_swing(&self, k: usize, moves: &[Vec3<f64>], share: f64) -> Option<CurveSwing> {
         let own = &self.strands[k].points;
         let finite = |i: usize| Some(self.limit.radii[i]).filter(|r| r.is_finite());

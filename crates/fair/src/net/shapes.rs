@@ -88,12 +88,12 @@ const AGREES: f64 = 1e-9;
 /// Conditions of a network made linear at its points.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LinearConditions {
-    /// Equations, each with the condition that asks for it.
+    /// Equations, each with the condition that requires it.
     pub equations: Vec<(Condition, usize)>,
     pub halves: Vec<ControlInequality>,
-    /// By how much equations are missed at these points, and whose that is.
+    /// The largest residual of an equation at these points, and the condition that requires it.
     pub missed: (f64, usize),
-    /// The same of half-spaces.
+    /// The largest distance from a half-space at these points, and the condition that requires it.
     pub left: (f64, usize),
 }
 

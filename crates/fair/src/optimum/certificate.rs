@@ -30,7 +30,7 @@ pub fn ball_gap(job: &Job, rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>
     gap(&job.points, &job.limit, &job.frozen(), rows, norm, points, &relative)
 }
 
-/// The same for anything that is made of rows.
+/// The gap of any problem whose measure is given by rows.
 pub(crate) fn gap(
     original: &[Vec3<f64>],
     limit: &Limit,

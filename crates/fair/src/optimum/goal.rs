@@ -50,7 +50,8 @@ pub(crate) fn worth<T: Real>(gain: T) -> T {
     worth_beside(gain, 0.0)
 }
 
-/// The same where the measure is as far as `foreign` none of the data's, and says as little about the gain.
+/// [`worth`] where the measure differs by `foreign` from one that suits the data, and therefore
+/// tells less about the gain.
 fn worth_beside<T: Real>(gain: T, foreign: f64) -> T {
     let own = 1.0 - foreign;
     let (stays, moves) = (1.0 + (STAYS - 1.0) * own, 1.0 + (MOVES - 1.0) * own);

@@ -75,7 +75,7 @@ pub struct Settings {
 }
 
 impl<'a, T: Scalar> Inputs<'a, T> {
-    /// The same once more.
+    /// Another copy of these inputs.
     pub fn again(&self) -> Inputs<'a, T> {
         let &Inputs { overrides, seed, seeded_objects, budget, settings } = self;
         Inputs { overrides, seed, seeded_objects, budget, settings }

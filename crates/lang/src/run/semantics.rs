@@ -63,7 +63,7 @@ pub(crate) fn has_gaps(m: &Module) -> bool {
 #[derive(Clone)]
 struct Declared {
     span: Span,
-    /// None of names that are declared with several types, and of objects.
+    /// The type; `None` for objects and for names that are declared with several types.
     ty: Option<Type>,
     /// Dimensions that are numbers of the text.
     dims: Option<Vec<f64>>,

@@ -628,7 +628,7 @@ pub fn inside<'v, T: Real>(root: &'v Value<T>, path: &ValuePath) -> Option<&'v V
     })
 }
 
-/// The same, to change.
+/// The value inside lists and records at the end of a path, for changes.
 pub fn inside_mut<'v, T: Real>(
     root: &'v mut Value<T>,
     path: &ValuePath,
@@ -732,7 +732,7 @@ pub fn shape_of<T: Real>(value: &Value<T>) -> SizedType {
     }
 }
 
-/// The same in words.
+/// The type and extents of a value as text.
 pub fn shape_text<T: Real>(value: &Value<T>) -> String {
     shape_of(value).to_string()
 }

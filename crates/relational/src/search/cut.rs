@@ -286,7 +286,8 @@ impl<T: Real> Both<T> {
         self.along_on(0, q, d, order)
     }
 
-    /// The same, with the parameters of the first (0) or the second surface (1).
+    /// The derivatives of [`Self::along`], with those of the parameters of the first (0) or the
+    /// second surface (1).
     fn along_on(
         &self,
         side: usize,

@@ -204,11 +204,11 @@ pub struct XYZMagnet<T: Real> {
     surface: Onto<T>,
     /// The first coordinate: "x", "y" or "z".
     axis1: Arc<str>,
-    /// Its value.
+    /// Value of the first coordinate.
     value1: T,
     /// The second coordinate, different from the first.
     axis2: Arc<str>,
-    /// Its value.
+    /// Value of the second coordinate.
     value2: T,
 }
 

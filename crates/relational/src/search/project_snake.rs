@@ -572,7 +572,7 @@ impl<T: Real> ProjectedPath<T> {
         jet
     }
 
-    /// The same without the step at a seam.
+    /// The parameters (u, v, 0) at `t` with derivatives, continued over a seam without a step.
     fn run_on(&self, t: T, order: Order) -> CurveJet<T> {
         let q = self.unknowns(t.re());
         let plain = || Vec3::new(T::from(q[0]), T::from(q[1]), T::zero());
