@@ -86,7 +86,7 @@ class Interface:
     """
 
     def reversed(self) -> Interface:
-        """This interface seen from the donor."""
+        """Get the interface as seen from the donor."""
         back = [0, 0, 0]
         for axis, number in enumerate(self.transform):
             back[abs(number) - 1] = (axis + 1) * (1 if number > 0 else -1)

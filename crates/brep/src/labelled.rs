@@ -44,7 +44,7 @@ pub struct LabelledFacets {
     pub colours: Vec<Option<[u8; 3]>>,
     /// Their layers.
     pub layers: Vec<Vec<String>>,
-    /// The usual length of a side: an edge is found if triangles deviate by less.
+    /// Typical length of a triangle side. Deviations of triangles from an edge must be smaller for the edge to be found.
     pub step: f64,
 }
 

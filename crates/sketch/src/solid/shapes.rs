@@ -29,8 +29,10 @@ impl std::fmt::Display for ShapeFault {
                     FacetFaultKind::Seam => {
                         "a face closes around its axis, and no seam avoids its vertices"
                     }
-                    FacetFaultKind::Edge => "faces meet, or touch, in an edge that is not found",
-                    FacetFaultKind::Vertex => "faces meet in a corner that is not found",
+                    FacetFaultKind::Edge => {
+                        "faces meet or touch along an edge that could not be computed"
+                    }
+                    FacetFaultKind::Vertex => "faces meet in a corner that could not be computed",
                     FacetFaultKind::Surface => "a face is on no surface that such files hold",
                     FacetFaultKind::Patch => "no patch comes near enough to a face",
                     FacetFaultKind::Many => "a face takes too many patches",
