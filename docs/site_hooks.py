@@ -106,6 +106,14 @@ def on_files(files: Any, config: Any) -> Any:
     return files
 
 
+def _late(boost: float) -> str:
+    """The head of a generated page, which the search lists after guides.
+
+    The titles of these pages are short words, and match many queries by their first letters.
+    """
+    return f"---\nsearch:\n  boost: {boost}\n---\n\n"
+
+
 def _reference() -> dict[str, str]:
     """A page for each kind and function, and the index of terms."""
     from moldloft.cli.doc import has_picture
@@ -120,7 +128,7 @@ def _reference() -> dict[str, str]:
         return there and has_picture(row)
 
     pages = entry_pages(rows, pictured, libraries)
-    found = {f"reference/{name}.md": text for name, text in pages.items()}
+    found = {f"reference/{name}.md": _late(0.01) + text for name, text in pages.items()}
     return {**found, "terms.md": terms_page([*rows, *libraries])}
 
 
@@ -138,7 +146,7 @@ def _diagnostics() -> dict[str, str]:
     text = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
     back = "[All diagnostics](../diagnostics.md)"
     return {
-        f"diagnostics/{name}.md": f"# {name}\n\n{body.strip()}\n\n{back}\n"
+        f"diagnostics/{name}.md": f"{_late(0.2)}# {name}\n\n{body.strip()}\n\n{back}\n"
         for name, body in _SECTION.findall(text)
     }
 

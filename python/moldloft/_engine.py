@@ -29,7 +29,7 @@ def command(*arguments: str) -> list[str]:
 
 
 def main() -> None:
-    """Answers the parent until the connection closes.
+    """Serve requests of the parent process until the connection closes.
 
     The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``, or the same for
     ``board``, which draws, ``desk``, which fairs, and ``files``, which exports.

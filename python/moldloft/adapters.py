@@ -85,7 +85,7 @@ def to_pyvista(
     tolerance: float | None = None,
     angle: float | None = None,
 ) -> Any:
-    """The panels as ``pyvista.PolyData``, with the number of the patch of each in ``patch``.
+    """The panels as ``pyvista.PolyData``, with the patch number of each panel in ``patch``.
 
     The names of the patches are in the field data ``patches``.
 
@@ -124,7 +124,7 @@ def to_pyvista(
 
 
 def polydata(points: NDArray[np.float64], faces: NDArray[np.uint32]) -> Any:
-    """Points, and faces between them where there are any, as ``pyvista.PolyData``.
+    """Points, and faces between them if there are any, as ``pyvista.PolyData``.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def to_trimesh(
 ) -> Any:
     """The panels as ``trimesh.Trimesh``, quadrilaterals halved, with ``patch`` of each face.
 
-    Vertices are not merged nor moved: shared ones are shared by identity already.
+    Vertices are neither merged nor moved: shared vertices are shared by identity.
 
     Parameters
     ----------
@@ -337,10 +337,10 @@ def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
 
 
 def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
-    """Adds the exact surfaces to a new model of Gmsh; the entities as (dimension, tag).
+    """Add the exact surfaces to a new Gmsh model; returns the entities as (dimension, tag).
 
     Faces become physical groups by the names of their surfaces; those that Gmsh divides
-    are in the group ``faces``. Gmsh is initialised when it is not.
+    are in the group ``faces``. Gmsh is initialised if necessary.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ __all__ = ["ArgumentError", "explain", "names_of"]
 
 
 class ArgumentError(Error, TypeError, ValueError):
-    """An argument is not of the kind that the function takes.
+    """An argument has the wrong type for the function.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ _WORDS = {
 
 
 def explain(module: dict[str, Any]) -> None:
-    """Makes errors of the public functions and classes of a module name the wrong argument.
+    """Make errors of a module's public functions and classes name the invalid argument.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return function(*arguments, **options)
         except Error as error:
-            # What a function passes on is named as its caller knows it.
+            # Arguments that a function passes on are named as its caller knows them.
             if isinstance(error, ArgumentError) and (found := _fault(function, arguments, options)):
                 raise ArgumentError(found[1], found[0]) from error
             raise

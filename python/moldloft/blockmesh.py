@@ -46,7 +46,7 @@ _FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), 
 
 @dataclass(frozen=True)
 class Hex:
-    """A part of a block that blockMesh takes whole."""
+    """A part of a block that becomes one block of blockMesh."""
 
     block: int
     """The block."""
@@ -72,7 +72,7 @@ Cuts: TypeAlias = list[tuple[set[int], set[int], set[int]]]
 
 
 def cut(blocks: Blocks, every: int = 0) -> list[Hex]:
-    """The blocks in parts that blockMesh can join.
+    """The blocks divided into parts that blockMesh can join.
 
     Parameters
     ----------
@@ -160,8 +160,8 @@ def _separate(blocks: Blocks, parts: Sequence[Hex], cuts: Cuts) -> bool:
 def write(blocks: Blocks, every: int = 0) -> bytes:
     """The dictionary.
 
-    Faces of blocks that meet nothing are patches, named as the surfaces that they are; those in a
-    plane of symmetry of the model are ``symmetryPlane``. A surface's patch is a ``wall``.
+    Faces of blocks without a neighbour are patches, named after their surfaces; those in a plane of
+    symmetry of the model are ``symmetryPlane``. A surface's patch is a ``wall``.
 
     Parameters
     ----------

@@ -77,16 +77,16 @@ class Interface:
     donor: int
     donor_face: int
     donor_begin: tuple[int, int, int]
-    """The donor's vertex that is ``begin``."""
+    """The donor's vertex at ``begin``."""
     donor_end: tuple[int, int, int]
-    """The donor's vertex that is ``end``."""
+    """The donor's vertex at ``end``."""
     transform: tuple[int, int, int]
     """For each axis of the block, the parallel axis of the donor (from 1), negative if opposite; as
     in CGNS.
     """
 
     def reversed(self) -> Interface:
-        """The same seen from the donor."""
+        """Get the interface as seen from the donor."""
         back = [0, 0, 0]
         for axis, number in enumerate(self.transform):
             back[abs(number) - 1] = (axis + 1) * (1 if number > 0 else -1)
@@ -115,7 +115,7 @@ class Boundary:
     end: tuple[int, int, int]
     """Its first and last vertex, (i, j, k) from 0."""
     name: str
-    """The surface that it is, or the block and the face."""
+    """Name of the surface, or of block and face."""
     kind: str
     """``"symmetry"`` in a symmetry plane of the model, ``"wall"`` where it is a surface object,
     else ``"open"``."""
@@ -124,7 +124,8 @@ class Boundary:
 class Blocks:
     """Hexahedra of all shown solids of a model, at one state of it.
 
-    Vertices common to solids are single. Open divisions (0) of a solid are those of its neighbours.
+    Common vertices of solids are shared. Open divisions (0) of a solid follow those of its
+    neighbours.
 
     Examples
     --------

@@ -79,7 +79,7 @@ def booklet(
     drafts: Sequence[float] = (),
     heels: Sequence[float] = (),
 ) -> str:
-    """The page of a loading.
+    """The booklet of a loading as an HTML page.
 
     Parameters
     ----------

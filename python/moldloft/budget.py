@@ -128,7 +128,7 @@ def parsed(text: str) -> dict[str, str | int | float]:
 
 @contextmanager
 def within_limits() -> Iterator[None]:
-    """Holds code of Python, such as readers of foreign files, to the limits of time and memory.
+    """Apply the limits of time and memory to Python code, such as readers of foreign files.
 
     The call ends as by Ctrl-C, including its calls of other libraries, except inside compiled code.
     Memory is the growth of the process, where the system reports it.
@@ -181,7 +181,7 @@ class _Watch(threading.Thread):
                     self._raise(ctypes.py_object(_OverspentError))
 
     def end(self) -> None:
-        """End the signal: nothing is raised after this call."""
+        """Stop the timer: nothing is raised after this call."""
         with self._lock:
             self._ended.set()
             self._raise(None)

@@ -23,7 +23,7 @@ _ROUNDING = 1e-9
 
 
 def parameter(name: str, values: ArrayLike, beyond: bool) -> Floats:
-    """Parameters as an array of finite numbers, in [0, 1] unless they may be beyond.
+    """Parameters as an array of finite numbers, in [0, 1] unless values beyond are allowed.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ class SurfaceCalculus:
 
 
 def broadcast(u: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Parameters of a surface in one shape."""
+    """Parameters u and v of a surface as arrays of the same shape."""
     try:
         us, vs = np.broadcast_arrays(u, v)
     except ValueError:

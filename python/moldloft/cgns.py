@@ -76,7 +76,7 @@ class Zone:
 
 @dataclass(frozen=True)
 class Interface:
-    """A range of vertices that two edges share."""
+    """A range of vertices common to two edges."""
 
     zone: int
     side: int
@@ -85,7 +85,7 @@ class Interface:
     donor: int
     donor_side: int
     donor_first: int
-    """The donor's vertex that is ``first``."""
+    """The donor's vertex at ``first``."""
     donor_last: int
 
     @property
@@ -176,7 +176,7 @@ def _runs(
         a, b = edge[at], edge[at + 1]
         here = (z, side, at)
         others = [p for p in places.get((min(a, b), max(a, b)), []) if p != here and a != b]
-        # Where more than two edges meet there is no one-to-one interface.
+        # More than two edges at one line have no one-to-one interface.
         if len(others) != 1:
             at += 1
             continue
@@ -342,8 +342,8 @@ _LENGTHS = {"m": "Meter", "cm": "Centimeter", "mm": "Millimeter", "ft": "Foot", 
 def begin(file: Any, title: str, dimensions: int, length: str = "") -> Any:
     """The base of a new file, with the dimensions of its cells and of space.
 
-    Coordinates are dimensional where the unit of length is one of SIDS, of another unit where it is
-    not, and of an unknown one where the model has none.
+    Coordinates are dimensional with a unit of SIDS, otherwise with a user-defined unit, or an
+    unknown one if the model states none.
     """
     _root(file)
     node(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], dtype=np.float32))

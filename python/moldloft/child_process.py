@@ -39,7 +39,7 @@ class ProcessEnd:
     late: bool
     """True if it was ended because it exceeded the time limit."""
     asked: bool
-    """True if it had taken the request."""
+    """True if the process had received the request."""
 
     @property
     def by(self) -> str:
@@ -127,7 +127,7 @@ class ChildProcess:
         return ProcessEnd(self._process.returncode, late.is_set(), asked)
 
     def terminate(self) -> None:
-        """Lets the process end what it has begun; :meth:`end` waits for that."""
+        """Let the process finish its work; :meth:`end` waits for that."""
         if self._grace > 0 and math.isinf(self._killed_at):
             self._killed_at = time.monotonic() + self._grace
             self._process.terminate()
@@ -141,7 +141,7 @@ class ChildProcess:
         self._process.wait()
 
     def end(self) -> None:
-        """Ends the process and closes its pipes; one that is already ending keeps its status."""
+        """Ends the process and closes its pipes; if it is already ending, its status is kept."""
         self._stop()
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
@@ -150,7 +150,7 @@ class ChildProcess:
 
 
 def send_end(status: int) -> None:
-    """Tell the parent process that the copy of this one which was to answer has ended.
+    """Report to the parent that the forked copy of this process has ended without an answer.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def _basis(degree: int, count: int, u: Floats) -> tuple[Integers, Floats]:
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """A design variable: displacements of the control points of a box for its value 1."""
+    """A design variable: displacements of a box's control points per unit of its value."""
 
     name: str
     """Name of the parameter of the model."""
@@ -193,7 +193,7 @@ class Box:
         return np.where(np.abs(found - np.round(found)) <= ON_SIDE, np.round(found), found)
 
     def weights(self, points: ArrayLike) -> tuple[Integers, Floats]:
-        """Influence of control points on points: the derivatives of points by control points.
+        """Derivatives of points with respect to control points.
 
         Parameters
         ----------
@@ -219,7 +219,7 @@ class Box:
         return number, weight
 
     def displaced(self, displacements: Floats, points: ArrayLike) -> Floats:
-        """Displacements of points for those of control points, ``(n, 3)``."""
+        """Displacements of points for given displacements of control points, ``(n, 3)``."""
         number, weight = self.weights(points)
         net = np.asarray(displacements, dtype=np.float64).reshape(-1, 3)
         found: Floats = np.einsum("nk,nkc->nc", weight, net[number])
@@ -276,7 +276,7 @@ class Box:
 
 
 class Deformation:
-    """Points that move with variables, and the program of the shape they carry.
+    """Points that move with variables, and the program of their shape.
 
     Made by :meth:`of_file`, :meth:`of_mesh` and :meth:`of_surfaces`. Boxes that overlap add their
     displacements; all of them embed the undeformed points.
@@ -409,9 +409,9 @@ class Deformation:
     ) -> Deformation:
         """The deformation of NURBS surfaces by their control points.
 
-        An affine deformation is exact. Any other one moves the surface as its control points move,
-        and differs from that of the surface's points by an error that falls with the square of the
-        distance of control points.
+        An affine deformation is exact. Otherwise the control points are moved, and the surface
+        differs from the deformed one by an error proportional to the square of the distance between
+        control points.
 
         Parameters
         ----------

@@ -89,7 +89,7 @@ class Differentiable:
         return self._document.jacobian(names_of(by))
 
     def derivative(self, expression: str, by: str) -> Any:
-        """The exact derivative of a number or vector by one parameter or literal.
+        """The exact derivative of a number or vector with respect to one parameter or literal.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Differentiable:
         return self._document.derivatives([expression], [by])[0][0]
 
     def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
-        """Exact derivatives of several expressions by several parameters, ``[expression][by]``.
+        """Exact derivatives of expressions with respect to parameters, ``[expression][by]``.
 
         Parameters
         ----------
@@ -157,10 +157,10 @@ class Differentiable:
 
     @property
     def literals(self) -> list[str]:
-        """The numbers of the text that the model can be differentiated by, such as ``"P21.y"``.
+        """The literals with respect to which the model can be differentiated, such as ``"P21.y"``.
 
-        In the order of the text: numbers in the arguments of objects that are literals, without
-        whole numbers (counts, degrees). Numbers in loaded files and in loops are not among them.
+        These are numbers in the arguments of objects, in the order of the text, without integers
+        (counts, degrees) and without numbers in loaded files and in loops.
 
         Examples
         --------
@@ -177,7 +177,7 @@ class Differentiable:
     def vjp(
         self, weights: Mapping[str, ArrayLike], by: Sequence[str] | None = None
     ) -> dict[str, Any] | Floats:
-        """Exact derivatives of a weighted sum of outputs by many inputs at once.
+        """Exact derivatives of a weighted sum of outputs with respect to many inputs at once.
 
         The product of a row vector, the weights, with the Jacobian (vector-Jacobian product,
         reverse mode): the cost of a few evaluations for any number of inputs. Weights on the mesh
@@ -236,7 +236,7 @@ class Differentiable:
     def gradient(
         self, expression: str, by: Sequence[str] | None = None
     ) -> dict[str, float] | Floats:
-        """Exact derivatives of one number by many inputs; see :meth:`vjp`.
+        """Exact derivatives of one number with respect to many inputs; see :meth:`vjp`.
 
         Parameters
         ----------
@@ -269,7 +269,7 @@ class Differentiable:
     def value_and_gradient(
         self, expression: str, by: Sequence[str] | None = None
     ) -> tuple[float, dict[str, float] | Floats]:
-        """One number and its exact derivatives by many inputs, as optimisers take them.
+        """One number and its exact derivatives with respect to many inputs, for optimisers.
 
         Parameters
         ----------
@@ -301,7 +301,9 @@ class Differentiable:
         return float(self._document.eval(expression)), gradient
 
     def jvp(self, directions: Mapping[str, float], outputs: Sequence[str]) -> dict[str, Any]:
-        """The change of outputs when inputs change at given rates: one evaluation in forward mode.
+        """The rates of change of outputs for given rates of the inputs.
+
+        One evaluation in forward mode.
 
         Parameters
         ----------
@@ -340,7 +342,7 @@ class Differentiable:
     def linearize(
         self, outputs: Sequence[str]
     ) -> tuple[dict[str, Any], Callable[..., dict[str, Any] | Floats]]:
-        """Values of outputs, and the function that :meth:`vjp` is at this state of the model.
+        """Values of outputs, with :meth:`vjp` as a function at this state of the model.
 
         Parameters
         ----------

@@ -37,7 +37,7 @@ class Node:
 
 
 def layers(nodes: Sequence[Node]) -> list[list[Node]]:
-    """Nodes by depth: each below all of its parents, ordered to keep lines short.
+    """Nodes by depth, each below all its parents, ordered to keep lines short.
 
     >>> a, b = Node("a", "AbsPoint", "point", []), Node("b", "Line", "curve", ["a"])
     >>> [[node.name for node in layer] for layer in layers([a, b])]

@@ -246,7 +246,7 @@ def state_html(state: Hydrostatics) -> str:
 
 
 def rows_html(table: _Rows, names: Sequence[str]) -> str:
-    """Rows of figures, units in the header; angles in degrees."""
+    """A table of figures with units in the header; angles in degrees."""
     kept = [name for name in names if any(getattr(row, name) is not None for row in table)]
     head = [header(name, table.units) for name in kept]
     rows = [[_number(shown(name, getattr(row, name))) for name in kept] for row in table]

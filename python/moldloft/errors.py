@@ -71,7 +71,7 @@ class Error(Exception):
 
     @property
     def rendered(self) -> str:
-        """The message as a terminal shows it: diagnostics as they are, others after ``error:``."""
+        """The message for a terminal: diagnostics unchanged, other errors after ``error:``."""
         text = str(self).rstrip()
         return text if self.diagnostics else f"error: {text}"
 
@@ -136,7 +136,7 @@ def _again(made: type[Error], message: str, recorded: list[Any], more: dict[str,
 
 
 class ModelError(Error, ValueError):
-    """The model, or an expression or value for it, is wrong; see ``diagnostics``."""
+    """The model, an expression or a value is invalid; see ``diagnostics``."""
 
 
 class FairingError(Error, ValueError):

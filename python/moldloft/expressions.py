@@ -48,9 +48,9 @@ _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 class Expr:
     """A number of a model, as an expression of the language, with its current value if it is known.
 
-    Arithmetic and NumPy's elementary functions give further expressions. Comparisons look at the
-    value, so that a model function may branch. Turning an expression into a float would cut it
-    off from its parameters and raises.
+    Arithmetic and NumPy's elementary functions give further expressions. Comparisons use the value,
+    so that a model function may branch. Conversion to a float raises an error, because it would
+    lose the dependence on parameters.
     """
 
     __array_priority__ = 1000
@@ -62,7 +62,7 @@ class Expr:
 
     @property
     def value(self) -> float:
-        """The number in this run of the model function."""
+        """The current value in this run of the model function."""
         if self._value is None:
             raise TypeError(
                 f"the value of `{self.text}` is not known while the model function runs; "
@@ -239,7 +239,7 @@ _OPERATORS: dict[str, Callable[..., Any]] = {
 
 
 def literal(x: float) -> str:
-    """A number as the language writes it."""
+    """A number in the notation of the language."""
     if not math.isfinite(x):
         raise ValueError(f"a number of a model must be finite, not {x}")
     return repr(int(x)) if x == int(x) and abs(x) < 1e15 else repr(x)
@@ -267,7 +267,7 @@ def _required(x: object) -> Expr:
 
 
 def spelled(x: object) -> str:
-    """An argument as the language writes it."""
+    """An argument in the notation of the language."""
     if isinstance(x, Handle):
         return x.name
     if isinstance(x, Shape):
@@ -287,10 +287,10 @@ def spelled(x: object) -> str:
 
 
 class Handle:
-    """An object under its name, to build others on.
+    """A named object, for use in others.
 
-    ``P.x`` is an expression, and so is the component of a point of a curve or surface,
-    ``hull(0.5, 0.25).y``. Each class of objects has a subclass with its members.
+    ``P.x`` is an expression, like the component of a point of a curve or surface, ``hull(0.5,
+    0.25).y``. Each class of objects has a subclass with its members.
     """
 
     #: Members by name, with what each is; empty where the class of the object is not known.
@@ -448,7 +448,7 @@ class RelabelHandle(Handle):
 
 
 def arguments(args: Sequence[object], named: Mapping[str, object]) -> str:
-    """Arguments as the language writes them; ``lambda_`` and ``from_`` lose the underscore."""
+    """Arguments in the notation of the language; ``lambda_`` and ``from_`` lose the underscore."""
     words = [spelled(a) for a in args]
     for key, value in named.items():
         plain = key[:-1] if keyword.iskeyword(key[:-1]) else key
@@ -463,8 +463,8 @@ def _called(name: str, parameters: Sequence[object]) -> str:
 class Shape:
     """A field or set of a model, as an expression of the language.
 
-    Fields combine by ``+ - * /`` and ``**``, sets by ``|``, ``&``, ``-``, ``^``, and ``-`` is the
-    complement. Functions such as ``sphere`` and ``set`` come from :mod:`moldloft.functions`.
+    Fields combine by ``+ - * /`` and ``**``, sets by ``|``, ``&``, ``-``, ``^`` and unary ``-``,
+    the complement. Functions such as ``sphere`` and ``set`` come from :mod:`moldloft.functions`.
     """
 
     __array_ufunc__ = None
@@ -639,7 +639,7 @@ _RESULTS: dict[str, type[Expr] | type[Handle] | type[Shape]] = {
 
 
 def result(class_: str, text: str) -> Any:
-    """An expression of a class of the registry.
+    """An expression of a given class.
 
     >>> result("curve", "keel")
     <CurveHandle: keel>
@@ -648,7 +648,7 @@ def result(class_: str, text: str) -> Any:
 
 
 def object_named(class_: str, name: str) -> Handle:
-    """An object of a class of the registry, under its name."""
+    """A named object of a given class."""
     made = _RESULTS.get(class_, AnyHandle)
     return made(name) if issubclass(made, Handle) else AnyHandle(name)
 

@@ -104,8 +104,8 @@ def produce(
     """The files of a model in one format; ``path`` gives their names.
 
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
-    names the patches to write, ``tolerance`` is how far fitted patches and panels may be off,
-    ``whole`` asks for both sides of a symmetric model, ``triangles`` for triangles only.
+    names the patches to write, ``tolerance`` is the maximum error of fitted patches and panels,
+    ``whole`` selects both sides of a symmetric model, ``triangles`` only triangles.
 
     Parameters
     ----------

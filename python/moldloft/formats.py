@@ -34,11 +34,11 @@ class Format:
     about: str
     """A line about it."""
     suffix: str = ""
-    """The end of its files' names; the name where it is empty."""
+    """Extension of its files; if empty, the name."""
     other_suffix: str = ""
-    """Another usual ending of its files, which does not determine the format."""
+    """Another usual extension of its files, which does not determine the format."""
     aliases: tuple[str, ...] = ()
-    """Other names that mean it."""
+    """Aliases of its name."""
     holds: str = "panels"
     """``panels``, ``panels, lines, points``, ``grids``, ``surfaces``, ``volumes``, ``drawing``,
     ``model`` or ``table``."""
@@ -190,7 +190,7 @@ def formats() -> dict[str, Format]:
 
 
 def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
-    """The row of a format, by name, alias or an extension that no other has.
+    """The row of a format, by name, alias or unambiguous extension.
 
     Parameters
     ----------

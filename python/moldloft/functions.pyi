@@ -252,7 +252,7 @@ def cone(
     axis: _Curve,
     angle: _Number,
 ) -> FieldShape:
-    """The double cone whose apex is the start of a line.
+    """The double cone with its apex at the start of a line.
 
     Parameters
     ----------
@@ -319,7 +319,7 @@ def cyclide(
     minor : number
         Mean radius of the tube. At least 0.
     change : number
-        Variation of the tube's radius: thinner there, thicker opposite; below the major radius.
+        Variation of the tube's radius, less than the major radius.
 
     Returns
     -------
@@ -336,7 +336,7 @@ def tube(
     curve: _Curve,
     radius: _Number,
 ) -> FieldShape:
-    """The distance from a curve less a radius: a round bar swept along it, with round ends.
+    """The distance from a curve minus a radius: a round bar along the curve, with round ends.
 
     Parameters
     ----------
@@ -360,7 +360,7 @@ def plate(
     surface: _Surface,
     thickness: _Number,
 ) -> FieldShape:
-    """The distance from a surface on both sides, less half a thickness: a plate with round edges.
+    """The distance from a surface on both sides, minus half a thickness: a plate with round edges.
 
     Parameters
     ----------
@@ -480,14 +480,14 @@ def revolved(
     curve: _Curve,
     axis: _Curve,
 ) -> SetShape:
-    """The body that a closed plane curve passes over in a full turn about a line of its plane.
+    """The solid of revolution of a closed plane curve about a line in its plane.
 
     Parameters
     ----------
     curve : curve
         The closed plane curve.
     axis : line
-        A line in its plane that it does not cross.
+        The axis: a line in the plane of the curve that does not cross it.
 
     Returns
     -------
@@ -503,7 +503,7 @@ def revolved(
 def set(
     field: object,
 ) -> SetShape:
-    """The points where a field is not positive, or a line as a wire, or a point.
+    """The points where a field is not positive; or a line as a wire; or a point.
 
     Its faces are called as the field is. A line reaches from its start to its end. Sets are combined by `|` (union), `&` (intersection), `-`
     (difference), `^` (points in just one) and the sign `-` (complement).
@@ -581,12 +581,12 @@ def tetrahedron(
 def thin(
     set: _Set,
 ) -> SetShape:
-    """The faces of a set as sheets, without its inside.
+    """The faces of a set as sheets, without its interior.
 
     Parameters
     ----------
     set : set
-        The set with the intersections of its primitives.
+        The set whose primitives intersect.
 
     Returns
     -------
@@ -650,7 +650,7 @@ def attributes(
     material : text, optional
         Its material.
     tolerance : number, optional
-        Distance below which two of its points count as one. At least 0.
+        Distance below which two points of the set count as one. At least 0.
     tags : text, optional
         Further attributes, as `tag = text` separated by `;`.
 
@@ -690,7 +690,7 @@ def regularized(
 def polyhedron(
     body: _Body,
 ) -> SetShape:
-    """The set of a closed body of plane faces: exact half-spaces, one for each plane.
+    """The set of a closed body of plane faces: exact half-spaces, one per plane.
 
     Coplanar triangles form a face. For bodies with thousands of faces, such as a triangulated ball,
     use `set(inside(body))`. Coplanar faces share a half-space, even if a change of a parameter
@@ -819,7 +819,7 @@ def stretched(
     axis: _Curve,
     factor: _Number,
 ) -> AnyShape:
-    """A field or set stretched along a line; the plane across the line's start stays.
+    """A field or set stretched along a line; the plane across the line's start is fixed.
 
     Parameters
     ----------
@@ -865,11 +865,11 @@ def liming(
     l2 : field
         The other body.
     l3 : field
-        The rail, or one of the two others.
+        The rail, or the first of the two other bodies.
     l4 : field, optional
         The other of them.
     lambda : number, optional
-        Shape: near 0 the blend hugs the rail, near 1 the bodies. Default 0.5.
+        Shape between 0 (near the rail) and 1 (near the bodies). Default 0.5.
     contact : integer, optional
         Order of contact on a rail. 1 to 100, default 1.
     low : point, optional
@@ -898,8 +898,8 @@ def zhang(
     low: _Point | None = ...,
     high: _Point | None = ...,
 ) -> FieldShape:
-    """The transition from one body, which it touches at its rail, to another, which it touches at its own:
-    (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
+    """The transition from one body, tangent to it at its rail, to another, tangent at its own rail: (1
+    - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 
     After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; over a box `low`, `high` this is
     proved, or the point at which it fails is reported.
@@ -907,15 +907,16 @@ def zhang(
     Parameters
     ----------
     l1 : field
-        The body that it begins on.
+        The body at the first rail.
     l2 : field
-        The body that it ends on.
+        The body at the second rail.
     l3 : field
         The rail on the first body.
     l4 : field
         The rail on the second.
     lambda : number, optional
-        Shape: which body it follows longer. Default 0.5.
+        Shape between 0 (longer along the first body) and 1 (longer along the second). Default
+        0.5.
     contact : integer, optional
         Order of contact. 1 to 100, default 1.
     low : point, optional
@@ -1072,7 +1073,7 @@ def transition(
     l2 : field
         The body that it ends on.
     l3 : field
-        The rail on the first body: its solid side keeps the body.
+        The rail on the first body; the body is kept on its solid side.
     l4 : field
         The rail on the second.
     lambda : number, optional
@@ -1103,9 +1104,10 @@ def smooth_union(
 ) -> FieldShape:
     """The union of two bodies with the edge between them filled smoothly.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -1137,9 +1139,10 @@ def smooth_intersection(
 ) -> FieldShape:
     """The intersection of two bodies with the edge between them rounded.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -1171,9 +1174,10 @@ def smooth_difference(
 ) -> FieldShape:
     """The difference of two bodies with the edge between them rounded.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -1406,7 +1410,7 @@ def set_shell(
     set: _Set,
     thickness: _Number,
 ) -> SetShape:
-    """The wall inside of a set's surface.
+    """The wall inside a set's surface.
 
     Parameters
     ----------
@@ -1804,8 +1808,8 @@ def winner(
     set: _Set,
     point: _Point,
 ) -> AnyShape:
-    """Name of the deciding primitive at a point: the least of a union, the greatest of an
-    intersection.
+    """Name of the primitive that decides the value at a point: the least of a union, the greatest of
+    an intersection.
 
     Parameters
     ----------
@@ -1879,8 +1883,8 @@ def range(
 def degree(
     shape: _Set,
 ) -> Expr:
-    """The degree of a field, or the highest in a set: numbers 0, planes 1, sums the larger, products the sum,
-    functions one more, primitives from outside 100.
+    """The degree of a field, or the highest in a set: numbers 0, planes 1, sums the maximum, products
+    the sum, functions one more, external primitives 100.
 
     Parameters
     ----------
@@ -2004,7 +2008,7 @@ def components(
     high: _Point | None = ...,
     depth: _Integer | None = ...,
 ) -> Expr:
-    """The number of bodies of a set, those that only touch counted separately: by facets.
+    """The number of bodies of a set, by facets; bodies that only touch are counted separately.
 
     Parameters
     ----------
@@ -2039,7 +2043,7 @@ def bounds(
     set : set
         The set.
     accuracy : number, optional
-        Largest excess over the set. At least 0, default 0.001.
+        Maximum distance between the box and the set. At least 0, default 0.001.
 
     Returns
     -------
@@ -2293,7 +2297,8 @@ def redist(
     given: _Numbers,
     n: _Integer,
 ) -> AnyShape:
-    """`n` numbers with the law of a given row: its linear interpolation by index, ends to the bit.
+    """`n` numbers distributed like those of a given row: its linear interpolation by index, with
+    identical ends.
 
     Parameters
     ----------
@@ -2320,7 +2325,7 @@ def count_for(
     growth: _Number | None = ...,
 ) -> Expr:
     """The fewest numbers with which `d_tanhx(0, length, ds1, ds2, n)` grows by at most the factor
-    `growth` from step to step; with 0 for a free end, as there.
+    `growth` from step to step; a step of 0 means a free end.
 
     The value is an integer and has no derivatives.
 
@@ -2794,12 +2799,13 @@ def lengthc(
 def length(
     curve: object,
 ) -> Expr:
-    """The length of a curve: of one with a parameter as `lengthc`, of points the sum of their distances.
+    """The length of a curve: for a pcurve the same as `lengthc`, for points the sum of the distances
+    of neighbours.
 
     Parameters
     ----------
     curve : value
-        The curve, or the points of one.
+        A pcurve, or a curve of points.
 
     Returns
     -------
@@ -2948,7 +2954,7 @@ def len(
 def cumlen(
     curve: _Vectors,
 ) -> AnyShape:
-    """The length of a curve of points up to each of them, from 0 to `length`.
+    """The arc lengths of the points of a curve, from its first point, from 0 to `length`.
 
     Parameters
     ----------
@@ -3200,7 +3206,7 @@ def cumsum(
 def diff(
     a: _Numbers,
 ) -> AnyShape:
-    """The differences of neighbours in a row of numbers: one less than there are numbers.
+    """The differences of neighbours in a row of numbers: one element fewer than the row.
 
     Parameters
     ----------
@@ -3223,7 +3229,8 @@ def interp(
     xs: _Numbers,
     ys: _Numbers,
 ) -> AnyShape:
-    """The broken line through the points (xs, ys), at x: a number, or an array of them; beyond the ends constant.
+    """The piecewise linear function through the points (xs, ys), evaluated at x, a number or an array;
+    constant beyond the ends.
 
     Parameters
     ----------
@@ -3411,7 +3418,7 @@ def append(
     items: object,
     value: object,
 ) -> AnyShape:
-    """A list with values added behind its last.
+    """A list with values appended.
 
     Parameters
     ----------
@@ -3476,7 +3483,7 @@ def points(
 def join(
     *parts: object,
 ) -> AnyShape:
-    """Curves (or farrays) joined end to end; a common point of two is kept once.
+    """Curves (or farrays) joined end to end; a point common to two neighbours is kept once.
 
     Ends count as one when they differ by less than 1e-12 of the size: by rounding. The point of the
     first of the two stays.
@@ -3616,7 +3623,7 @@ def spread_j(
 def d1(
     a: object,
 ) -> Expr:
-    """The first extent of an array: as a.d1, of any expression.
+    """The first extent of an array: the same as `a.d1`, for any expression.
 
     Parameters
     ----------
@@ -3826,9 +3833,9 @@ def frame(
     curve: _Vectors,
     n0: _Vector | None = ...,
 ) -> AnyShape:
-    """Unit normals of a curve of points that turn about its tangents as little as can be: with
-    `tangents(c)` and their vector product a frame at each point (double reflection: Wang and others,
-    ACM Trans. Graph. 27, 2008).
+    """Unit normals of a curve of points with the least rotation about its tangents; together with
+    `tangents(c)` and their vector product they are a frame at each point (double reflection: Wang
+    and others, ACM Trans. Graph. 27, 2008).
 
     The first normal is the component of `n0` normal to the first tangent; by default `n0` is the
     coordinate axis with the largest angle to the tangent.
@@ -3854,8 +3861,9 @@ def frame(
 def curvatures(
     curve: _Vectors,
 ) -> AnyShape:
-    """The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
-    the inverse radius of the circle through them; at an end that of its neighbour.
+    """The curvatures at the points of a curve: 4 A / (a b c) of the triangle of a point and its two
+    neighbours, the inverse radius of the circle through them. An end point has the curvature of its
+    neighbour.
 
     For curves with a parameter use `curvc` and `curvature`.
 
@@ -3880,9 +3888,9 @@ def curvatures(
 def torsion(
     curve: _Vectors,
 ) -> AnyShape:
-    """The torsions of a curve of points, positive for right-handed screws: 18 V / (d e f) times a ratio
-    of curvatures (Boutin 2000), of the tetrahedron of four neighbours; the first of the four inner
-    steps counts for the point before it. Zero where the curve is plane or straight.
+    """The torsions at the points of a curve, positive for right-handed screws: 18 V / (d e f) of the
+    tetrahedron of four neighbouring points, times a ratio of curvatures (Boutin 2000). A segment
+    has one torsion, stored at its first point. Zero where the curve is plane or straight.
 
     First-order accurate in the spacing of the points.
 
@@ -3953,8 +3961,8 @@ def mean(
 def normals(
     s: _Vectors,
 ) -> AnyShape:
-    """The unit normals at the points of a surface, along s_i x s_j, of the bicubic spline through them;
-    at poles the mean of the next line's, made unit.
+    """The unit normals at the points of a surface, along s_i x s_j, of the bicubic spline through
+    them; at a pole the normalised mean of the normals of the adjacent line.
 
     Parameters
     ----------
@@ -4005,7 +4013,7 @@ def project(
     dir: object,
 ) -> AnyShape:
     """The points of a surface nearest to the points of an array ("closest"), or their projections
-    along a direction, either way.
+    along a direction, forwards or backwards.
 
     Along a direction the nearest of several intersections counts. With "closest" a point beyond an
     edge is projected to the edge.
@@ -4048,8 +4056,8 @@ def intersect(
     b : value
         A curve or a surface.
     branch : integer, optional
-        The number of the branch, longest first; shapes other than two surfaces have one. At
-        least 1, default 1.
+        The number of the branch, longest first; only two surfaces have several. At least 1,
+        default 1.
 
     Returns
     -------
@@ -4066,8 +4074,8 @@ def intersections(
     a: object,
     b: object,
 ) -> AnyShape:
-    """All branches of the intersection of two surfaces as a list of curves, the longest first; of other
-    shapes the one curve that `intersect` gives.
+    """All branches of the intersection of two surfaces as a list of curves, the longest first; for
+    other shapes, the result of `intersect` alone.
 
     `foreach (c in intersections(p, q))` walks through them, `intersections(p, q)[2]` is the second.
 
@@ -4093,8 +4101,8 @@ def tfi(
     s: object,
     kind: _Text | None = ...,
 ) -> AnyShape:
-    """Transfinite interpolation: the surface with the four edges of `s`, to the bit, and its inside
-    interpolated from them.
+    """Transfinite interpolation: the surface with exactly the four edges of `s`, and interior points
+    interpolated from these.
 
     `s` is a surface with its edges set (inner points are ignored); or a list of four curves, s[1,],
     s[m,], s[,1], s[,n], which must meet at the corners; or a list of six surfaces, the faces i = 1,
@@ -4133,8 +4141,8 @@ def elliptic(
     omega: _Number | None = ...,
     folded: _Text | None = ...,
 ) -> AnyShape:
-    """A grid smoothed by the elliptic equations
-    a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.
+    """A grid smoothed by the elliptic equations a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0;
+    its edges are fixed.
 
     `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
     inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
@@ -4190,8 +4198,8 @@ def hyperbolic(
     stop: _Text | None = ...,
     on: _Surface | None = ...,
 ) -> AnyShape:
-    """A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
-    and Steger 1992): lines leave it at right angles, with the layers at given heights.
+    """A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980;
+    Chan and Steger 1992): its lines leave at right angles, and its layers are at given heights.
 
     Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
     to the left of its direction for a view against `normal`: the value is the surface whose line
@@ -4246,7 +4254,7 @@ def elliptic_block(
     spacing: _Number | None = ...,
     omega: _Number | None = ...,
 ) -> AnyShape:
-    """A block smoothed by the elliptic equations; its faces stay.
+    """A block smoothed by the elliptic equations; its faces are fixed.
 
     `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
     `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
@@ -4289,7 +4297,7 @@ def o_grid(
     base: _Integer | None = ...,
 ) -> AnyShape:
     """An O-grid round a section in x and y: the surface whose line g[k,] is layer k; its first and
-    last columns coincide in a line from the tail.
+    last columns coincide on a line from the trailing edge.
 
     The section is a closed curve from tail to tail, in either direction; the gap of a blunt tail is
     closed with `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its
@@ -4302,7 +4310,7 @@ def o_grid(
     heights : list of number
         The distances of the layers, the first 0.
     base : integer, optional
-        Cells across a blunt tail. 1 to 10000, default 4.
+        Cells across a blunt trailing edge. 1 to 10000, default 4.
 
     Returns
     -------
@@ -4322,7 +4330,7 @@ def c_grid(
     n: _Integer,
 ) -> AnyShape:
     """A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end
-    of the wake below the section round its nose to the far end above it.
+    of the wake below the section round the leading edge to the far end above it.
 
     The section is a closed curve from tail to tail, in either direction, with the tail at its
     greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
@@ -4360,8 +4368,8 @@ def h_grid(
     sweeps: _Integer | None = ...,
 ) -> AnyShape:
     """An H-grid round a section in x and y: the list of two surfaces, below and above it. Their lines
-    g[,1] are the section's side between the stagnation line ahead of the nose and the wake; their
-    lines g[,n] are straight, at the last height below and above the section.
+    g[,1] contain the stagnation line, one side of the section and the wake; their lines g[,n] are
+    straight, at the last height below and above the section.
 
     The section is a closed curve from tail to tail, in either direction, with the nose at its least
     x and a sharp tail at its greatest. The lines ahead and behind are parallel to x over `ahead`
@@ -4378,13 +4386,13 @@ def h_grid(
     heights : list of number
         The distances of the lines from the section, the first 0.
     ahead : number
-        The length ahead of the nose. At least 0.
+        The length ahead of the leading edge. At least 0.
     behind : number
-        The length behind the tail. At least 0.
+        The length behind the trailing edge. At least 0.
     n : integer
-        The cells along each of them. 1 to 1e+06.
+        Number of cells along each of these lengths. 1 to 1e+06.
     sweeps : integer, optional
-        The most sweeps of smoothing. 0 to 1e+06, default 3000.
+        Maximum number of smoothing sweeps. 0 to 1e+06, default 3000.
 
     Returns
     -------
@@ -4457,8 +4465,9 @@ def folds(
 def report(
     s: object,
 ) -> AnyShape:
-    """A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-    value and the cell that is worst; of a block the figures of OpenFOAM's checkMesh and the least scaled Jacobian.
+    """A table of the quality of a grid, to be printed: for each metric the least, mean and greatest
+    value and the worst cell; for a block the figures of OpenFOAM's checkMesh and the least scaled
+    Jacobian.
 
     Parameters
     ----------

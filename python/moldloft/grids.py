@@ -70,12 +70,12 @@ class Aerofoil:
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        """The upper side from the nose to the trailing edge."""
+        """The upper side from the leading to the trailing edge."""
         return self.points[self.nose :: -1]
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        """The lower side from the nose to the trailing edge."""
+        """The lower side from the leading to the trailing edge."""
         return self.points[self.nose :]
 
 
@@ -413,7 +413,7 @@ def cgns_bytes(
     names: Sequence[str] | None = None,
     tolerance: float = 1e-9,
 ) -> bytes:
-    """The content of such a file."""
+    """The bytes of the file that :func:`write_cgns` writes."""
     from moldloft import cgns
 
     arrays = [np.asarray(grid, dtype=np.float64) for grid in grids]
@@ -426,9 +426,9 @@ def cgns_bytes(
 def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = False) -> Path:
     """Write surface grids as one binary STL.
 
-    Quads are split along their shorter diagonal; triangles without area, at poles, are left out.
-    Facets of closed bodies are oriented outward for any orientation of their surfaces, those of
-    open bodies outward as far as their rims determine it; nearly flat surfaces along r_i x r_j.
+    Quads are split along their shorter diagonal; triangles without area, at poles, are omitted.
+    Facets of closed bodies point outward regardless of the orientation of their surfaces, facets of
+    open bodies if the rims determine the outside, those of nearly flat surfaces along r_i x r_j.
 
     Parameters
     ----------
@@ -451,7 +451,7 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
 def write_csv(path: str | Path, points: ArrayLike) -> Path:
     """Write points (n, 2) or (n, 3) as comma-separated values with a header.
 
-    Every digit that is needed to read the same numbers back is written.
+    Numbers are written with all digits needed to read back the same values.
 
     Parameters
     ----------
@@ -474,11 +474,11 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
 
 
 def read_points(path: str | Path) -> NDArray[np.float64]:
-    """Points (n, 3) of a text with two or three numbers to a line.
+    """Points (n, 3) of a text with two or three numbers per line.
 
     Separators are blanks, commas, semicolons and tabs; titles, names of columns and what follows a
     ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
-    trailing edge round the nose.
+    trailing edge round the leading edge.
 
     Parameters
     ----------
@@ -504,7 +504,7 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
 def read_aerofoil(path: str | Path) -> Aerofoil:
     """An aerofoil section from a coordinate file in Selig's or Lednicer's listing.
 
-    The two are distinguished by the numbers of points that the latter begins with.
+    Lednicer's begins with two numbers of points.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ def patches(
 
 
 def write(model: Model, title: str, *, tolerance: float | None = None, lids: bool = False) -> bytes:
-    """The file. Patches above the water are left to WAMIT, which trims them (ITRIMWL = 1).
+    """The file. Patches above the water are included; WAMIT trims them (ITRIMWL = 1).
 
     Parameters
     ----------

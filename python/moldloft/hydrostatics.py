@@ -38,12 +38,12 @@ _ROUNDING = 1e-12
 
 
 def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
-    """Round bodies and trimmed surfaces that are measured on triangles, with their misses.
+    """Round bodies and trimmed surfaces measured by triangles, with estimates of the errors.
 
-    The triangles' figures are compared with those of the shape. ``volume`` is twice the miss of the
-    cones, as what is missed above the water may cancel what is missed below, for bodies also that
-    of the area times their size, as bores may cancel bosses. ``area`` is twice the miss of the
-    areas; ``reach`` is the largest distance of the panels from the model's origin.
+    Figures of the triangles are compared with those of the shape. ``volume`` is twice the error of
+    the cones' volumes, since errors above and below the water may cancel; for bodies also the error
+    of the area times their size, since those of bores and bosses may cancel. ``area`` is twice the
+    error of the areas; ``reach`` is the largest distance of the panels from the model's origin.
     """
     import numpy as np
 
@@ -77,7 +77,7 @@ def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
 
 
 def faceted(model: Model) -> list[str]:
-    """Bodies of sets: measured on facets, whose distance from the set is unknown."""
+    """Bodies of sets, measured by facets at an unknown distance from the set."""
     names = {patch.name.split(".")[0]: None for patch in model.mesh().patches}
     known = [name for name in names if name in model.objects]
     return [name for name in known if model.facts(name)["kind"] == "SetBody"]
@@ -87,15 +87,15 @@ def faceted(model: Model) -> list[str]:
 class Hydrostatics:
     """The hydrostatics of a body; lengths in the model's unit, angles in radians.
 
-    Figures that have no meaning, such as those of the waterplane of a body that is all under
-    water, are ``None``. Centres (``lcb`` to ``vcb``, ``lcf``, ``tcf``) are in the body's own axes;
-    the extents of the waterplane of a body that is trimmed or heeled are in level ones.
+    Undefined figures, such as those of the waterplane of a submerged body, are ``None``. Centres
+    (``lcb`` to ``vcb``, ``lcf``, ``tcf``) are in body axes; the extents of the waterplane of a
+    trimmed or heeled body are in level axes.
     """
 
     level: float
     """Height z of the water."""
     sides: str
-    """``"both"`` when a mirrored model counts with its image, ``"one"`` when it does not, and
+    """``"both"`` if a mirrored model includes its image, ``"one"`` if not, and
     ``"whole"`` for a model without symmetry."""
     volume: float
     """Displaced volume."""
@@ -110,8 +110,9 @@ class Hydrostatics:
     waterplane_error: float
     """Difference between the waterplane's area from the skin and from the waterline, over it."""
     outward: bool
-    """True when the skin's normals point out of the body; else the figures are those of the
-    turned skin."""
+    """True when the skin's normals point out of the body; otherwise the figures are those of the
+    reversed skin.
+    """
     displacement: float | None = None
     """Mass: density times volume; ``None`` where no density was given."""
     lcb: float | None = None
@@ -121,7 +122,7 @@ class Hydrostatics:
     vcb: float | None = None
     """Centre of buoyancy, z."""
     waterplane_area: float | None = None
-    """Area of the cut with the water."""
+    """Area of the waterplane."""
     lcf: float | None = None
     """Centre of flotation, x."""
     tcf: float | None = None
@@ -162,9 +163,9 @@ class Hydrostatics:
     kml: float | None = None
     """Height of the longitudinal metacentre above the lowest point."""
     trim: float = 0.0
-    """Turn about the axis across; positive sinks what has large x."""
+    """Rotation about the transverse axis; positive if points with large x sink."""
     heel: float = 0.0
-    """Turn about the body's x axis; positive sinks what has large y."""
+    """Rotation about the body's x axis; positive if points with large y sink."""
     draft_low_x: float | None = None
     """Depth of the upright body's lowest height below the water, on the centre line at the body's
     lowest x."""
@@ -188,15 +189,16 @@ class Hydrostatics:
     gml: float | None = None
     """Longitudinal metacentric height."""
     gz: float | None = None
-    """Righting arm; positive where it turns back a positive heel."""
+    """Righting arm; positive if it rights a positive heel."""
     trim_arm: float | None = None
-    """The same along the body; zero in trim."""
+    """Longitudinal righting arm; zero in trim equilibrium."""
     righting_moment: float | None = None
     """Righting arm times weight."""
     status: str = "given"
-    """``"given"`` for a given attitude; ``"converged"`` or ``"not-converged"`` for a sought one."""
+    """``"given"`` for a given attitude; ``"converged"`` or ``"not-converged"`` for a computed one.
+    """
     iterations: int = 0
-    """Newton steps to the sought attitude."""
+    """Number of Newton steps to this attitude."""
     residual: float = 0.0
     """Residual of the equations of equilibrium: volume relative to volume, arms relative to the
     body's diagonal.
@@ -206,11 +208,13 @@ class Hydrostatics:
     equilibrium are righted, free or not. Under water the metacentre is the centre of buoyancy.
     """
     lolls: bool = False
-    """True when the attitude where the search began is at rest but unstable, and this is the stable
-    one that the body finds beyond it: the angle of loll."""
+    """True for an angle of loll: the initial attitude is an unstable equilibrium, and this is the
+    stable one beyond it.
+    """
     bounds: dict[str, float] = field(default_factory=dict)
-    """Bounds of the errors of the main figures, by name: estimates of what quadrature and the
-    interpolation of the surfaces leave."""
+    """Bounds of the errors of the main figures, by name: estimates of the errors of quadrature and
+    of the interpolation of the surfaces.
+    """
     units: Units = field(default_factory=Units)
     """Units of the figures."""
     accuracy: float = 0.0
@@ -234,7 +238,7 @@ class Hydrostatics:
     """Exact derivatives ``[figure][parameter]``, for the requested parameters."""
     derivative_bounds: dict[str, dict[str, float]] = field(default_factory=dict)
     """Estimates of the errors of :attr:`derivatives`: the difference from those of cells for a
-    hundredfold ``accuracy``, and ``accuracy`` as a share. Empty where ``bounds`` is."""
+    hundredfold ``accuracy``, plus ``accuracy`` times the derivative. Empty if ``bounds`` is."""
 
     @property
     def floods(self) -> bool:
@@ -415,7 +419,7 @@ class Hydrostatics:
         return commit(Path(folder), [Output(*pair) for pair in files.items()], make=False)
 
     def converted(self, to: Units | str) -> Hydrostatics:
-        """The same in other units, such as ``"m t kN"``; dimensions that are not named stay.
+        """The same in other units, such as ``"m t kN"``; other dimensions are unchanged.
 
         Parameters
         ----------
@@ -776,7 +780,7 @@ def plot_curves(
     curves: Mapping[str, Sequence[float]],
     labels: tuple[str, str],
 ) -> Path:
-    """Draw curves over one quantity; points are marked where there are few.
+    """Draw curves over one quantity, with marks if there are few points.
 
     Parameters
     ----------

@@ -171,7 +171,7 @@ def MirrPoint(
     attributes: _Text | None = ...,
 ) -> PointHandle:
     """The mirror image of a point: X = 2 F - P, with F the foot of the perpendicular from P to the
-    plane or line, or the point to mirror in.
+    plane or line, or the centre of a point reflection.
 
     Parameters
     ----------
@@ -611,9 +611,9 @@ def TabPoint(
     file : text, optional
         The file, relative to the program that declares the point.
     row : integer, optional
-        The number of the point, from 1. At least 1, default 1.
+        Number of the point, from 1. At least 1, default 1.
     points : list of vector, optional
-        The points, where there is no file.
+        The points, if there is no file.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -646,8 +646,8 @@ def ProjPoint(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> PointHandle:
-    """The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field; for a
-    mirror that is a point, that point.
+    """The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field;
+    if the target is a point, that point.
 
     On the zero set of a field it is the foot found by descent along the field.
 
@@ -696,7 +696,7 @@ def IntPoint(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> PointHandle:
-    """The point that three planes, surfaces or zero sets of fields have in common.
+    """The common point of three planes, surfaces or zero sets of fields.
 
     With magnets instead of surfaces it is the point found by Newton's method from there. Without
     them all points are searched: the result is the one nearest to `near`, by default to the middle
@@ -1065,7 +1065,7 @@ def AbsRing(
     name : str
         The name of the object.
     snake : snake
-        The snake it lives on.
+        The snake of the ring.
     t : number
         Its parameter.
     **attributes
@@ -1285,7 +1285,7 @@ def XYZBead(
     axis : text
         The coordinate: "x", "y" or "z".
     value : number
-        Its value.
+        Value of the coordinate.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1452,15 +1452,15 @@ def ProxMagnet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> MagnetHandle:
-    """The point of a surface nearest to a given point, of the whole surface and edges included.
-    Equally near ones are reported.
+    """The point of a surface nearest to a given point, among all points of the surface and its edges.
+    Equally near points are reported.
 
     Parameters
     ----------
     name : str
         The name of the object.
     point : point
-        The point to be near to.
+        The given point.
     surface : surface or magnet
         The surface.
     **attributes
@@ -1504,9 +1504,9 @@ def IntMagnet(
     name : str
         The name of the object.
     curve : curve or bead
-        The curve, or a bead of it.
+        The curve, or a bead on it.
     surface : surface or magnet
-        The surface, or a magnet of it.
+        The surface, or a magnet on it.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1553,11 +1553,11 @@ def XYZMagnet(
     axis1 : text
         The first coordinate: "x", "y" or "z".
     value1 : number
-        Its value.
+        Value of the first coordinate.
     axis2 : text
-        The second coordinate, another one.
+        The second coordinate, different from the first.
     value2 : number
-        Its value.
+        Value of the second coordinate.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1591,9 +1591,9 @@ def TanMagnet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> MagnetHandle:
-    """The point of a surface near another magnet, at distances measured in the tangent plane there:
-    the foot on the surface of S + a e1 + b e2, with e1 the direction of S_u and e2 the one
-    perpendicular to it towards S_v.
+    """The point of a surface near another magnet, at distances measured in its tangent plane: the foot
+    on the surface of S + a e1 + b e2, with e1 the direction of S_u and e2 the one perpendicular to
+    it towards S_v.
 
     Parameters
     ----------
@@ -1640,7 +1640,7 @@ def IntRing(
 ) -> RingHandle:
     """The intersection of a curve with a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one it is the intersection nearest to t = 0.5, and the others are reported.
 
-    The same on a snake, as a ring.
+    A ring is such a point on a snake.
 
     Parameters
     ----------
@@ -1688,7 +1688,7 @@ def XYZRing(
 ) -> RingHandle:
     """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one it is the point nearest to t = 0.5.
 
-    The same on a snake, as a ring.
+    A ring is such a point on a snake.
 
     Parameters
     ----------
@@ -1699,7 +1699,7 @@ def XYZRing(
     axis : text
         The coordinate: "x", "y" or "z".
     value : number
-        Its value.
+        Value of the coordinate.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -1734,7 +1734,7 @@ def ProjRing(
 ) -> RingHandle:
     """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot found by descent; without one, the nearest of all. If the foot is beyond an end, the end is the result and is reported.
 
-    The same on a snake, as a ring.
+    A ring is such a point on a snake.
 
     Parameters
     ----------
@@ -1778,7 +1778,7 @@ def ProxRing(
 ) -> RingHandle:
     """The point of a curve nearest to a given point, of the whole curve and ends included. Equally near ones are reported.
 
-    The same on a snake, as a ring.
+    A ring is such a point on a snake.
 
     Parameters
     ----------
@@ -2217,8 +2217,8 @@ def FoilCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
-    between 3, 4 or 5 points.
+    """A foil section between 3, 4 or 5 points: the thickness form and mean line of a NACA family,
+    or given ordinates.
 
     Three points: nose, thickness point and tail of half a section, from nose to tail. Four:
     tail, thickness point, nose and lower tail of a symmetric section. Five: a lower thickness
@@ -2242,25 +2242,28 @@ def FoilCurve(
         "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
-        is the usual one of the family.
+        is the default of the family.
     camber_at : number, optional
         Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
         Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
-        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+        Nose index of the modified form: 6 is the standard leading edge, 0 a sharp one. Default
+        6.
     thickness_at : number, optional
         Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
-        "closed" draws the tail to its points, "open" leaves the thickness that the form has
-        there. Default closed.
+        "closed" closes the trailing edge at its points, "open" keeps its thickness in the form.
+        Default closed.
     offset : text, optional
-        "affine" sets thickness off across the chord, "normal" across the mean line. Default
-        affine.
+        "affine" adds thickness perpendicular to the chord, "normal" perpendicular to the mean
+        line. Default affine.
     section : curve, optional
-        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+        A curve of ordinates (x, half thickness, camber) from leading to trailing edge, instead
+        of a family.
     ordinates : list of vector, optional
-        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+        Ordinates {x, half thickness, camber} from leading to trailing edge, instead of a
+        family.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -2310,7 +2313,7 @@ def Helix(
     line : line
         Its axis, from the line's first end to its last.
     angle : number
-        Angle by which it turns.
+        Total angle of rotation.
     pitch : number, optional
         Advance per turn. Default 0.
     relabel : relabel, optional
@@ -2398,8 +2401,8 @@ def Join(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A declared join: two coincident edges of patches count as one edge in meshes, though they come
-    from different objects. The result is the first edge.
+    """A declared join: two coincident edges of patches count as one edge in meshes, although they are
+    different objects. The result is the first edge.
 
     Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
     Curves and snakes along edges are accepted too; the directions may be opposite. One edge may be on a part
@@ -2612,7 +2615,7 @@ def CopyCurve(
     curve : curve
         The curve to copy.
     from : point
-        A point that is moved to `to`.
+        The reference point that is moved to `to`.
     to : point
         The image of `from`.
     sx : number, optional
@@ -2705,9 +2708,9 @@ def OffsetCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
-    the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
-    positive side, if d is positive.
+    """A curve at a distance from another in a plane: C(t) = c(t) + d T x n / |T x n|, with T the
+    tangent and n the normal of the plane. A positive d is to the right of the direction of travel,
+    seen from the positive side of the plane.
 
     At an end of zero speed, such as a double control point, T is the limit from inside. Zero speed
     inside, or a distance beyond the radius of curvature on that side (a cusp of the offset), is an
@@ -2760,8 +2763,8 @@ def BFitCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
-    curve, and the least sum of squared distances at equal parameters.
+    """A B-spline fitted to a curve by least squares, with clamped uniform knots and the same ends:
+    minimises the sum of squared distances at equal parameters.
 
     The number of control points determines the accuracy. The member `residual` is the greatest
     distance between curve and fit at equal parameters; a residual above `accuracy` is an error.
@@ -2771,13 +2774,13 @@ def BFitCurve(
     name : str
         The name of the object.
     curve : curve
-        The curve to come near to.
+        The curve to approximate.
     degree : integer, optional
         Polynomial degree. 1 to 25, default 3.
     points : integer, optional
         Number of control points, more than the degree. 2 to 10000, default 8.
     accuracy : number, optional
-        The greatest distance allowed between the two at equal parameters. At least 0.
+        Maximum distance between the two curves at equal parameters. At least 0.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -2815,7 +2818,7 @@ def NUBFitCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A B-spline fitted to a curve as by BFitCurve, with knots of one's own.
+    """A B-spline fitted to a curve as in BFitCurve, with given knots.
 
     Parameters
     ----------
@@ -2826,7 +2829,7 @@ def NUBFitCurve(
     degree : integer, optional
         Polynomial degree. 1 to 25, default 3.
     knots : list of number
-        The parameters where pieces meet, from 0 to 1, each once.
+        The parameters of the joints between pieces, from 0 to 1, each once.
     accuracy : number, optional
         The greatest distance allowed between the two at equal parameters. At least 0.
     relabel : relabel, optional
@@ -2865,7 +2868,7 @@ def TabCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """A curve through the points of a table, as a CCurve or, of degree 1, as the lines between them.
+    """A curve through the points of a table: a CCurve or, with degree 1, a polyline.
 
     The file has a point in a line: x, y, z (or x, y) with blanks or commas between.
 
@@ -2876,7 +2879,7 @@ def TabCurve(
     file : text, optional
         The file, relative to the program that declares the curve.
     degree : integer, optional
-        3 for the cubic spline, 1 for the lines between the points. 1 to 3, default 3.
+        3 for a cubic spline, 1 for a polyline. 1 to 3, default 3.
     points : list of vector, optional
         The points, where there is no file.
     relabel : relabel, optional
@@ -2971,8 +2974,8 @@ def TanCurve(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> CurveHandle:
-    """The curve of the points on the tangents of another at a distance from where they touch:
-    C(t) = c(t) + d c'(t) / |c'(t)|, which is that of TanPoint for all beads.
+    """The curve of points on the tangents of another curve, at a distance from the point of contact:
+    C(t) = c(t) + d c'(t) / |c'(t)|; the TanPoint of all beads.
 
     A corner of the curve, where the tangent jumps, is an error.
 
@@ -3115,7 +3118,7 @@ def Intersection(
     attributes: _Text | None = ...,
 ) -> CurveHandle:
     """The intersection of two surfaces, or of a surface with a plane or the zero set of a field: one
-    curve, whichever surface it is used on. Its parameter is the fraction of its length.
+    curve, the same on either surface. Its parameter is the fraction of its length.
 
     `IntSnake(a, x)` is the intersection `x` as a snake on its surface `a`. The snakes on both surfaces
     are `x` itself from end to end, so panels on both sides share its vertices.
@@ -3319,7 +3322,8 @@ def ContactSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
+    """The contact line of a fillet with one of its two surfaces: a snake on that surface and an edge
+    of the fillet.
 
     Its parameter is the fillet's u. A part of the surface bounded by it (`SubSurf`, `TrimSurf`)
     shares the fillet's vertices, which are the rings at t = 0 and 1. It crosses the seam of a
@@ -3542,10 +3546,11 @@ def NURBSnake(
     knots : list of number, optional
         Knots, end knots included, ascending.
     weights : list of number, optional
-        Weights of the magnets, positive; those of `places` between those of the two magnets.
+        Weights of the magnets, positive; those of `places` are between those of the two
+        magnets.
     places : list of number, optional
-        Control points that are no objects, as u, v, u, v, ...: they are between the first
-        magnet and the second, and there are no other magnets.
+        Control points between the first and the second magnet that are not objects, as u, v, u,
+        v, ...; there are no other magnets then.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -3665,25 +3670,28 @@ def FoilSnake(
         "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
-        is the usual one of the family.
+        is the default of the family.
     camber_at : number, optional
         Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
         Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
-        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+        Nose index of the modified form: 6 is the standard leading edge, 0 a sharp one. Default
+        6.
     thickness_at : number, optional
         Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
-        "closed" draws the tail to its points, "open" leaves the thickness that the form has
-        there. Default closed.
+        "closed" closes the trailing edge at its points, "open" keeps its thickness in the form.
+        Default closed.
     offset : text, optional
-        "affine" sets thickness off across the chord, "normal" across the mean line. Default
-        affine.
+        "affine" adds thickness perpendicular to the chord, "normal" perpendicular to the mean
+        line. Default affine.
     section : curve, optional
-        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+        A curve of ordinates (x, half thickness, camber) from leading to trailing edge, instead
+        of a family.
     ordinates : list of vector, optional
-        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+        Ordinates {x, half thickness, camber} from leading to trailing edge, instead of a
+        family.
     metric : vector, optional
         Metric of the parameter plane: {uu, uv, vv}; default: {1, 0, 1}.
     relabel : relabel, optional
@@ -3864,7 +3872,7 @@ def ProjSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """The projection of a curve onto a surface, point by point, which is a snake: along the surface's
+    """The projection of a curve onto a surface, point by point, as a snake: along the surface's
     normals, along a direction, or away from a point.
 
     The foot of the start of the curve is found first, near the magnet if one is given; the
@@ -3879,12 +3887,12 @@ def ProjSnake(
     curve : curve
         The curve to project.
     surface : surface or magnet
-        The surface, or a magnet of it near the projection of the start of the curve.
+        The surface, or a magnet on it near the projection of the start of the curve.
     mirror : mirror, optional
         Direction of projection: a plane's normal, a line's direction, or rays from a point.
         Default: the surface's own normals.
     ends : list of magnet, optional
-        Magnets at the two ends, which other snakes end in too, so that patches join there.
+        Magnets at the two ends, shared with other snakes so that patches join there.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -4000,8 +4008,8 @@ def GeoSnake(
     m2 : magnet
         End, on the same surface.
     turns_u : integer, optional
-        Number of forward crossings of the seam u = 0; negative: backward. Default: the shortest
-        path with 0, 1 or -1. -10 to 10.
+        Number of crossings of the seam u = 0, forwards if positive, backwards if negative.
+        Default: the shortest path with 0, 1 or -1. -10 to 10.
     turns_v : integer, optional
         Number of forward crossings of the seam v = 0; see `turns_u`. -10 to 10.
     relabel : relabel, optional
@@ -4084,7 +4092,7 @@ def BSubSnake(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SnakeHandle:
-    """A snake reparametrised by a B-spline; the counterpart of a B-sub-curve on a surface.
+    """A snake reparametrised by a B-spline; the counterpart of a B-sub-curve.
 
     Parameters
     ----------
@@ -4174,8 +4182,8 @@ def BLoftSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface attracted by its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the B-splines
-    of clamped uniform knots. It passes through the first and the last master only.
+    """A surface that approximates its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the
+    B-splines of clamped uniform knots. It interpolates only the first and the last master.
 
     With N masters the degree is at most N - 1: a higher one is lowered to that (Letcher and Shook
     1995).
@@ -4227,8 +4235,8 @@ def CLoftSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface that passes through its master curves: S(u, v) is the interpolating spline through
-    the points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
+    """A surface that interpolates its master curves: S(u, v) is the interpolating spline through the
+    points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
 
     Two masters give rulings, three parabolas, four or more cubic splines, as for a C-curve (Letcher
     and Shook 1995). Neighbouring masters must not meet, unless all meet in one point.
@@ -4245,12 +4253,12 @@ def CLoftSurf(
         End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
         Default notaknot.
     start : vector, optional
-        Slope dX/dv at the first master, the same all along it, for clamped ends.
+        Slope dX/dv at the first master, constant along it, for clamped ends.
     end : vector, optional
-        Slope dX/dv at the last master, the same all along it, for clamped ends.
+        Slope dX/dv at the last master, constant along it, for clamped ends.
     about : line, optional
-        A line about which the loft is made in cylinder coordinates, r, theta (within half a
-        turn from master to master) and the length along it, as for blades.
+        A line for lofting in cylindrical coordinates: r, theta (less than half a turn between
+        masters) and the length along the line, as for blades.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -4288,8 +4296,8 @@ def XLoftSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface that passes through its master curves, as an explicit spline at each u: one coordinate
-    is the independent variable and linear in v, the others are cubic splines of it.
+    """A surface that interpolates its master curves by an explicit spline at each u: one coordinate is
+    linear in v, the others are cubic splines of that coordinate.
 
     Unlike those of a C-loft its knots are that coordinate of the masters, which must increase or
     decrease from master to master at every u.
@@ -4527,8 +4535,8 @@ def FoilLoftSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
-    laid between the points of the curves at u. A wing, a keel, a blade.
+    """Foil sections between points of three, four or five curves: at each u a section, as in
+    `FoilCurve`. A wing, a keel, a blade.
 
     With three curves (nose, thickness, tail) v goes from nose to tail; with four (upper tail,
     thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the
@@ -4547,25 +4555,28 @@ def FoilLoftSurf(
         "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
         Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
-        is the usual one of the family.
+        is the default of the family.
     camber_at : number, optional
         Position of the greatest camber of the parabolic mean line, in chords. Default 0.4.
     load : number, optional
         Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
     nose_index : number, optional
-        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+        Nose index of the modified form: 6 is the standard leading edge, 0 a sharp one. Default
+        6.
     thickness_at : number, optional
         Position of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
     tail : text, optional
-        "closed" draws the tail to its points, "open" leaves the thickness that the form has
-        there. Default closed.
+        "closed" closes the trailing edge at its points, "open" keeps its thickness in the form.
+        Default closed.
     offset : text, optional
-        "affine" sets thickness off across the chord, "normal" across the mean line. Default
-        affine.
+        "affine" adds thickness perpendicular to the chord, "normal" perpendicular to the mean
+        line. Default affine.
     section : curve, optional
-        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+        A curve of ordinates (x, half thickness, camber) from leading to trailing edge, instead
+        of a family.
     ordinates : list of vector, optional
-        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+        Ordinates {x, half thickness, camber} from leading to trailing edge, instead of a
+        family.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -4654,16 +4665,16 @@ def TranSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A curve moved along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
+    """A curve translated along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
 
     Parameters
     ----------
     name : str
         The name of the object.
     c1 : curve
-        The curve that is moved: edge v = 0.
+        The curve to translate: edge v = 0.
     c2 : curve
-        Path of the first curve.
+        The path.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4700,8 +4711,8 @@ def SweepSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
-    path(0)), with F(0) = 1, so that edge v = 0 is the profile.
+    """A curve swept along a path by a moving frame: S(u, v) = path(v) + F(v) (profile(u) - path(0)),
+    with F(0) = 1, so that edge v = 0 is the profile.
 
     Frames: "minimal" does not rotate about the tangent of the path (rotation-minimising; Wang,
     Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed"
@@ -4715,7 +4726,7 @@ def SweepSurf(
     name : str
         The name of the object.
     profile : curve
-        The curve that is carried: edge v = 0.
+        The curve to sweep: edge v = 0.
     path : curve
         Path of the profile.
     frame : text, optional
@@ -4723,9 +4734,9 @@ def SweepSurf(
     up : vector, optional
         Upright direction of frame = "up"; default: z.
     twist : list of number, optional
-        Angles about the tangent along v, in radians.
+        Angles of rotation about the tangent along v, in radians.
     scale : list of number, optional
-        Factors of the profile's size along v.
+        Scale factors of the profile along v.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4801,8 +4812,8 @@ def BlendCenter(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A patch between four curves that passes through a point in its middle: the Coons patch plus
-    16 u (1 - u) v (1 - v) times the vector from its own middle to the point.
+    """A patch between four curves that passes through a given centre point: the Coons patch plus 16 u
+    (1 - u) v (1 - v) times the vector from its centre to the point.
 
     Parameters
     ----------
@@ -4844,8 +4855,8 @@ def TanBoundary(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing parameter,
-    that is tangent to the surfaces of those that are snakes, unless they are listed as `free`.
+    """A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
+    parameter, tangent to the surfaces of the curves that are snakes, except those listed as `free`.
 
     It is the bicubically blended Coons patch (Coons 1967) of the curves and of slopes across them,
     with the twists of Gregory (1974), which need not agree at the corners. The slope across a snake
@@ -4862,7 +4873,7 @@ def TanBoundary(
     sides : list of curve
         The four (or three) boundary curves; snakes for the edges that are tangent to a surface.
     free : list of integer, optional
-        The numbers (from 1) of sides that are left free though they are snakes.
+        The numbers (from 1) of sides without tangency although they are snakes.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -4896,9 +4907,9 @@ def DevSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A developable surface between two curves, a plate bent without stretching: straight
-    rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
-    = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
+    """A developable surface between two curves, a plate bent without stretching: straight rulings from
+    C1(s) to C2(t) with a constant tangent plane, det[C1'(s), C2'(t), C2(t) - C1(s)] = 0; S(u, v) =
+    (1 - v) C1(s(u)) + v C2(t(u)).
 
     The rulings extend from the ruling of both starts to that of both ends; cones about an end of a
     curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and
@@ -4949,8 +4960,8 @@ def ExpandedSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A developable surface unrolled: the plate before bending, with lengths and angles of the
-    surface, at equal parameters.
+    """A developable surface unrolled: the plate before bending, which preserves lengths and angles, at
+    equal parameters.
 
     Its lines u = const must be straight with one tangent plane along each, like those of DevSurf,
     cones and cylinders. The plate is in the xy plane of `frame` (default: world), its normal along
@@ -4963,7 +4974,7 @@ def ExpandedSurf(
     name : str
         The name of the object.
     surface : surface
-        The surface to lay flat.
+        The surface to unroll.
     frame : frame, optional
         Frame whose xy plane contains the plate; default: world axes.
     **attributes
@@ -5022,11 +5033,13 @@ def FilletSurf(
     snake2 : snake
         Edge v = 1.
     m1 : number, optional
-        Length of the tangent at v = 0, in chords between the snakes. At least 0, default 1.
+        Length of the tangent at v = 0, relative to the chord between the snakes. At least 0,
+        default 1.
     m2 : number, optional
-        Length of the tangent at v = 1, in chords between the snakes. At least 0, default 1.
+        Length of the tangent at v = 1, relative to the chord between the snakes. At least 0,
+        default 1.
     continuity : integer, optional
-        1: common tangent planes; 2: common curvature across the edges too. 1 to 2, default 1.
+        1: common tangent planes; 2: also common curvature across the edges. 1 to 2, default 1.
     direction1 : text, optional
         Direction at the first surface: "perpendicular", "chord", "u" or "v". Default
         perpendicular.
@@ -5034,7 +5047,7 @@ def FilletSurf(
         Direction at the second surface: "perpendicular", "chord", "u" or "v". Default
         perpendicular.
     closed : integer, optional
-        1 when the edges u = 0 and u = 1 are one line. 0 to 1, default 0.
+        1 when the edges u = 0 and u = 1 coincide. 0 to 1, default 0.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5071,8 +5084,8 @@ def RollFillet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """The fillet of a ball that rolls along two surfaces: circular arcs from its contact with the
-    first, at v = 0, to its contact with the second, at v = 1; tangent to both.
+    """The fillet of a ball rolling along two surfaces: circular arcs from the contact line on the
+    first, at v = 0, to that on the second, at v = 1; tangent to both.
 
     The centre of the ball is on the intersection of both surfaces offset by `radius`, which extends
     from edge to edge or is closed; u is the fraction of its length. The direction and the selection
@@ -5213,10 +5226,10 @@ def TrimSurf(
     loops : list of snake
         Snakes on it, loop after loop.
     whole : integer, optional
-        1 when the whole surface is kept but for holes. 0 to 1, default 0.
+        1 when the whole surface is kept except for holes. 0 to 1, default 0.
     rim : integer, optional
-        Divisions of each snake; default: by its curvature and that of the surface, and at least
-        those of its neighbours. 1 to 10000.
+        Divisions of each snake; default: by its curvature and that of the surface, with the
+        neighbours' as a minimum. 1 to 10000.
     nu : integer, optional
         Divisions along u of the surface's grid inside the border; default: by the curvature of
         the surface. 1 to 1000.
@@ -5255,7 +5268,7 @@ def TriMesh(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> BodyHandle:
-    """Triangles between points of the model: a body where they close, else an open sheet.
+    """Triangles between points of the model: a body if they close, otherwise an open sheet.
 
     `levels` times, each triangle is divided into four and the vertices move as in Loop's
     subdivision surfaces (Loop 1987): smooth inside, cubic B-splines along open edges. The vertices
@@ -5268,7 +5281,7 @@ def TriMesh(
     points : list of point
         The vertices.
     triangles : list of integer
-        Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
+        Corners of the triangles as vertex numbers from 1, counter-clockwise from outside.
     levels : integer, optional
         Number of subdivisions. At most 8, default 0.
     **attributes
@@ -5319,11 +5332,11 @@ def Blister(
     name : str
         The name of the object.
     snake : snake
-        The closed snake round the bump.
+        The closed snake around the bump.
     centre : magnet
-        The magnet under its top.
+        The magnet below the top.
     height : number
-        Its height, on the side of the natural normal if positive.
+        The height, on the side of the natural normal if positive.
     edge : text, optional
         At the snake: "sharp", "tangent" or "curvature". Default tangent.
     top : text, optional
@@ -5508,7 +5521,7 @@ def ProjSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface projected to a plane along its normal: each point maps to the foot of its
+    """A surface projected onto a plane along its normal: each point maps to the foot of its
     perpendicular.
 
     The image of a surface perpendicular to the plane degenerates; panels overlap there.
@@ -5520,7 +5533,7 @@ def ProjSurf(
     surface : surface
         The surface to project.
     mirror : mirror
-        The plane to project it to.
+        The plane of projection.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -5605,8 +5618,8 @@ def OffsetSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
-    n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
+    """A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with n = S_u
+    x S_v / |S_u x S_v|; a negative distance is on the other side.
 
     At a pole the normal is the limit along the parameter line that ends there. Errors: a distance
     beyond a radius of curvature on that side, which would fold the offset; a surface without a
@@ -5667,7 +5680,7 @@ def PolySurf(
     surfaces : list of surface
         The surfaces, in order.
     along : value, optional
-        The parameter along which they follow one another: "u" or "v". Default u.
+        The parameter along which the pieces are joined: "u" or "v". Default u.
     breaks : list of number, optional
         Parameters of the seams, ascending between 0 and 1; default: equal intervals.
     **attributes
@@ -5706,8 +5719,8 @@ def BFitSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A B-spline surface fitted to another by least squares: with clamped uniform knots and the corners
-    of the surface.
+    """A B-spline surface fitted to another by least squares, with clamped uniform knots and the
+    corners of the surface.
 
     The lines v = const are fitted first, then their control points across, which is the fit of the
     tensor product; each edge is the fit of the surface's edge. The member `residual` is the
@@ -5719,7 +5732,7 @@ def BFitSurf(
     name : str
         The name of the object.
     surface : surface
-        The surface to come near to.
+        The surface to approximate.
     degree_u : integer, optional
         Polynomial degree in u. 1 to 25, default 3.
     degree_v : integer, optional
@@ -5766,7 +5779,7 @@ def NUBFitSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A B-spline surface fitted to another as by BFitSurf, with knots of one's own.
+    """A B-spline surface fitted to another as in BFitSurf, with given knots.
 
     Parameters
     ----------
@@ -5779,9 +5792,9 @@ def NUBFitSurf(
     degree_v : integer, optional
         Polynomial degree in v. 1 to 25, default 3.
     knots_u : list of number
-        The parameters u where pieces meet, from 0 to 1, each once.
+        The parameters u of the joints between pieces, from 0 to 1, each once.
     knots_v : list of number
-        The parameters v where pieces meet, from 0 to 1, each once.
+        The parameters v of the joints between pieces, from 0 to 1, each once.
     accuracy : number, optional
         The greatest distance allowed between the two at equal parameters. At least 0.
     **attributes
@@ -5818,7 +5831,7 @@ def TabSurf(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A surface through the points of a table: a C-loft of the curves through its rows.
+    """A surface through the points of a table: a C-loft of the curves through its rows of points.
 
     Consecutive rows with equal numbers of points; u runs along a row, v across the rows. Empty
     lines between the rows, or the header of a Plot3D file with one grid, give their number.
@@ -5830,9 +5843,9 @@ def TabSurf(
     file : text, optional
         The file, relative to the program that declares the surface.
     rows : integer, optional
-        The number of rows, two or more; 0 where the file shows it. Default 0.
+        Number of rows, two or more; 0 if the file determines it. Default 0.
     degree : integer, optional
-        3 for cubic splines, 1 for lines between the points. 1 to 3, default 3.
+        3 for cubic splines, 1 for polylines. 1 to 3, default 3.
     points : list of vector, optional
         The points, where there is no file.
     **attributes
@@ -6013,8 +6026,8 @@ def BLoftSolid(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SolidHandle:
-    """A solid attracted by its surfaces: X(u, v, w) = sum N_i(w) S_i(u, v), with N_i the B-splines of
-    clamped uniform knots. It has the first and the last surface as faces.
+    """A solid that approximates its surfaces: X(u, v, w) = sum N_i(w) S_i(u, v), with N_i the
+    B-splines of clamped uniform knots. It has the first and the last surface as faces.
 
     With N surfaces the degree is at most N - 1: a higher one is lowered to that.
 
@@ -6058,7 +6071,7 @@ def CLoftSolid(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SolidHandle:
-    """A solid that passes through its surfaces: at each u and v the interpolating spline through their
+    """A solid that interpolates its surfaces: at each u and v the interpolating spline through their
     points there, with knots at chord lengths, evaluated at w.
 
     Two surfaces give rulings, three parabolas, four or more cubic splines. Neighbouring surfaces must
@@ -6212,7 +6225,7 @@ def TranSolid(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SolidHandle:
-    """A surface moved along a curve without turning: X(u, v, w) = S(u, v) + C(w) - C(0).
+    """A surface translated along a curve: X(u, v, w) = S(u, v) + C(w) - C(0).
 
     Parameters
     ----------
@@ -6256,9 +6269,8 @@ def SweepSolid(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SolidHandle:
-    """A surface carried along a path by a frame that moves with it: X(u, v, w) = path(w) + F(w)
-    (S(u, v) - path(0)), with F(0) = 1, so that the face w = 0 is the surface. The frames are those
-    of `SweepSurf`.
+    """A surface swept along a path by a moving frame: X(u, v, w) = path(w) + F(w) (S(u, v) - path(0)),
+    with F(0) = 1, so that the face w = 0 is the surface. The frames are those of `SweepSurf`.
 
     Parameters
     ----------
@@ -6305,8 +6317,8 @@ def Relabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
-    clamped uniform knots (as a B-sub-curve has its beads' parameters).
+    """A redistribution by a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with clamped
+    uniform knots, as in a B-sub-curve.
 
     The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
     the law covers a part of the curve or its continuation beyond the ends. For N values the degree
@@ -6322,7 +6334,7 @@ def Relabel(
     degree : integer, optional
         Polynomial degree. 1 to 25, default 3.
     partial : integer, optional
-        1 when the values may begin and end elsewhere than at 0 and 1. 0 to 1, default 0.
+        1 when the values may start and end at other numbers than 0 and 1. 0 to 1, default 0.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6397,8 +6409,8 @@ def GeoRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """A geometric redistribution: R(t) = (q^t - 1) / (q - 1). Of many equal steps of t the last becomes q
-    times the first; q = 1 changes nothing.
+    """A geometric redistribution: R(t) = (q^t - 1) / (q - 1). For many equal steps of t, the last is q
+    times the first; q = 1 is the identity.
 
     Parameters
     ----------
@@ -6448,7 +6460,7 @@ def TanhRelabel(
     name : str
         The name of the object.
     strength : number
-        Strength d, 0 to 100; 0 changes nothing. 0 to 100.
+        Strength d, 0 to 100; 0 is the identity. 0 to 100.
     dense : text, optional
         Dense end: "both", "start" or "end". Default both.
     **attributes
@@ -6527,8 +6539,8 @@ def ArcLenRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """A redistribution by length: R is the inverse of s(t) / L, with s the length along a curve and L
-    all of it, so that equal steps of t are equal lengths.
+    """A redistribution by arc length: R is the inverse of s(t) / L, with s the arc length along a
+    curve and L its total, so that equal steps of t are equal lengths.
 
     Intended as the relabel of a curve of the same shape: a copy, a neighbour, or a curve on the
     same points. The curve must have non-zero speed everywhere.
@@ -6570,8 +6582,8 @@ def CopyRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """The reparametrisation of another curve, so that neighbours match: the identity for a curve
-    without one, that of the original for an image.
+    """A copy of the reparametrisation of another curve, so that neighbours match: the identity for a
+    curve without one, that of the original for an image.
 
     Parameters
     ----------
@@ -6610,8 +6622,8 @@ def InvRelabel(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> RelabelHandle:
-    """The inverse of a relabel, which undoes it: R(t) is the parameter at which the other has the value
-    t. The other must have a slope at both ends.
+    """The inverse of a relabel: R(t) is the parameter at which the other has the value t. The other
+    must have a nonzero slope at both ends.
 
     Parameters
     ----------
@@ -6659,7 +6671,7 @@ def ComposeRelabel(
     name : str
         The name of the object.
     relabels : list of relabel
-        Relabels, the one that sees t first.
+        Relabels in order of application.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6981,7 +6993,7 @@ def TanPlane(
     attributes: _Text | None = ...,
 ) -> PlaneHandle:
     """The tangent plane of a surface at a magnet, with the surface's normal; at a pole the limit along
-    the parameter line that leads there.
+    the parameter line through the magnet.
 
     Parameters
     ----------
@@ -7316,7 +7328,7 @@ def PlaneContours(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> ContoursHandle:
-    """Sections by planes parallel to a given one, at the distances start + i step along its normal,
+    """Sections by planes parallel to a given plane, at the distances start + i step along its normal,
     for i from first to last: diagonals, cant frames.
 
     Parameters
@@ -7324,7 +7336,7 @@ def PlaneContours(
     name : str
         The name of the object.
     plane : plane
-        The plane of distance 0.
+        The plane at distance 0.
     first : integer
         First index i.
     last : integer
@@ -7448,7 +7460,7 @@ def AngleContours(
     step : number
         Angle between neighbouring sections, in radians (degrees in model files).
     zero : point, optional
-        A point in the half-plane of angle 0.
+        A point of the half-plane at angle 0.
     surfaces : list of value, optional
         Surfaces and bodies to cut; default: all visible ones.
     **attributes
@@ -7482,7 +7494,7 @@ def RealList(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """A list of numbers under a name, for use wherever a list of numbers is expected.
+    """A list of numbers under a name, accepted wherever a list of numbers is expected.
 
     Parameters
     ----------
@@ -7562,7 +7574,7 @@ def EntityList(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """Objects under a common name, for use wherever a list of such objects is expected: the wetted
+    """Objects under a common name, accepted wherever a list of such objects is expected: the wetted
     surfaces, the points of a curve.
 
     A list among the objects adds its own.
@@ -7685,12 +7697,12 @@ def FairCurve(
         "variation" for data ("bending" below degree 3), "second" where control points move.
     as : text, optional
         Role of the points: "fit" (data on the curve; default for the optimum), "control"
-        (control points of a uniform spline, whose ends are not at its points; default for the
+        (control points of a uniform spline, which does not end at its points; default for the
         other modes) or "points" (faired, then interpolated; for the optimum the same as "fit",
         except with `spacing = "index"`).
     breaks : list of integer, optional
-        Numbers of points, from 1, that are intended breaks: they do not move, nothing is
-        smoothed across them, and the curve has corners there. A closed curve starts at the
+        Numbers, from 1, of points that are intended breaks: they do not move, nothing is
+        smoothed across them, and the curve has corners at them. A closed curve starts at the
         first of them.
     ends : text, optional
         Condition at open ends, relative to the curve through the points: "free" (within the
@@ -7715,8 +7727,8 @@ def FairCurve(
         them.
     knots : list of number, optional
         Knots of the control points (`as = "control"`) or of a fit, constant. Open: number of
-        control points + degree + 1, non-decreasing; closed: as many as control points,
-        increasing. For a fit they determine the number of control points.
+        control points + degree + 1, non-decreasing; closed: number of control points,
+        increasing. In a fit they determine the number of control points.
     spacing : text, optional
         Parametrisation of the points: "chord", "centripetal", a coordinate ("x", "y" or "z",
         for offsets at stations), "index", or "curvature" (chord lengths, extended where the
@@ -7737,9 +7749,9 @@ def FairCurve(
         is bounded separately). Default: along `along`, or in any direction without it.
     share : number, optional
         Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
-        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
-        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
-        of the measure, default 0.1. "energy": the largest measure, required.
+        fills the tolerance; default 0.5 for plane curves with free motion, otherwise 0.8; 0.3
+        for networks that noise does not explain ("budget": 0.8). "nearest": relative excess of
+        the measure, default 0.1. "energy": the largest measure, required.
     shape : list of text, optional
         Shape conditions, with numbers of points from 1: "convex=4-10", "concave=1-4", "one-
         way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
@@ -7791,8 +7803,8 @@ def FairCurve(
         Single steps stop when the certified gap is below this fraction of the measure; 0:
         never. At least 0, default 0.
     stop_pieces : integer, optional
-        1: single steps stop when n of them, for n points, have not reduced the number of
-        monotone pieces of curvature. 0 to 1, default 0.
+        1: single steps stop when the number of pieces with monotone curvature has not decreased
+        for n steps, with n the number of points. 0 to 1, default 0.
     through : list of point, optional
         Points on the curve at `through_at`. No derivatives.
     keep : list of text, optional
@@ -7901,9 +7913,9 @@ def FairSnake(
         near.
     share : number, optional
         Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
-        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
-        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
-        of the measure, default 0.1. "energy": the largest measure, required.
+        fills the tolerance; default 0.5 for plane curves with free motion, otherwise 0.8; 0.3
+        for networks that noise does not explain ("budget": 0.8). "nearest": relative excess of
+        the measure, default 0.1. "energy": the largest measure, required.
     breaks : list of integer, optional
         Numbers of magnets, from 1, that are intended breaks: they do not move, and the path has
         corners there.
@@ -7958,8 +7970,8 @@ def FairSnake(
         Single steps stop when the certified gap is below this fraction of the measure; 0:
         never. At least 0, default 0.
     stop_pieces : integer, optional
-        1: single steps stop when n of them, for n points, have not reduced the number of
-        monotone pieces of curvature. 0 to 1, default 0.
+        1: single steps stop when the number of pieces with monotone curvature has not decreased
+        for n steps, with n the number of points. 0 to 1, default 0.
     along : vector, optional
         Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
         Default: any direction.
@@ -7972,8 +7984,8 @@ def FairSnake(
         them.
     knots : list of number, optional
         Knots of the control points (`as = "control"`) or of a fit, constant. Open: number of
-        control points + degree + 1, non-decreasing; closed: as many as control points,
-        increasing. For a fit they determine the number of control points.
+        control points + degree + 1, non-decreasing; closed: number of control points,
+        increasing. In a fit they determine the number of control points.
     through : list of magnet, optional
         Magnets on the path at `through_at`. No derivatives.
     as : text, optional
@@ -8065,7 +8077,7 @@ def FairSurf(
         Measure to minimise; see `FairCurve`. Default second.
     as : text, optional
         Role of the points: "fit" (interpolated, then faired) or "control" (control points of a
-        uniform surface, whose rims are not at its points). Default fit.
+        uniform surface, which does not end at its points). Default fit.
     degree : integer, optional
         Polynomial degree along u, and along v without `degree_v`. 2 to 9, default 3.
     breaks_u : list of integer, optional
@@ -8113,9 +8125,9 @@ def FairSurf(
         1: closed along v; the first column of points is not repeated. 0 to 1, default 0.
     share : number, optional
         Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
-        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
-        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
-        of the measure, default 0.1. "energy": the largest measure, required.
+        fills the tolerance; default 0.5 for plane curves with free motion, otherwise 0.8; 0.3
+        for networks that noise does not explain ("budget": 0.8). "nearest": relative excess of
+        the measure, default 0.1. "energy": the largest measure, required.
     tolerances : farray, optional
         Tolerances of the individual points, a grid of the same shape, instead of `tolerance`.
     fixed : list of integer, optional
@@ -8222,8 +8234,8 @@ def FairNet(
         Intended breaks: these points do not move, nothing is smoothed across them, and the
         curves have corners there.
     kept_ends : text, optional
-        Fixed ends of open curves: "corners" (points at which every curve through them ends),
-        "ends" (all) or "none". Default corners.
+        Fixed ends of open curves: "corners" (ends of all curves through them), "ends" (all) or
+        "none". Default corners.
     along : vector, optional
         Direction in which points may move, such as {0, 1, 0} for offsets at fixed stations.
         Default: any direction.
@@ -8251,32 +8263,34 @@ def FairNet(
         near.
     share : number, optional
         Parameter of the goal. "near" and "budget": mean squared residual relative to noise that
-        fills the tolerance; default 0.5 for plane curves with free motion, 0.8 otherwise, and
-        for networks that noise does not explain 0.3 ("budget": 0.8). "nearest": relative excess
-        of the measure, default 0.1. "energy": the largest measure, required.
+        fills the tolerance; default 0.5 for plane curves with free motion, otherwise 0.8; 0.3
+        for networks that noise does not explain ("budget": 0.8). "nearest": relative excess of
+        the measure, default 0.1. "energy": the largest measure, required.
     fixed : list of point, optional
-        Points that do not move besides those of `kept_ends`.
+        Additional fixed points besides those of `kept_ends`.
     tolerances : list of number, optional
         Tolerances of the points in `tolerances_at`, instead of `tolerance`.
     tolerances_at : list of point, optional
-        The points that `tolerances` belong to.
+        The points with the tolerances of `tolerances`.
     steps : integer, optional
         Steps per point of each curve and pass in the mode "faithful". 1 to 1000, default 3.
     bound : text, optional
-        What the tolerance bounds: "points", their moves; "curve": no curve is farther from the
-        one before than the smaller tolerance of the two points beside. Default points.
+        Quantity that the tolerance bounds: "points" (the move of each point) or "curve" (the
+        distance of each curve from its initial one, by the smaller tolerance of the two
+        neighbouring points). Default points.
     shape : list of text, optional
-        What curves have to have, exactly, by their numbers: "2: convex", "2:
-        straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points
-        on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9" (on a
-        circle, tangent to straight runs beside it), "1: tangent=start:1,0,0". No derivatives.
+        Exact shape conditions of curves, given by their numbers: "2: convex", "2:
+        straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each curve, its
+        points on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9"
+        (on a circle, tangent to adjacent straight runs), "1: tangent=start:1,0,0". No
+        derivatives.
     knuckles : list of integer, optional
         Numbers of curves, from 1, along which all curves that cross them break.
     release : list of point, optional
-        Points that are wrong: they move wherever the curves through the others are.
+        Wrong points: they move to the curves through the others.
     keep : list of text, optional
-        "volume" and its "centroid" stay, by splines through the sections, where points move
-        along one direction. No derivatives.
+        "volume", and with it "centroid": preserved by splines through the sections, if points
+        move along one direction. No derivatives.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8494,7 +8508,7 @@ def Field(
     field : field
         The function.
     of : list of value, optional
-        Objects from which it is computed.
+        Objects that it is computed from.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8588,11 +8602,11 @@ def FaceSet(
     name : str
         The name of the object.
     body : mesh
-        The body; triangles of round faces are chords of them.
+        The body; the triangles of round faces are inscribed.
     faces : list of integer, optional
-        The number of the face of each triangle; triangles in one plane make a face by default.
+        Face number of each triangle; by default the triangles of one plane are a face.
     rounds : list of vector, optional
-        The round faces, five vectors each.
+        The round faces, as five vectors each.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8651,7 +8665,7 @@ def SetBody(
         Number of halvings of the longest side of the box; the cells have 2^-depth of its
         length. Default: 6, without an accuracy. 1 to 16.
     accuracy : number, optional
-        Maximum distance of triangle centres from the surface, estimated by refinement.
+        Maximum distance of triangle centres from the surface, reached by refinement, estimated.
     simplify : number, optional
         Largest distance from the surface when triangles are merged, in units of length.
         Default: no merging.
@@ -8710,7 +8724,7 @@ def ConjugateArc(
     sweep : number
         The angle swept from t = 0 to 1, in radians; negative turns away from Q.
     end : point, optional
-        The point object at t = 1, where there is one.
+        The point object at t = 1, if any.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -8788,7 +8802,7 @@ def FacePatch(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
-    """A face by its corners, as a surface for magnets, snakes and projections.
+    """A face given by its corners, as a surface for magnets, snakes and projections.
 
     Four corners P1 to P4 make the bilinear patch with P1 at (0, 0), P2 at (1, 0), P3 at (1, 1) and P4
     at (0, 1); with three, P3 is the whole side v = 1. More corners make the rectangle around them in
@@ -8892,7 +8906,7 @@ def Model(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """The model's properties: its mirror planes, its unit, and the header of its model file.
+    """The model's properties: its symmetry planes, units, and the header of its model file.
 
     A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
     and hydrostatics count both.
@@ -8904,7 +8918,7 @@ def Model(
     symmetry : text, optional
         The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
     units : text, optional
-        The units of length, mass, force and angle, such as "m t kN": of each at most one.
+        The units of length, mass, force and angle, at most one of each, such as "m t kN".
     version : text, optional
         The version of the model file, such as "0.35" or "1.44".
     lines : list of text, optional
@@ -8998,7 +9012,7 @@ def Weight(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """A mass and its centre: a part of a ship's weight.
+    """A mass with its centre: an item of a ship's weight.
 
     Masses are used as given, also in a mirrored model (`Model info(symmetry = "y")`): `images =
     "y"` adds the mirror image, which doubles the mass and moves the centre into the plane.

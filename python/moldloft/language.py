@@ -43,7 +43,7 @@ def reference() -> list[dict[str, Any]]:
 
 
 def statements() -> list[dict[str, Any]]:
-    """The statements that read like declarations of an object and insert the contents of a file.
+    """The statements with the form of a declaration that insert the contents of a file.
 
     >>> [row["name"] for row in statements()]
     ['Component', 'Sketch']
@@ -168,7 +168,7 @@ def docstring(row: dict[str, Any], parameters: Sequence[tuple[str, str]], result
 
 
 def python_name(name: str) -> str:
-    """The name of an argument in Python: words of Python end in an underscore.
+    """The name of an argument in Python: Python keywords get an underscore at the end.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def python_name(name: str) -> str:
 
 
 def signature(row: dict[str, Any]) -> inspect.Signature:
-    """The arguments of a kind or function, as ``help`` and editors show them.
+    """The arguments of a kind or function, for ``help`` and editors.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ SYNONYMS = {
 
 
 def search(words: str) -> list[dict[str, Any]]:
-    """Rows that a phrase may mean, the best first: by name, summary, documentation and synonym.
+    """Rows that match a phrase, the best first: by name, summary, documentation and synonym.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ __all__ = ["serve"]
 def serve() -> bool:
     """Serves an editor on standard input and output until it disconnects.
 
-    Texts are run by a process of their own, which is started again when a text ends it. An
+    Texts are run in a separate process, which is restarted if a text ends it. An
     interrupt (Ctrl-C) ends the server.
 
     Returns

@@ -18,9 +18,9 @@ _ARRAY = re.compile(r"\b(?:curve|surface) (\w+)\[")
 def routines() -> list[dict[str, Any]]:
     """A row for each routine with an example in its comment, in the order of the files.
 
-    Rows have the keys of :func:`moldloft.language.reference`, the file that is loaded for them as
-    ``library``, and ``signature``, how they are called. Routines without an example serve others of
-    their file. A line ``- name: meaning`` of the comment describes an argument.
+    Rows have the keys of :func:`moldloft.language.reference`, ``library``, the file to load, and
+    ``signature``, the form of a call. Routines without an example are internal to their file. A
+    line ``- name: meaning`` of the comment describes an argument.
 
     >>> row = next(row for row in routines() if row["name"] == "naca4")
     >>> row["library"], row["signature"]

@@ -248,7 +248,7 @@ class _Lines:
         for surface in self.surfaces:
             for u, v in ((t, 0 * t), (1 + 0 * t, t), (t, 1 + 0 * t), (0 * t, t)):
                 points = np.array([surface(a, b) for a, b in zip(u, v, strict=True)])
-                # An edge in the plane of symmetry is none of the whole.
+                # An edge in the plane of symmetry is not an edge of the whole.
                 seam = self.mirrored and abs(points[:, 0]).max() <= 1e-9 * self.size
                 if not seam and np.ptp(points, axis=0).max() > 1e-9 * self.size:
                     found.append(_Curve(points, _slopes(points)))
@@ -647,8 +647,8 @@ def dxf(plan: Plan) -> bytes:
     """The sheet as DXF R2018 by ezdxf, at full size in the model's unit.
 
     Each curve is one spline of degree 3 with the control points of the plan, each straight line a
-    line or polyline; layers have the widths and dashes of the drawing, dashes and texts the size
-    that they have on paper at the plan's scale.
+    line or polyline; layers have the widths and dashes of the drawing, dashes and texts are scaled
+    to the size on paper at the plan's scale.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Origin:
     library: tuple[str, ...] = ()
     """Further folders."""
     functions: dict[str, Any] = field(default_factory=dict)
-    """Python functions by the names that the text calls them."""
+    """Python functions, by their names in the text."""
     edited: bool = False
     """True while the text is being edited: the valid part of a faulty one is run."""
 

@@ -72,7 +72,7 @@ class Quality(dict[str, dict[str, Any]]):
 class Mesh:
     """Panels of all shown surfaces of a model, at one state of it.
 
-    Panels are counter-clockwise seen from outside. Vertices common to patches are single.
+    Panels are counter-clockwise seen from outside. Common vertices of patches are shared.
 
     Examples
     --------

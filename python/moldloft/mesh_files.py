@@ -26,7 +26,7 @@ _METRES = {"gdf", "mar", "dat", "pnl", "hst"}
 
 
 def holds_mesh(path: str | os.PathLike[str]) -> bool:
-    """True if the ending is that of a readable mesh file.
+    """True if the extension is that of a readable mesh file.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def mesh_of_file(
 def read_mesh(path: str | os.PathLike[str], *, units: str = "", file_units: str = "") -> Model:
     r"""A mesh or panel file of another program as a model of one body, ``body``.
 
-    It is measured, cut, floated and written as any model: ``m.hydrostatics()``,
+    It is used like any other model: ``m.hydrostatics()``,
     ``m.mesh().summary()``, ``m.write("hull.gdf")``. Remarks are warnings of Python.
 
     Parameters

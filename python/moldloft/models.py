@@ -42,7 +42,7 @@ class Param:
     high: float | None
     """The greatest value of its range."""
     whole: bool
-    """True when it takes whole numbers only."""
+    """True for integers."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Adjustment:
     after: float
     """Its value now."""
     share: float
-    """Its part of the weighted change of all, 0 to 1."""
+    """Its fraction of the total weighted change, 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
     def partial(self) -> bool:
         """True if figures and files may cover a part of the model only.
 
-        ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
+        ``False`` by default: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
         each other in their counts; hydrostatics also while the skin is open below the water. With
         ``True`` they are those of the valid objects, which the remarks of hydrostatics state.
@@ -222,7 +222,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
 
     @property
     def types(self) -> dict[str, str]:
-        """The types of the program's variables by name, with extents: ``surface[2,3]``.
+        """The types of the program's variables, by name, with extents: ``surface[2,3]``.
 
         Examples
         --------
@@ -265,7 +265,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
         return self._document.object(name)
 
     def completions(self, line: str) -> list[str]:
-        """Possible words at the end of the text followed by ``line``.
+        """Completions at the end of the text followed by ``line``.
 
         Parameters
         ----------
@@ -338,7 +338,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
     def refine(self, times: int) -> None:
         """Set the refinement level: each level halves the spacing of sizes declared by ``refined``.
 
-        Coarse grid points recur in fine grids, so that the grids of 0, 1, 2, ... are nested.
+        Points of coarse grids are points of fine ones: the grids of 0, 1, 2, ... are nested.
 
         Parameters
         ----------
@@ -500,7 +500,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
     def solve_for(
         self, targets: Mapping[str, float], by: Sequence[str] | Mapping[str, float]
     ) -> Solution:
-        """Bring numbers of the model to given values by the least change of chosen parameters.
+        """Give numbers of the model target values by the least change of chosen parameters.
 
         Of all values within the ranges of the parameters that give the targets, those of the least
         sum of squares of weighted changes, each relative to its range (without one, to its
@@ -667,9 +667,9 @@ class Model(Differentiable, Floating, Writable, Adapted):
     def folded_surfaces(self) -> list[_core.Diagnostic]:
         """Surfaces of the skin that turn over themselves.
 
-        Each is a warning with a place: areas, volumes and panels count the fold more than once. The
-        normals of smooth cells are compared at about 24 x 24 places of each surface; where they are
-        opposite, halving leads to the place at which the normal vanishes. A smaller fold is missed.
+        Each is a warning with a position: areas, volumes and panels count the fold more than once.
+        Normals are compared at about 24 x 24 points of each surface; between opposite ones,
+        bisection finds the point at which the normal vanishes. Smaller folds are missed.
 
         Returns
         -------
@@ -735,9 +735,9 @@ class Model(Differentiable, Floating, Writable, Adapted):
         """The workbench in a notebook cell: sliders, drags, typing, hydrostatics.
 
         The page has its own engine in WebAssembly, with the same bits. With ``anywidget`` installed
-        (extra ``notebook``) this model follows changes in the page; after changes in Python
-        ``refresh()`` of the result shows them. Without it, or with ``follow=False``, the page is
-        part of the notebook, stays interactive in an exported one, and changes no model of Python.
+        (extra ``notebook``) this model follows changes in the page, and ``refresh()`` of the result
+        shows changes made in Python. Without it, or with ``follow=False``, the page is part of the
+        notebook, remains interactive in an exported one, and changes no model of Python.
 
         Parameters
         ----------

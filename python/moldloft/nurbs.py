@@ -105,7 +105,7 @@ class Nurbs:
     def parameters(self, *parameters: ArrayLike) -> tuple[Floats, ...]:
         """The shape's own parameters at parameters of the NURBS.
 
-        They are equal except along parameters linear in an angle, where those of the NURBS are not.
+        The two differ only along parameters that are linear in an angle for the shape.
 
         Parameters
         ----------

@@ -291,8 +291,9 @@ class _Located(Object):
     def nearest(self, points: ArrayLike) -> NearestPoints:
         """The points of a curve or surface nearest to given points.
 
-        The first call on a shape prepares it for searches (milliseconds); later calls, of any
-        number of points, use that until the shape changes. The answers do not depend on each other.
+        The first call on a shape prepares it for searches (milliseconds); later calls, for any
+        number of points, reuse this until the shape changes. The answers are independent of each
+        other.
 
         Parameters
         ----------
@@ -328,9 +329,9 @@ class _Located(Object):
         """Intersection of a curve or surface with another, or with a plane.
 
         Two surfaces, or a surface and a plane, cross in branches; a curve meets the other in
-        points. All branches longer than 2 % of the size are found that cross at an angle somewhere,
-        and all points where a curve crosses; on shapes that are no B-splines up to the third degree
-        this is as right as cubic pieces near them are.
+        points. All branches longer than 2 % of the size that are not tangent everywhere are found,
+        and all points at which a curve crosses. For shapes other than B-splines up to degree 3 this
+        holds for their cubic approximations.
 
         Parameters
         ----------
@@ -368,8 +369,8 @@ class _Located(Object):
     def to_nurbs(self, *, accuracy: float | None = None, degree: int = 3) -> Nurbs:
         """The curve, snake, surface or solid as a NURBS.
 
-        Shapes that are piecewise polynomial or rational are exact but for rounding. Others are
-        fitted; :attr:`Nurbs.error` bounds the distance everywhere, not at samples.
+        Piecewise polynomial and rational shapes are exact up to rounding. Others are
+        fitted; :attr:`Nurbs.error` is a bound on the distance everywhere, not only at samples.
 
         Parameters
         ----------
@@ -632,9 +633,9 @@ class Contours(Object):
     """A family of sections: stations, waterlines, buttocks, and those by cylinders and half-planes.
 
     ``positions``, ``lengths`` and ``areas`` are arrays with a number for each section; in
-    expressions they have derivatives: ``m.derivative("stations.areas", "beam")``. A section is all
-    that its surfaces and bodies leave on it, with the images in planes of symmetry that fall on the
-    same section. An open section is closed by a straight chord for its area, which is warned of.
+    expressions they have derivatives: ``m.derivative("stations.areas", "beam")``. A section
+    contains the lines of all its surfaces and bodies, and their mirror images on the same section.
+    An open section is closed by a straight chord for its area, which is warned of.
 
     Examples
     --------
@@ -735,7 +736,7 @@ def object_of(model: Model, name: str) -> Object:
 if TYPE_CHECKING:
 
     class Entry(Surface, Curve, Ring, Solid, Body, FieldObject, SetObject, float):
-        """Type of ``m["name"]`` for a type checker: a number or an object of any class.
+        """Type of ``m["name"]`` for type checkers: a number or an object of any class.
 
         ``isinstance(m["hull"], moldloft.Surface)`` narrows it. At run time it is a float or an
         object of one class.

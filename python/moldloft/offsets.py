@@ -327,8 +327,8 @@ def encode(model: Model, title: str = "") -> bytes:
 def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]) -> Offsets:
     """The half-breadths of a model's panels: the largest y >= 0 at each station and waterline.
 
-    Panels are cut as bilinear patches split along one diagonal; points where the station does not
-    meet the waterline are left out.
+    Panels are cut as bilinear patches split along one diagonal; points without an intersection of
+    station and waterline are omitted.
 
     Parameters
     ----------

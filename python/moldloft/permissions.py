@@ -116,7 +116,7 @@ def write_outputs(
     sources: Iterable[str] = (),
     force: bool = False,
 ) -> list[Path]:
-    """Write files whose names a model chose, or that are derived from it.
+    """Write files with names chosen by a model or derived from its name.
 
     Parameters
     ----------

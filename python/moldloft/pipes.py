@@ -12,7 +12,7 @@ __all__ = ["broken_pipes_raise"]
 
 @contextlib.contextmanager
 def broken_pipes_raise() -> Iterator[None]:
-    """Context in which a write to an ended process always raises an exception.
+    """Context in which a write to a process that has ended raises an exception.
 
     Python ignores the signal of a broken pipe, but libraries such as Gmsh let it end the process.
     """

@@ -50,7 +50,7 @@ class Ship:
     """On the waterline."""
     beam: float
     draft: float
-    """Mean of the ends; at the fore perpendicular too."""
+    """Mean of both ends, also used as the draft at the fore perpendicular."""
     volume: float
     """Displacement, m³."""
     cm: float
@@ -92,7 +92,7 @@ class Ship:
 
     @property
     def outside(self) -> list[str]:
-        """Ratios outside the ships behind the regression, each with its range."""
+        """Ratios outside the range of the regression's ships, each with its range."""
         ratios = (self.cp, self.length / self.beam, self.beam / self.draft)
         return [
             f"{name} is {ratio:.3g}, outside {low:g} to {high:g}"
@@ -124,7 +124,7 @@ class Resistance:
 
     @property
     def total(self) -> float:
-        """All parts; friction with its form factor."""
+        """The sum of all parts, including the form factor of friction."""
         return (
             self.friction * self.form_factor
             + self.appendages

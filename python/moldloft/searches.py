@@ -30,7 +30,7 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 class NearestPoints:
     """The points of a curve or surface that are nearest to given ones.
 
-    All arrays begin with the shape of the given points, without its last extent.
+    The first extents of all arrays are those of the given points, without the last.
     """
 
     parameters: Floats
@@ -40,7 +40,7 @@ class NearestPoints:
     distances: Floats
     """Distances from the given points."""
     statuses: NDArray[np.str_]
-    """``"ok"``; ``"edge-clamped"`` at an edge or end because the shape is over there;
+    """``"ok"``; ``"edge-clamped"`` at an edge or end because the shape ends there;
     ``"multiple"`` where others are equally near, to 1e-9 of the size; ``"tangent"`` where the
     distance is stationary to second order, so that the foot is not well determined."""
 
@@ -58,8 +58,9 @@ class Branch:
     other_parameters: Floats
     """The same on the second, shape ``(n, 2)``; of a plane ``(n, 0)``."""
     ends: tuple[str, str]
-    """Why it ends: ``"edge"`` of the first surface, ``"other-edge"`` of the second, ``"closed"``,
-    ``"tangent"`` where the surfaces touch, ``"lost"`` after too many steps."""
+    """Reasons why it ends: ``"edge"`` of the first surface, ``"other-edge"`` of the second,
+    ``"closed"``, ``"tangent"`` where the surfaces touch, ``"lost"`` after too many steps.
+    """
 
     @property
     def closed(self) -> bool:
@@ -88,7 +89,7 @@ class Intersection:
     complete: bool
     """False if the search reached its limit, as for coincident shapes: there may be more."""
     smallest: float
-    """All branches longer than this are found that cross at an angle somewhere."""
+    """Minimum length of the branches that are found, if not tangent everywhere."""
 
     def __bool__(self) -> bool:
         """True if there is a common point."""

@@ -113,7 +113,7 @@ class Reply:
 
     @staticmethod
     def from_row(row: Any) -> Reply:
-        """The reply of a row of the session's answers.
+        """The reply for an answer of the session.
 
         Parameters
         ----------

@@ -64,7 +64,7 @@ class SketchError(Error, ValueError):
 
     @property
     def rendered(self) -> str:
-        """The replies as they are, or the message after ``error:``."""
+        """The replies unchanged, or the message after ``error:``."""
         return str(self).rstrip() if self.replies else super().rendered
 
 

@@ -59,7 +59,7 @@ class Opening:
     """Position in the model's axes."""
 
     def height(self, heel: float, trim: float, level: float) -> float:
-        """Its height over the water.
+        """The height of the opening above the water.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ def _dot(a: Sequence[float], b: Sequence[float]) -> float:
 class Stability:
     """The righting arm of a loading as a function of heel; see :meth:`moldloft.Model.stability`.
 
-    Every figure comes from the equilibrium at its own heel; nothing is interpolated between heels.
+    Every figure is computed in equilibrium at its heel, without interpolation between heels.
     Angles are in radians. The trim is free at each heel, or fixed if ``free_trim`` is false.
     """
 
@@ -183,9 +183,9 @@ class Stability:
         return math.nan if arm is None else arm
 
     def energy(self, heel: float) -> float:
-        """The height of the centre of gravity over that of buoyancy.
+        """The height of the centre of gravity above the centre of buoyancy.
 
-        Its change is the work of heeling over the weight: exactly the area under GZ cos(trim)
+        Its change is the work of heeling divided by the weight: the area under GZ cos(trim)
         (Moseley's dynamical stability).
 
         Parameters
@@ -199,9 +199,9 @@ class Stability:
         return _dot(normal, [g - b for g, b in zip(self.cg, centre, strict=True)])
 
     def area(self, low: float, high: float) -> float:
-        """The area under the righting arm between two heels: a difference of energies.
+        """The area under the righting arm between two heels, as a difference of energies.
 
-        NaN where the water enters over an open edge before (:meth:`deck_edge`).
+        NaN if an open edge is immersed before (:meth:`deck_edge`).
 
         Parameters
         ----------
@@ -235,7 +235,7 @@ class Stability:
         return math.cos(row.trim) * stiff + math.sin(row.trim) * arm * both / along
 
     def grid(self, low: float, high: float, step: float = _STEP) -> list[float]:
-        """Heels from ``low`` to ``high``, at most ``step`` apart, all computed together.
+        """Heels from ``low`` to ``high``, at most ``step`` apart, computed in one call.
 
         Parameters
         ----------
@@ -264,9 +264,10 @@ class Stability:
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
     def loll(self, most: float = math.pi) -> float | None:
-        """The smallest positive heel at which the arm changes from overturning to righting.
+        """The angle of loll.
 
-        ``None`` for a body that is stable upright, or finds no such heel up to ``most``.
+        The smallest positive heel at which the arm changes from overturning to righting. ``None``
+        for a body that is stable upright, or without such a heel up to ``most``.
 
         Parameters
         ----------
@@ -311,9 +312,9 @@ class Stability:
     def vanishing(self, most: float = math.pi) -> float | None:
         """The angle of vanishing stability: the first heel at which the righting arm becomes zero.
 
-        The arm falls to zero there, or jumps below where the body turns over its ends.
-        ``None`` when it was never righting, or stays so up to ``most`` or up to the heel at which
-        the water enters over an open edge (:meth:`deck_edge`).
+        The arm decreases to zero there, or jumps below zero if the body capsizes over its ends.
+        ``None`` if it is never righting, or remains righting up to ``most`` or until an open edge
+        is immersed (:meth:`deck_edge`).
 
         Parameters
         ----------
@@ -350,7 +351,7 @@ class Stability:
     def immersed(self, opening: Opening, most: float = math.pi) -> float | None:
         """The smallest positive heel at which an opening reaches the water.
 
-        ``None`` if it stays above the water up to ``most``, as one near the centre line may.
+        ``None`` if it stays above the water up to ``most``, as is possible near the centre line.
 
         Parameters
         ----------
@@ -414,7 +415,7 @@ class Stability:
         return None
 
     def figures(self) -> dict[str, Any]:
-        """The main figures of the loading, as :meth:`summary` prints them; angles in radians.
+        """The main figures of the loading; angles in radians. :meth:`summary` prints them.
 
         Returns
         -------
@@ -710,7 +711,7 @@ class Assessment:
 
     @property
     def passed(self) -> bool:
-        """True when every clause that applies is passed: missing data do not pass."""
+        """True when every applicable clause is passed; a clause with missing data is not."""
         return all(c.result in ("pass", "not applicable") for c in self.checks)
 
     def as_list(self) -> list[dict[str, Any]]:

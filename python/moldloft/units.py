@@ -124,9 +124,9 @@ class Units:
         return _MASSES[self.mass]
 
     def complete(self) -> Units:
-        """The units with mass and force filled in if the length is known.
+        """The units, with mass and force added if the length is known.
 
-        With metric lengths kg and N, with feet, inches and yards lb and lbf.
+        Kg and N for metric lengths, lb and lbf for feet, inches and yards.
 
         Returns
         -------
@@ -265,7 +265,7 @@ def shown(name: str, value: Any) -> Any:
 
 
 def header(name: str, units: Units) -> str:
-    """The name of a figure with its unit, as headers of tables have it.
+    """The name of a figure with its unit, for headers of tables.
 
     Parameters
     ----------

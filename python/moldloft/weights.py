@@ -37,7 +37,7 @@ class Weight:
 
 
 class WeightTable:
-    """Weights by group, in the order in which the groups occur first."""
+    """Weights by group, in the order of the first occurrence of each group."""
 
     def __init__(self, rows: Sequence[Weight], units: Units) -> None:
         groups = list(dict.fromkeys(row.group for row in rows))

@@ -22,7 +22,7 @@ _OF_FORMATS = {"cannot-write", "unused-option"}
 
 
 class Writable:
-    """Files, pictures and other forms: the methods of a model that write it."""
+    """The methods of a model that write files, pictures and other forms."""
 
     if TYPE_CHECKING:
         # The class of models has it.
@@ -286,8 +286,8 @@ class Writable:
     def convert(self, to: str) -> str:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``.
 
-        A program becomes a model file of its objects. Parameters become ``Variable``, variables
-        with a single assignment ``Formula``, expressions of the main program in arguments
+        A program is converted to a model file of its objects. Parameters become ``Variable``,
+        variables with a single assignment ``Formula``, expressions of the main program in arguments
         ``[...]``; results of routines and loops become numbers. Arguments without a column are
         attributes ``A:Moldloft(name value)``. The text is read back; an error reports any object
         that differs.

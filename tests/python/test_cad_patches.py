@@ -272,7 +272,7 @@ def test_what_has_no_patches_is_triangles_and_says_so(name: str, tmp_path: Path)
         (file,) = model.write(tmp_path / "b.step")
     text = file.read_text()
     assert "=TESSELLATED_SOLID('b'" in text and "1 body of triangles" in text
-    assert "triangles, no surfaces; their middles are within" in text
+    assert "triangles, no surfaces; their centres are within" in text
     # OCCT has them all, where they were.
     shape = read(file).shape
     faces = [

@@ -11,6 +11,7 @@ import threading
 import pytest
 
 from conftest import SAILBOAT
+from moldloft.text_table import table
 
 HULL = SAILBOAT / "hull.sdl"
 TEXT = HULL.read_text(encoding="utf-8")
@@ -98,6 +99,29 @@ def test_alone_it_greets_with_the_help(cli) -> None:
     done = cli()
     assert done.stdout == cli("--help").stdout == cli("--color", "never").stdout
     assert "moldloft new hull.sdl" in done.stdout and "build" in done.stdout
+
+
+def test_tables_fit_narrow_terminals() -> None:
+    header, rows = ["name", "what"], [["hull", "a surface from three curves and a line"]]
+    assert table(header, rows, left=2, width=30).splitlines() == [
+        "name  what",
+        "hull  a surface from three",
+        "      curves and a line",
+    ]
+    assert table(header, rows, left=2, width=24).splitlines() == [
+        "name",
+        "    what",
+        "hull",
+        "    a surface from three",
+        "    curves and a line",
+    ]
+    assert table(["z", "area", "volume"], [["1", "2.5", "3.75"]], width=12).splitlines() == [
+        "z  area",
+        "1   2.5",
+        "",
+        "z  volume",
+        "1    3.75",
+    ]
 
 
 def test_help_at_the_prompt(cli) -> None:

@@ -461,11 +461,11 @@ REFUSED = {
     "count = 99": "expected",
     "count = 9, tolerances = {"
     + ", ".join(20 * ["0.0001"])
-    + "}": "more control points, or a larger tolerance",
+    + "}": "use more control points or a larger tolerance",
     'count = 9, as = "control"': "cannot be combined with",
     "count = 9, breaks = {4}": "cannot be combined with",
     'mode = "literal", bound = "curve"': "cannot be combined with",
-    'mode = "literal", measure = "jump-lengths"': "no steps of single points",
+    'mode = "literal", measure = "jump-lengths"': "local steps do not apply",
     'mode = "slow"': "unknown mode",
     "steps = 3": "for another mode",
     "stop_pieces = 1": "for another mode",

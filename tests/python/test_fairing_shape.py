@@ -314,7 +314,7 @@ def test_the_nearest_stays():
     assert np.sum(near.residuals**2) < np.sum(least.residuals**2)
     kept = moldloft.fair(near.points, noise, at=near.parameters, goal=("energy", 1.001 * most))
     assert kept.points.tobytes() == near.points.tobytes()
-    with pytest.raises(moldloft.FairingError, match="the least is"):
+    with pytest.raises(moldloft.FairingError, match="the minimum is"):
         moldloft.fair(data, noise, goal=("energy", 0.5 * least.value))
 
 

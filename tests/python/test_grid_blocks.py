@@ -544,7 +544,7 @@ def test_h_grids(section: str, n: int) -> None:
         ("h_grid(c, {0, .1, .2}, 0, 1, 5)", "positive length"),
         ("h_grid(c, {0, .1}, 1, 1, 5)", "at least 3 heights"),
         ("h_grid(c, {0, .2, .1}, 1, 1, 5)", "at least 3 heights"),
-        ("h_grid(-c, {0, .1, .2}, 1, 1, 5)", "from its tail"),
+        ("h_grid(-c, {0, .1, .2}, 1, 1, 5)", "from its trailing edge"),
         ("h_grid(c[1:40], {0, .1, .2}, 1, 1, 5)", "ends in its first point"),
         ('quality({c, c}, "sj")', "surface"),
         ('quality(b, "warp")', "growth_k"),

@@ -86,7 +86,7 @@ def test_what_is_no_spline_is_fitted():
         t = np.linspace(-1, 1, 41)
         radius = np.linalg.norm(patch(t, t), axis=-1)
         assert abs(radius - 1).max() < 3 * tolerance
-    with pytest.raises(moldloft.Error, match="the best is off by"):
+    with pytest.raises(moldloft.Error, match="the error of the best fit is"):
         high_order.patches(model, tolerance=1e-17)
 
 

@@ -52,7 +52,7 @@ def test_a_volume_that_is_not_known_as_well_as_asked_is_warned_of():
     touching = im.Set(im.sphere((0, 0, 0), 1))
     for x in (-0.5, 0.5):
         touching = touching & -im.Set(im.sphere((x, 0, 0), 0.5))
-    with pytest.warns(UserWarning, match=r"volume-uncertain\]: the volume is known to") as caught:
+    with pytest.warns(UserWarning, match=r"volume-uncertain\]: the volume is accurate") as caught:
         mass = touching.mass()
     assert caught[0].filename == __file__
     assert mass.uncertain >= mass.estimate > 1e-6 * mass.volume

@@ -113,8 +113,8 @@ def test_conditions_and_assertions_are_left_out_with_a_remark(tmp_path: Path) ->
         "AbsBead b(l, 0.5); SolveSet s({b.t}, {b.x - 1}); assert l.length > 1;"
     )
     text, (remark,) = converted(model, "ms2")
-    assert "a model file has no place for SolveSet `s`, an assertion" in remark
-    assert "Rem Moldloft: a model file has no place for SolveSet `s`, an assertion" in text
+    assert "a model file cannot hold SolveSet `s`, an assertion" in remark
+    assert "Rem Moldloft: a model file cannot hold SolveSet `s`, an assertion" in text
     assert "SolveSet s" not in text and "AbsBead b 14 1 / l 0.25;" in text
     assert float(loaded(text, tmp_path, "s.ms2")["b"].x) == 1
 

@@ -114,7 +114,7 @@ def test_facets_to_an_accuracy_are_one_body_with_the_right_holes(seed: int) -> N
         facets = of.set.facets(accuracy=accuracy, limit=2e5 if SOAK else 3e4)
     except moldloft.Error as error:
         # What would do is named: a depth for what is thin, a limit for what is fine.
-        assert re.search(r"depth = \d+ would show it|limit", str(error)), error
+        assert re.search(r"depth = \d+ resolves it|limit", str(error)), error
         return
     assert facets.closed and facets.bodies == 1 and facets.euler == of.euler, of
     assert facets.best_volume == pytest.approx(of.volume, rel=0.02)
@@ -128,7 +128,7 @@ def test_the_depth_that_is_named_shows_the_part(kind: str, thickness: float) -> 
         "ring": (im.Set(im.torus(o, z, 1, 0.5 * thickness)), 0),
     }[kind]
     body = body.turned(*turn)
-    with pytest.raises(moldloft.Error, match="would show it") as refused:
+    with pytest.raises(moldloft.Error, match="resolves it") as refused:
         body.facets(accuracy=0.2 * thickness, limit=600)
     depth = int(re.search(r"depth = (\d+)", str(refused.value))[1])
     assert depth <= 9

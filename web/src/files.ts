@@ -6,7 +6,7 @@ import { inBase64 } from './foreign'
 import { LONGEST_LINK, packed, unpacked } from './share'
 import { changed, model, type Remark } from './state'
 
-/** Endings of programs and model files, whose text takes the place of the program. */
+/** Endings of programs and model files, whose text replaces the program. */
 const PROGRAM = /\.(sdl|skt|ms2)$/i
 
 /** Endings of CAD files, which are read by the server. */
@@ -69,7 +69,7 @@ export async function copyLink(app: App): Promise<void> {
     }
     try {
       await navigator.clipboard.writeText(address)
-      app.shell.say(`Link copied: ${address.length} characters hold the text, but none of the files that it reads`)
+      app.shell.say(`Link copied: ${address.length} characters hold the text, but not the files that it reads`)
     } catch {
       // Without leave to use the clipboard the address is shown, chosen.
       const field = h('input', { type: 'text', readonly: true, 'aria-label': 'link', size: 40 })
@@ -97,7 +97,7 @@ export async function openLink(app: App): Promise<void> {
     const empty = app.editor.text.trim() === ''
     if (app.link.local || empty) return take()
     app.shell.warn(
-      `The link holds ${held.name}. It takes the place of the program here; Ctrl+Z brings that back. `,
+      `The link holds ${held.name}. It replaces the program here; Ctrl+Z brings that back. `,
       h('button', { class: 'primary', onclick: take }, 'Open it'),
       h('button', { onclick: () => app.shell.warn('') }, 'Keep the program'),
     )
@@ -119,7 +119,7 @@ async function openCad(app: App, name: string, bytes: Uint8Array): Promise<void>
   const take = () => {
     app.editor.replace(frame.head.text, false, false, `Open ${name}`)
     app.shell.warn('')
-    app.shell.say(`${name} has taken the place of the program; Ctrl+Z brings it back`)
+    app.shell.say(`${name} has replaced the program; Ctrl+Z brings it back`)
   }
   if (app.editor.text.trim() === '' && /\.sdl$/i.test(model.name)) return take()
   for (const part of frame.head.files) await app.foreign.lay(part.name, frame.bytes(part))
@@ -156,7 +156,7 @@ async function openFile(app: App, file: File): Promise<void> {
     return app.shell.say(`${file.name} is another kind of model than ${model.name}: moldloft view ${file.name}`)
   const text = await file.text()
   app.editor.replace(text, false, false, `Open ${file.name}`)
-  app.shell.say(`${file.name} has taken the place of the program; Ctrl+Z brings it back`)
+  app.shell.say(`${file.name} has replaced the program; Ctrl+Z brings it back`)
 }
 
 export function installDrop(app: App, host: HTMLElement): void {

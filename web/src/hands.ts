@@ -612,10 +612,10 @@ export class Hands {
         .map((x) => shown(x))
         .join(', ')})`
     this.view.overlay('measure', b ? [this.places.flatMap((q) => q.toArray())] : null, ink('chosen'))
-    if (!b) return this.act.status(`from ${coordinates(a)}: click a second place`)
+    if (!b) return this.act.status(`from ${coordinates(a)}: click a second point`)
     const d = b.clone().sub(a)
     const distance = `distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`
-    if (!c) return this.act.status(`${distance} · a third place measures the angle`)
+    if (!c) return this.act.status(`${distance} · a third point measures the angle`)
     const angle = (a.clone().sub(b).angleTo(c.clone().sub(b)) * 180) / Math.PI
     this.act.status(
       `angle ${shown(angle)}° at ${coordinates(b)}   ${distance}   then ${shown(c.distanceTo(b))} ${model.unit}`,

@@ -164,7 +164,7 @@ export class LivingLink implements Link {
   private async lost(why: string): Promise<void> {
     const times = this.failed.version === this.version ? this.failed.times + 1 : 1
     this.failed = { version: this.version, times }
-    this.onMessage({ kind: 'engine', state: 'lost', reason: times < 2 ? why : `${why}; change the text to go on` })
+    this.onMessage({ kind: 'engine', state: 'lost', reason: times < 2 ? why : `${why}; change the text to continue` })
     this.running = false
     for (const job of this.jobs.splice(0)) job.reject(new Refused('the engine was stopped'))
     if (times >= 2) return

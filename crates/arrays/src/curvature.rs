@@ -23,8 +23,9 @@ fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError
     .in_field(field))
 }
 
-/// The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
-/// the inverse radius of the circle through them; at an end that of its neighbour.
+/// The curvatures at the points of a curve: 4 A / (a b c) of the triangle of a point and its two
+/// neighbours, the inverse radius of the circle through them. An end point has the curvature of its
+/// neighbour.
 ///
 /// For curves with a parameter use `curvc` and `curvature`.
 ///
@@ -66,9 +67,9 @@ impl<T: Scalar> Build<T> for Curvatures<T> {
     }
 }
 
-/// The torsions of a curve of points, positive for right-handed screws: 18 V / (d e f) times a ratio
-/// of curvatures (Boutin 2000), of the tetrahedron of four neighbours; the first of the four inner
-/// steps counts for the point before it. Zero where the curve is plane or straight.
+/// The torsions at the points of a curve, positive for right-handed screws: 18 V / (d e f) of the
+/// tetrahedron of four neighbouring points, times a ratio of curvatures (Boutin 2000). A segment
+/// has one torsion, stored at its first point. Zero where the curve is plane or straight.
 ///
 /// First-order accurate in the spacing of the points.
 #[derive(Kind)]
@@ -223,8 +224,8 @@ impl<T: Scalar> Build<T> for Mean<T> {
     }
 }
 
-/// The unit normals at the points of a surface, along s_i x s_j, of the bicubic spline through them;
-/// at poles the mean of the next line's, made unit.
+/// The unit normals at the points of a surface, along s_i x s_j, of the bicubic spline through
+/// them; at a pole the normalised mean of the normals of the adjacent line.
 #[derive(Kind)]
 #[kind(
     class = Vectors,

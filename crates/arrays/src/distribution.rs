@@ -288,7 +288,8 @@ impl<T: Real> Build<T> for DTanhX<T> {
     }
 }
 
-/// `n` numbers with the law of a given row: its linear interpolation by index, ends to the bit.
+/// `n` numbers distributed like those of a given row: its linear interpolation by index, with
+/// identical ends.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

@@ -341,7 +341,8 @@ impl<T: Real> Build<T> for Lengthc<T> {
     }
 }
 
-/// The length of a curve: of one with a parameter as `lengthc`, of points the sum of their distances.
+/// The length of a curve: for a pcurve the same as `lengthc`, for points the sum of the distances
+/// of neighbours.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -351,7 +352,7 @@ impl<T: Real> Build<T> for Lengthc<T> {
                float l = length(c);"
 )]
 pub struct Length<T: Scalar> {
-    /// The curve, or the points of one.
+    /// A pcurve, or a curve of points.
     curve: Value<T>,
 }
 

@@ -57,7 +57,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
                 .help("reduce the last height, or take the layers below with stop = \"keep\""),
             _ => with("folded-grid").expected("unfolded cells").help(
                 "reduce the distance, increase the smoothing, even out the spacing of the wall there, or take the layers below with \
-                 stop = \"keep\"; layers lie on the side of s_i x s_j: s[, ::-1] marches off the other one",
+                 stop = \"keep\"; layers are on the side of s_i x s_j; s[, ::-1] selects the other side",
             ),
         },
         GridError::Diverged { .. } => with("diverged")
@@ -81,8 +81,8 @@ fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallErro
         .in_field(field)
 }
 
-/// Transfinite interpolation: the surface with the four edges of `s`, to the bit, and its inside
-/// interpolated from them.
+/// Transfinite interpolation: the surface with exactly the four edges of `s`, and interior points
+/// interpolated from these.
 ///
 /// `s` is a surface with its edges set (inner points are ignored); or a list of four curves, s[1,],
 /// s[m,], s[,1], s[,n], which must meet at the corners; or a list of six surfaces, the faces i = 1,
@@ -203,8 +203,8 @@ const EDGES: [(&str, GridSide); 4] = [
     ("jn", GridSide::LastJ),
 ];
 
-/// A grid smoothed by the elliptic equations
-/// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.
+/// A grid smoothed by the elliptic equations a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0;
+/// its edges are fixed.
 ///
 /// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
 /// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
@@ -354,7 +354,7 @@ pub(crate) fn extended<T: Real>(planes: &[Vec<T>; 3], field: FieldId) -> Result<
     if !planes.iter().all(still) {
         return Ok(());
     }
-    Err(CallError::new("coincident-points", "all points of the grid are at one place")
+    Err(CallError::new("coincident-points", "all points of the grid coincide")
         .expected("a grid with an extent")
         .help("set its edges and fill it first, as `transfinite` does")
         .in_field(field))
@@ -365,7 +365,7 @@ pub(crate) fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
     use std::fmt::Write;
     let Smoothed { sweeps, change, walls, .. } = done;
     let mut text = format!(
-        "the grid has not settled: sweep {sweeps} still moves points by {change:.2e} of its size"
+        "the grid has not converged: sweep {sweeps} still moves points by {change:.2e} of its size"
     );
     for wall in walls {
         let [low, high] = wall.cells;
@@ -461,8 +461,8 @@ fn on_surface<T: Scalar>(
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
 }
 
-/// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
-/// and Steger 1992): lines leave it at right angles, with the layers at given heights.
+/// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980;
+/// Chan and Steger 1992): its lines leave at right angles, and its layers are at given heights.
 ///
 /// Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
 /// to the left of its direction for a view against `normal`: the value is the surface whose line
@@ -543,9 +543,12 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             hyperbolic_curve_until(&curve, &*support, &options, &context.budget)
         } else {
             if self.on.is_some() {
-                return Err(CallError::new("unused-argument", "`on` is for grids off curves")
-                    .expected("a curve to march from")
-                    .in_field(Self::ON));
+                return Err(CallError::new(
+                    "unused-argument",
+                    "`on` applies to grids marched off curves",
+                )
+                .expected("a curve to march from")
+                .in_field(Self::ON));
             }
             let GridArg(grid) =
                 GridArg::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
@@ -560,7 +563,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             context.remark(
                 "stopped-early",
                 format!("the march ends with layer {layers}: {reason}"),
-                "the value has the layers up to there",
+                "the value contains the layers up to this one",
             );
         }
         let mut layers = marched.layers.into_iter().map(surface);
@@ -745,8 +748,9 @@ impl<T: Scalar> Build<T> for Folds<T> {
     }
 }
 
-/// A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-/// value and the cell that is worst; of a block the figures of OpenFOAM's checkMesh and the least scaled Jacobian.
+/// A table of the quality of a grid, to be printed: for each metric the least, mean and greatest
+/// value and the worst cell; for a block the figures of OpenFOAM's checkMesh and the least scaled
+/// Jacobian.
 #[derive(Kind)]
 #[kind(
     forward,

@@ -116,7 +116,7 @@ impl<T: Scalar> Build<T> for Closest<T> {
 }
 
 /// The points of a surface nearest to the points of an array ("closest"), or their projections
-/// along a direction, either way.
+/// along a direction, forwards or backwards.
 ///
 /// Along a direction the nearest of several intersections counts. With "closest" a point beyond an
 /// edge is projected to the edge.
@@ -189,7 +189,7 @@ fn along<T: Scalar>(
             CallError::new("no-solution", message)
                 .expected("a line that meets the surface")
                 .found(format!("a gap of {}", report.residual))
-                .help("\"closest\" finds a point for every one")
+                .help("\"closest\" finds a point in every case")
                 .in_item(k)
                 .in_field(Project::<T>::O)
         })?;
@@ -241,7 +241,7 @@ pub struct Intersect<T: Scalar> {
     a: Value<T>,
     /// A curve or a surface.
     b: Value<T>,
-    /// The number of the branch, longest first; shapes other than two surfaces have one.
+    /// The number of the branch, longest first; only two surfaces have several.
     #[field(default = 1, min = 1)]
     branch: usize,
 }
@@ -261,8 +261,8 @@ impl<T: Scalar> Build<T> for Intersect<T> {
     }
 }
 
-/// All branches of the intersection of two surfaces as a list of curves, the longest first; of other
-/// shapes the one curve that `intersect` gives.
+/// All branches of the intersection of two surfaces as a list of curves, the longest first; for
+/// other shapes, the result of `intersect` alone.
 ///
 /// `foreach (c in intersections(p, q))` walks through them, `intersections(p, q)[2]` is the second.
 #[derive(Kind)]

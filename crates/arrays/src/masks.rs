@@ -148,7 +148,8 @@ impl<T: Scalar> Build<T> for Clamp<T> {
         for k in 0..count {
             let [x, low, high] = all.map(|part| at(part, k));
             if low.re() > high.re() {
-                let message = format!("the bounds {} and {} hold nothing", low.re(), high.re());
+                let message =
+                    format!("the bounds {} and {} are in the wrong order", low.re(), high.re());
                 return Err(CallError::new("out-of-range", message)
                     .expected("a lower bound that is not above the upper one")
                     .in_field(Self::HIGH));
@@ -314,7 +315,7 @@ impl<T: Scalar> Build<T> for CumSum<T> {
     }
 }
 
-/// The differences of neighbours in a row of numbers: one less than there are numbers.
+/// The differences of neighbours in a row of numbers: one element fewer than the row.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -340,7 +341,8 @@ impl<T: Scalar> Build<T> for Diff<T> {
     }
 }
 
-/// The broken line through the points (xs, ys), at x: a number, or an array of them; beyond the ends constant.
+/// The piecewise linear function through the points (xs, ys), evaluated at x, a number or an array;
+/// constant beyond the ends.
 #[derive(Kind)]
 #[kind(
     class = Any,

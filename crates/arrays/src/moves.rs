@@ -266,9 +266,9 @@ impl<T: Scalar> Build<T> for Tangents<T> {
     }
 }
 
-/// Unit normals of a curve of points that turn about its tangents as little as can be: with
-/// `tangents(c)` and their vector product a frame at each point (double reflection: Wang and others,
-/// ACM Trans. Graph. 27, 2008).
+/// Unit normals of a curve of points with the least rotation about its tangents; together with
+/// `tangents(c)` and their vector product they are a frame at each point (double reflection: Wang
+/// and others, ACM Trans. Graph. 27, 2008).
 ///
 /// The first normal is the component of `n0` normal to the first tangent; by default `n0` is the
 /// coordinate axis with the largest angle to the tangent.

@@ -173,7 +173,7 @@ pub fn polyline_length<T: Real>(points: &[Vec3<T>]) -> T {
     steps(points).fold(T::zero(), |sum, s| sum + s)
 }
 
-/// The length of a curve of points up to each of them, from 0 to `length`.
+/// The arc lengths of the points of a curve, from its first point, from 0 to `length`.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

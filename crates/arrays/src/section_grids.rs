@@ -86,7 +86,7 @@ fn marched<T: Scalar>(
 }
 
 /// An O-grid round a section in x and y: the surface whose line g[k,] is layer k; its first and
-/// last columns coincide in a line from the tail.
+/// last columns coincide on a line from the trailing edge.
 ///
 /// The section is a closed curve from tail to tail, in either direction; the gap of a blunt tail is
 /// closed with `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its
@@ -105,7 +105,7 @@ pub struct OGrid<T: Scalar> {
     section: Points<T>,
     /// The distances of the layers, the first 0.
     heights: Farray<T>,
-    /// Cells across a blunt tail.
+    /// Cells across a blunt trailing edge.
     #[field(default = 4, min = 1, max = 1e4)]
     base: usize,
 }
@@ -124,7 +124,7 @@ impl<T: Scalar> Build<T> for OGrid<T> {
 }
 
 /// A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end
-/// of the wake below the section round its nose to the far end above it.
+/// of the wake below the section round the leading edge to the far end above it.
 ///
 /// The section is a closed curve from tail to tail, in either direction, with the tail at its
 /// greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
@@ -176,8 +176,8 @@ impl<T: Scalar> Build<T> for CGrid<T> {
 }
 
 /// An H-grid round a section in x and y: the list of two surfaces, below and above it. Their lines
-/// g[,1] are the section's side between the stagnation line ahead of the nose and the wake; their
-/// lines g[,n] are straight, at the last height below and above the section.
+/// g[,1] contain the stagnation line, one side of the section and the wake; their lines g[,n] are
+/// straight, at the last height below and above the section.
 ///
 /// The section is a closed curve from tail to tail, in either direction, with the nose at its least
 /// x and a sharp tail at its greatest. The lines ahead and behind are parallel to x over `ahead`
@@ -200,16 +200,16 @@ pub struct HGrid<T: Scalar> {
     section: Points<T>,
     /// The distances of the lines from the section, the first 0.
     heights: Farray<T>,
-    /// The length ahead of the nose.
+    /// The length ahead of the leading edge.
     #[field(min = 0)]
     ahead: T,
-    /// The length behind the tail.
+    /// The length behind the trailing edge.
     #[field(min = 0)]
     behind: T,
-    /// The cells along each of them.
+    /// Number of cells along each of these lengths.
     #[field(min = 1, max = 1e6)]
     n: usize,
-    /// The most sweeps of smoothing.
+    /// Maximum number of smoothing sweeps.
     #[field(default = 3000, min = 0, max = 1e6)]
     sweeps: usize,
 }
@@ -234,9 +234,12 @@ impl<T: Scalar> Build<T> for HGrid<T> {
         if nose < 2 || nose + 3 > count || (0..count).any(|k| x(k) > x(0)) {
             return Err(CallError::new(
                 "out-of-range",
-                "the section has no nose ahead of its tail",
+                "the section has no leading edge ahead of its trailing edge",
             )
-            .expected("a section from its tail, at the greatest x, round its nose, at the least")
+            .expected(
+                "a section from its trailing edge, at the greatest x, round its leading \
+            edge, at the least",
+            )
             .in_field(Self::SECTION));
         }
         // Clockwise from the tail: below to the nose, then above.
@@ -345,9 +348,9 @@ fn self_smoothed<T: Scalar>(
 /// Error for an open tail of a section.
 fn blunt<T: Real>(section: &[Vec3<T>], count: usize, field: FieldId) -> CallError {
     let gap = section[count - 1].re().distance(section[count].re());
-    CallError::new("edges-apart", format!("the tail is blunt, {gap:.3e} thick"))
+    CallError::new("edges-apart", format!("the trailing edge is blunt, {gap:.3e} thick"))
         .expected("a section that ends in its first point")
-        .help("close the tail, or make an O-grid: o_grid(section, heights)")
+        .help("close the trailing edge, or make an O-grid: o_grid(section, heights)")
         .in_field(field)
 }
 

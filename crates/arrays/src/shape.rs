@@ -72,7 +72,7 @@ impl<T: Scalar> Build<T> for Swap<T> {
 /// Distance relative to the curves' size within which two ends are one point.
 const SAME: f64 = 1e-12;
 
-/// Curves (or farrays) joined end to end; a common point of two is kept once.
+/// Curves (or farrays) joined end to end; a point common to two neighbours is kept once.
 ///
 /// Ends count as one when they differ by less than 1e-12 of the size: by rounding. The point of the
 /// first of the two stays.
@@ -279,7 +279,7 @@ impl<T: Scalar> Build<T> for Stack<T> {
                 let message = format!("curve {} has {} points", k + 1, row.len());
                 return Err(place(
                     CallError::new("shapes-differ", message)
-                        .expected(format!("{expected} points, as the first curve has"))
+                        .expected(format!("{expected} points, like the first curve"))
                         .found(format!("{} points", row.len())),
                 ));
             }
@@ -321,7 +321,7 @@ fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, CallEr
     }
 }
 
-/// The first extent of an array: as a.d1, of any expression.
+/// The first extent of an array: the same as `a.d1`, for any expression.
 #[derive(Kind)]
 #[kind(class = Number, function, cheap, name = "d1", example = "assert d1(uniform(0, 1, 7)) == 7;")]
 pub struct D1<T: Scalar> {

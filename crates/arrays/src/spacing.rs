@@ -7,7 +7,7 @@ use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Scala
 use moldloft_spline::distribution::{count_for, first_for, growth};
 
 /// The fewest numbers with which `d_tanhx(0, length, ds1, ds2, n)` grows by at most the factor
-/// `growth` from step to step; with 0 for a free end, as there.
+/// `growth` from step to step; a step of 0 means a free end.
 ///
 /// The value is an integer and has no derivatives.
 #[derive(Kind)]

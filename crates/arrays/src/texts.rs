@@ -214,7 +214,7 @@ pub fn place_in<T: Real>(text: &str, part: &str) -> Value<T> {
     Value::Number(T::from(place as f64))
 }
 
-/// A list with values added behind its last.
+/// A list with values appended.
 #[derive(Kind)]
 #[kind(
     class = List,

@@ -86,7 +86,7 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String
     Ok(text)
 }
 
-/// A block smoothed by the elliptic equations; its faces stay.
+/// A block smoothed by the elliptic equations; its faces are fixed.
 ///
 /// `method`: "laplace" equalises spacings, "middlecoff" propagates the spacing of the edges inward.
 /// `walls` names faces, "i1", "in", "j1", "jn", "k1", "kn", separated by blanks, at which grid
@@ -169,7 +169,8 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
         if !done.converged && self.n > 0 {
             let change = done.history.last().copied().unwrap_or(f64::INFINITY);
             let mut text = format!(
-                "the block has not settled: sweep {} still moves points by {change:.2e} of its size",
+                "the block has not converged: sweep {} still moves points by {change:.2e} of its \
+                size",
                 done.sweeps
             );
             for wall in &done.walls {

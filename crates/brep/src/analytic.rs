@@ -110,7 +110,7 @@ impl SurfaceShape {
         }
     }
 
-    /// The same with other axes.
+    /// This surface with other axes.
     pub(crate) fn with_axes(&self, with: SurfaceAxes) -> Self {
         let mut made = self.clone();
         match &mut made {

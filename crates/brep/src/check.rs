@@ -25,9 +25,9 @@ impl ShellFacts {
 /// Fault of a boundary representation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A loop's sides do not follow one another: face, loop.
+    /// The sides of a loop do not follow one another; fields: face, loop.
     Broken(usize, usize),
-    /// Two sides of an edge have the same direction: edge.
+    /// Two sides of an edge have the same direction; field: edge.
     Senses(usize),
 }
 

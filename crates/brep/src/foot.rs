@@ -8,8 +8,8 @@ const STEPS: usize = 80;
 /// Distance relative to the accuracy below which a point is on the surfaces.
 const ON: f64 = 1e-6;
 
-/// The point near another that is on all these surfaces, by their numbers in a field, within half
-/// the accuracy; `None` without such a point within `reach`.
+/// The point near another that is on all the surfaces given by number in a field, within half the
+/// accuracy; `None` if there is no such point within `reach`.
 pub fn foot(
     field: &SurfaceField<'_>,
     surfaces: &[u32],
@@ -78,7 +78,7 @@ pub fn foot(
     (off <= 0.5 * accuracy && p.distance(start) <= reach).then_some(p)
 }
 
-/// The same on one surface.
+/// The point of a single surface next to `start`.
 fn foot_on_one(
     field: &SurfaceField<'_>,
     surface: u32,

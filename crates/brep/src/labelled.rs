@@ -36,7 +36,7 @@ pub struct LabelledFacets {
     pub triangles: Vec<[u32; 3]>,
     /// The surface of each triangle.
     pub labels: Vec<u32>,
-    /// The surfaces, where formats have one.
+    /// The surfaces, if formats have their type.
     pub surfaces: Vec<Option<SurfaceShape>>,
     /// Their names.
     pub names: Vec<String>,
@@ -44,11 +44,11 @@ pub struct LabelledFacets {
     pub colours: Vec<Option<[u8; 3]>>,
     /// Their layers.
     pub layers: Vec<Vec<String>>,
-    /// The length of a usual side: edges are found where triangles are off by less.
+    /// Typical length of a triangle side. Deviations of triangles from an edge must be smaller for the edge to be found.
     pub step: f64,
 }
 
-/// Why triangles do not show a body of faces.
+/// Reason why triangles do not represent a body of faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FacetFault {
     /// Kind of fault.
@@ -64,17 +64,17 @@ pub struct FacetFault {
 pub enum FacetFaultKind {
     /// The triangles do not close, or more than two share a side.
     NotClosed,
-    /// Every seam around the face meets vertices.
+    /// No seam around the face avoids the vertices.
     Seam,
-    /// The surfaces meet, or touch, in a curve that is not found within the accuracy near the triangles.
+    /// No common curve of the surfaces is found within the accuracy near the triangles.
     Edge,
     /// The surfaces round a vertex have no common point near it.
     Vertex,
-    /// A surface that the formats do not have.
+    /// A surface of a type that formats do not have.
     Surface,
     /// No patches come within the accuracy of the surface, or they fold.
     Patch,
-    /// It takes too many patches to come within the accuracy.
+    /// Too many patches are needed for the accuracy.
     Many,
 }
 
@@ -349,7 +349,7 @@ impl LabelledBody {
         degree.into_iter().filter(|(_, n)| *n != 2).map(|(v, _)| v).collect()
     }
 
-    /// Cuts the faces that go round their axes.
+    /// Cuts the faces that close around their axes.
     fn cut(&mut self) -> Result<(), FacetFault> {
         let borders = self.borders();
         let corners = Self::corners_of(&borders);

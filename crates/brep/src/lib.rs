@@ -37,7 +37,7 @@ pub use volume::BrepVolume;
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 
-/// Vertices, edges, faces and the parts that they make.
+/// Vertices, edges, faces, and the parts made of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Brep {
     /// Positions of the vertices.
@@ -48,9 +48,9 @@ pub struct Brep {
     pub faces: Vec<BrepFace>,
     /// The parts.
     pub parts: Vec<Part>,
-    /// Bound of the distances between edges, vertices and their surfaces.
+    /// Bound on the distance between edges, vertices and their surfaces.
     pub gap: f64,
-    /// Bodies that have no faces on surfaces, as triangles.
+    /// Bodies without faces on surfaces, as triangles.
     pub faceted: Vec<FacetedPart>,
 }
 
@@ -61,7 +61,7 @@ pub struct BrepEdge {
     pub ends: [usize; 2],
     /// Its curve, from the first vertex at 0 to the second at 1.
     pub curve: Nurbs<1>,
-    /// The ellipse that it is a part of, run by increasing angle, if it is one.
+    /// The ellipse that contains the curve, traversed by increasing angle, if there is one.
     pub ellipse: Option<ExactCurve>,
 }
 
@@ -72,7 +72,7 @@ pub struct BrepFace {
     pub name: String,
     /// Its colour, sRGB.
     pub colour: Option<[u8; 3]>,
-    /// The layers that it is on.
+    /// The layers of the face.
     pub layers: Vec<String>,
     /// Its surface.
     pub surface: SurfaceShape,
@@ -80,11 +80,11 @@ pub struct BrepFace {
     pub reversed: bool,
     /// Its loops, the outer one first.
     pub loops: Vec<Vec<Coedge>>,
-    /// A bound of the distance between this surface and that of the model.
+    /// Bound on the distance between this surface and that of the model.
     pub error: f64,
-    /// True when the surface is that of the model but for rounding.
+    /// True when the surface is that of the model up to rounding.
     pub exact: bool,
-    /// The box round a face of a set's body, which bounds a cavity where the second is true.
+    /// The box round a face of a set's body; the second value is true if the face bounds a cavity.
     pub extent: Option<([[f64; 3]; 2], bool)>,
 }
 
@@ -95,7 +95,7 @@ pub struct Coedge {
     pub edge: usize,
     /// True when the loop runs from the edge's first vertex to its second.
     pub forward: bool,
-    /// The same curve in the parameters (u, v, 0) of the surface, where it is known; of planes it is not.
+    /// The same curve in the parameters (u, v, 0) of the surface, if known; planes have none.
     pub trace: Option<Nurbs<1>>,
     /// True when trace and edge agree at equal parameters.
     pub alike: bool,
@@ -110,7 +110,7 @@ pub enum SurfaceShape {
         origin: Vec3,
         /// Its unit normal.
         normal: Vec3,
-        /// A unit vector in it.
+        /// A unit vector in the plane.
         axis: Vec3,
     },
     /// A cylinder.
@@ -122,7 +122,7 @@ pub enum SurfaceShape {
     },
     /// A cone.
     Cone {
-        /// Its axes; it widens along z.
+        /// Its axes; the radius increases along z.
         axes: SurfaceAxes,
         /// Its radius at their origin.
         radius: f64,
@@ -131,7 +131,7 @@ pub enum SurfaceShape {
     },
     /// A sphere.
     Sphere {
-        /// Its axes, at its centre.
+        /// Its axes, with the origin at its centre.
         axes: SurfaceAxes,
         /// Its radius.
         radius: f64,
@@ -145,7 +145,7 @@ pub enum SurfaceShape {
         /// The radius of the tube.
         minor: f64,
     },
-    /// The image of one of these under an affine map: an ellipsoid, an elliptic cylinder or cone.
+    /// The affine image of one of these: an ellipsoid, an elliptic cylinder or a cone.
     Image(Box<SurfaceImage>),
     /// A NURBS.
     Nurbs(Box<Nurbs<2>>),
@@ -177,7 +177,7 @@ pub struct Part {
     pub shells: Vec<Shell>,
     /// Curves that bound no face.
     pub wires: Vec<Wire>,
-    /// Points by themselves.
+    /// Isolated points.
     pub points: Vec<PartPoint>,
 }
 
@@ -227,7 +227,7 @@ impl FacetedPart {
 }
 
 impl BrepEdge {
-    /// The curve of a straight edge, at even pace.
+    /// A straight edge as a curve with constant speed.
     pub fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
         Nurbs {
             degrees: [1],
@@ -291,8 +291,8 @@ impl Brep {
         self.faceted.extend(other.faceted);
     }
 
-    /// The same shape with every normal that of the surface, for formats whose faces have no sense: surfaces of reversed
-    /// faces run backwards along u, as NURBS unless they are planes.
+    /// The same shape without reversed faces, for formats whose faces have no sense: the surfaces
+    /// of reversed faces are traversed backwards along u, as NURBS unless they are planes.
     pub fn facing(mut self) -> Self {
         for k in 0..self.faces.len() {
             if !self.faces[k].reversed {
@@ -318,7 +318,7 @@ impl Brep {
         self
     }
 
-    /// True when all faces are exact but for rounding.
+    /// True when all faces are exact up to rounding.
     pub fn exact(&self) -> bool {
         self.faces.iter().all(|f| f.exact)
     }

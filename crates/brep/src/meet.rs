@@ -31,7 +31,7 @@ impl ExactCurve {
         Self::Ellipse { centre, x: axes.x * radius, y: axes.y() * radius }
     }
 
-    /// The angle at which an ellipse is nearest to a point, nearly; 0 for a line.
+    /// The approximate angle of the point of an ellipse nearest to a point; 0 for a line.
     pub fn angle(&self, p: Vec3) -> f64 {
         match self {
             Self::Line { .. } => 0.0,
@@ -58,7 +58,7 @@ impl ExactCurve {
         }
     }
 
-    /// Planes through the curve: of an ellipse one, of a line two.
+    /// Planes through the curve: one for an ellipse, two for a line.
     pub fn planes(&self, normal: Vec3) -> Vec<SurfaceShape> {
         let plane = |origin: Vec3, normal: Vec3| SurfaceShape::Plane {
             origin,

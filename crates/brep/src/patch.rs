@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Number of parameters in each direction at which the distance of a patch is measured.
 const DISTANCES: usize = 8;
 
-/// Those tried first.
+/// The rows whose combinations are measured first.
 const TRIED: [usize; 2] = [1, 5];
 
 /// Parameters in each direction at which the normal of a patch is compared with that of the
@@ -20,7 +20,7 @@ const MOST: usize = 5;
 /// Bernstein polynomials of a degree; zeros behind them.
 type BernsteinRow = [f64; MOST + 1];
 
-/// A surface's function and its gradient at a point, by the number of the surface.
+/// Value and gradient of a surface's function at a point; the surface is given by number.
 pub type SurfaceField<'a> = dyn Fn(u32, Vec3) -> (f64, Vec3) + Sync + 'a;
 
 /// Polynomials of one degree through points at fixed parameters.

@@ -201,7 +201,7 @@ impl<'a> PatchedBody<'a> {
     pub fn fault(&self, kind: FacetFaultKind, labels: &[u32], place: Vec3) -> FacetFault {
         let mut surfaces: Vec<String> = Vec::new();
         for &label in labels {
-            // Cutting planes have none.
+            // Cutting planes have no inner side.
             if let Some(name) = self.facets.names.get(label as usize)
                 && !surfaces.contains(name)
             {

@@ -6,7 +6,8 @@ use crate::SurfaceShape;
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 
-/// The image of a surface: a point of coordinates (x, y, z) of it is at `centre` + x X + y Y + z Z.
+/// The image of a surface: the point with coordinates (x, y, z) is mapped to `centre` + x X + y Y +
+/// z Z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceImage {
     of: SurfaceShape,
@@ -19,7 +20,7 @@ pub struct SurfaceImage {
 }
 
 impl SurfaceImage {
-    /// The image; `None` if X, Y and Z are dependent, left-handed, or not finite.
+    /// The image; `None` if X, Y and Z are dependent, left-handed or not finite.
     pub fn new(of: SurfaceShape, centre: Vec3, columns: [Vec3; 3]) -> Option<Self> {
         let [x, y, z] = columns;
         let det = x.dot(y.cross(z));
@@ -31,7 +32,7 @@ impl SurfaceImage {
         Some(Self { of, centre, columns, rows })
     }
 
-    /// The surface whose image it is.
+    /// The surface of which this is the image.
     pub fn of(&self) -> &SurfaceShape {
         &self.of
     }
@@ -67,17 +68,17 @@ impl SurfaceImage {
         self.columns[0] * v.x + self.columns[1] * v.y + self.columns[2] * v.z
     }
 
-    /// The vector whose image this is.
+    /// The vector with this image.
     pub fn linear_back(&self, v: Vec3) -> Vec3 {
         Vec3::from(self.rows.map(|row| row.dot(v)))
     }
 
-    /// The gradient of a function of the point, from that by its coordinates.
+    /// The gradient of a function in space, from its gradient in the surface's coordinates.
     pub fn gradient(&self, g: Vec3) -> Vec3 {
         self.rows[0] * g.x + self.rows[1] * g.y + self.rows[2] * g.z
     }
 
-    /// The unit normal of a plane in coordinates, from that of the plane.
+    /// The unit normal of a plane in the surface's coordinates, from its normal in space.
     pub fn normal_back(&self, n: Vec3) -> Option<Vec3> {
         Vec3::from(self.columns.map(|column| column.dot(n))).normalized()
     }
@@ -100,7 +101,7 @@ impl SurfaceImage {
         self.of.apex().map(|q| self.world(q))
     }
 
-    /// The control points of the part between two heights along the axis.
+    /// The control points of the part between two heights along the axis of the surface.
     pub fn nurbs(&self, heights: [f64; 2]) -> Option<Nurbs<2>> {
         let mut made = self.of.nurbs(heights)?;
         made.points.iter_mut().for_each(|q| *q = self.world(*q));
@@ -141,7 +142,7 @@ impl SurfaceImage {
         Self { of, centre: flip(self.centre), columns: [x, -y, z], rows: [r, -s, t] }
     }
 
-    /// True for the same set of points: some that tell one quadric from another are on both.
+    /// True for the same set of points: the points that distinguish two quadrics are on both.
     pub fn is_same(&self, o: &Self, tolerance: f64) -> bool {
         let on = |a: &Self, b: &Self| {
             a.samples().is_some_and(|all| {

@@ -18,7 +18,8 @@ const WHOLE: f64 = 1e-3;
 pub struct BrepVolume {
     /// The volume.
     pub volume: f64,
-    /// The error of integrals along the edges; that of the edges themselves is [`Brep::gap`] times the area.
+    /// Error of the integrals along the edges. The error of the edges themselves is [`Brep::gap`]
+    /// times the area.
     pub error: f64,
 }
 

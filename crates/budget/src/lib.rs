@@ -101,8 +101,8 @@ impl Spent {
         }
     }
 
-    /// True for the id of such a reason: the fault is not one of the model, and the same work may
-    /// succeed later.
+    /// True for the id of such a reason: the model is not at fault, and the same work may succeed
+    /// later.
     pub fn is_id(id: &str) -> bool {
         matches!(id, "cancelled" | "out-of-memory" | "out-of-time")
     }
@@ -184,7 +184,7 @@ impl Drop for Timed<'_> {
 }
 
 impl Budget {
-    /// Ends the work at its next check.
+    /// Ends the work at the next check.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }

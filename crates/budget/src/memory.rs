@@ -145,7 +145,7 @@ fn reserve() {
 /// True when the program uses a counting allocator: set by the first bytes added to the sum.
 static INSTALLED: AtomicBool = AtomicBool::new(false);
 
-/// A counting allocator around the system's, or in tests around one that refuses.
+/// A counting allocator around the system's allocator, or in tests around one that refuses.
 #[derive(Clone, Copy, Debug)]
 pub struct Counting<A = System>(A);
 
@@ -211,7 +211,7 @@ impl<A: GlobalAlloc> Counting<A> {
     }
 }
 
-// SAFETY: every call goes to the inner allocator with the same arguments; counting neither
+// SAFETY: every call is forwarded to the inner allocator with the same arguments; counting neither
 // allocates nor panics.
 unsafe impl<A: GlobalAlloc> GlobalAlloc for Counting<A> {
     #[inline]

@@ -97,7 +97,7 @@ pub fn copied<T: Copy>(
 ) -> Result<(), StatusError> {
     array_mut(count, 1)?[0] = all.len();
     if all.len() > room {
-        let message = format!("room for {room} is too little: {} are needed", all.len());
+        let message = format!("the buffer holds {room} items, but {} are needed", all.len());
         return Err(StatusError { code: MLF_BUFFER, message });
     }
     array_mut(out, all.len())?.copy_from_slice(all);

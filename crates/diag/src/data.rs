@@ -16,7 +16,7 @@ pub struct LabelData {
     pub end_line: u32,
     /// One past the last column.
     pub end_column: u32,
-    /// The words; may be empty.
+    /// The label's text; may be empty.
     pub text: String,
 }
 
@@ -54,7 +54,7 @@ pub struct DiagnosticData {
     pub help: Vec<String>,
     /// A change of the text that fixes it.
     pub edit: Option<EditData>,
-    /// The object it is about.
+    /// The object at fault.
     pub object: Option<String>,
     /// The text that [`render`](crate::render) prints.
     pub rendered: String,

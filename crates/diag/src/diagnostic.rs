@@ -8,7 +8,7 @@ use std::ops::{Deref, DerefMut};
 /// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Worth knowing; nothing is wrong.
+    /// For information: the model is correct.
     Note,
     /// Probably a mistake; the result is valid.
     Warning,
@@ -17,7 +17,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// The word that is printed: `error`, `warning` or `note`.
+    /// The word printed for it: `error`, `warning` or `note`.
     pub fn word(self) -> &'static str {
         match self {
             Severity::Note => "note",
@@ -76,7 +76,7 @@ pub struct DiagnosticFields {
     pub help: Vec<String>,
     /// A change of the text that fixes it.
     pub edit: Option<Edit>,
-    /// The named object it is about.
+    /// The named object at fault.
     pub object: Option<String>,
 }
 
@@ -134,8 +134,8 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the position of the fault if there is none yet: for callers that know a coarser
-    /// position.
+    /// Sets the position of the fault if there is none yet, for callers that know only an
+    /// approximate position.
     #[must_use]
     pub fn or_at(self, span: Span) -> Self {
         if self.0.primary.is_some() { self } else { self.at(span) }
@@ -220,7 +220,8 @@ impl Diagnostic {
         self
     }
 
-    /// The change of the text that fixes it: its own, or the name that a help proposes in place of the one at fault.
+    /// The change of the text that fixes the fault: the proposed one, or the name proposed by a
+    /// help text.
     pub fn correction(&self, sources: &Sources) -> Option<Edit> {
         if self.edit.is_some() {
             return self.edit.clone();
@@ -239,7 +240,7 @@ impl Diagnostic {
         })
     }
 
-    /// Names the object it is about.
+    /// Sets the object at fault.
     #[must_use]
     pub fn object(mut self, name: impl Into<String>) -> Self {
         self.0.object = Some(name.into());
@@ -284,7 +285,7 @@ impl fmt::Display for Diagnostic {
 impl std::error::Error for Diagnostic {}
 
 impl DiagnosticFields {
-    /// `expected X, found Y`, as far as both are known.
+    /// `expected X, found Y`, or the part of it that is known.
     pub fn expectation(&self) -> Option<String> {
         match (&self.expected, &self.found) {
             (Some(expected), Some(found)) => Some(format!("expected {expected}, found {found}")),

@@ -37,7 +37,7 @@ pub fn remark<T: Scalar>(
         Value::Surface(surface) if has_no_area(surface) => Some((
             "zero-area",
             "the surface has no area: all of it is one line or point",
-            "the curves that it is made of lie on each other, or on its axis",
+            "its curves coincide, or are on its axis",
         )),
         Value::Surface(surface) if turns_on(surface) => Some((
             "more-than-one-turn",

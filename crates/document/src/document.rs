@@ -513,8 +513,8 @@ impl Document {
             let Some(axis) = axes.into_iter().find(|&k| mirrored(k)) else { continue };
             let plane = ["x = 0", "y = 0", "z = 0"][axis];
             let message = format!(
-                "`{}` is the mirror image of `{}` in {plane}, in which the model is mirrored anyway: \
-                 it would count twice",
+                "`{}` is the mirror image of `{}` in {plane}, a symmetry plane of the model: it \
+                would count twice",
                 image.name, original.name
             );
             let mut diagnostic = Diagnostic::error("mirrored-twice", message)
@@ -798,7 +798,7 @@ impl Document {
         found.into_iter().map(|(_, name, shape, value)| (name, shape, value)).collect()
     }
 
-    /// What the program printed.
+    /// The lines printed by the program.
     pub fn printed(&self) -> &[String] {
         &self.plain.env.printed
     }

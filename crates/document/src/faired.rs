@@ -20,13 +20,13 @@ pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static s
     if of("findings") > 0.0 {
         return Some((
             "unlike-neighbours",
-            "points do not fit their neighbours: wrong digits, or breaks that are meant",
+            "points do not fit their neighbours: wrong digits, or intended breaks",
             "`moldloft fair` finds them in a file of the points; intended ones belong in `breaks`",
         ));
     }
     (of("fairest_used") >= EVERYWHERE).then_some((
         "at-its-tolerance",
         "the fairest result is at its tolerance nearly everywhere: the noise of the points is larger",
-        "take the noise for the tolerance, or look for wrong points",
+        "set the tolerance to the noise, or look for wrong points",
     ))
 }

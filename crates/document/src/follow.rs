@@ -88,7 +88,7 @@ pub struct Followed {
     pub steps: usize,
     /// Effect of the numbers on each condition over their ranges, at the start.
     pub reach: Vec<f64>,
-    /// The reason why the conditions could not be evaluated at the last trial values, if so.
+    /// Reason why the conditions could not be evaluated at the last trial values, if this failed.
     pub refused: Option<String>,
 }
 

@@ -13,7 +13,7 @@ impl Document {
     }
 
     /// Position of an argument of an object in the main text, or where it can be inserted; `None`
-    /// for model files and for objects that share their statement with others.
+    /// for model files and for objects declared with others in one statement.
     pub fn argument_place(&self, object: &str, field: &str) -> Option<ArgumentInText> {
         if !matches!(self.source, ObjectSource::Program) {
             return None;
@@ -37,8 +37,9 @@ impl Document {
         self.param_literal(name).is_some()
     }
 
-    /// Writes changed values of parameters into the text where it states them as numbers; the
-    /// others stay set. Returns the names of the written and the other parameters.
+    /// Writes changed values of parameters into the text where it states them as numbers; other
+    /// parameters keep the values that were set. Returns the names of the written and the other
+    /// parameters.
     pub fn write_params(&mut self) -> (Vec<String>, Vec<String>) {
         let set: Vec<(String, f64)> = self.overrides.iter().map(|(n, x)| (n.clone(), *x)).collect();
         let (mut written, mut kept) = (Vec::new(), Vec::new());

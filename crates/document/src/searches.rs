@@ -36,9 +36,9 @@ struct SearchCache {
 
 /// Nearest points, in the order of the points given.
 pub enum NearestPoints {
-    /// Of a curve.
+    /// The results for a curve.
     Curve(Vec<Nearest<1>>),
-    /// Of a surface.
+    /// The results for a surface.
     Surface(Vec<Nearest<2>>),
 }
 
@@ -94,8 +94,8 @@ impl CommonPoints {
 }
 
 impl Searches {
-    /// The points of a curve or surface that are nearest to given ones; `None` for anything else.
-    /// When `budget` is spent the answer is incomplete.
+    /// The points of a curve or surface nearest to given ones; `None` for anything else. The answer
+    /// is incomplete when `budget` is spent.
     pub fn nearest(
         &self,
         name: &str,

@@ -338,11 +338,11 @@ impl SolveReport {
                 "widen a range, or choose another start".to_string(),
             ),
             SolveStatus::Stuck => (
-                "the search comes no nearer to a solution".to_string(),
+                "the search makes no progress towards a solution".to_string(),
                 "there may be no solution; otherwise start nearer to it".to_string(),
             ),
             SolveStatus::TooManySteps => (
-                format!("{} steps do not lead to a solution", self.iterations),
+                format!("no solution was found in {} steps", self.iterations),
                 "start nearer to it, or allow more `steps`".to_string(),
             ),
             SolveStatus::NoModel => (

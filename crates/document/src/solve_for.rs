@@ -356,7 +356,7 @@ impl Wish<'_> {
                 .found(t.value.to_string())
                 .help("widen a range, or let further parameters follow"),
             None if bounded => fault
-                .found(format!("{} where the targets are missed least", short(t.value + found.left[worst])))
+                .found(format!("{} at the smallest residual", short(t.value + found.left[worst])))
                 .help("these targets contradict each other within the ranges: give one up, widen a range, or let further parameters follow"),
             None => fault
                 .found(format!("{} where the search ended", short(t.value + found.left[worst])))

@@ -16,20 +16,22 @@ use std::sync::Arc;
 /// Options of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Lids among the panels of panel codes, or in a file of their own where the code wants that.
+    /// Write lids among the panels of panel codes, or to a file of their own if the code requires
+    /// it.
     pub lids: bool,
-    /// True to write only the part below z = 0, cut there, in the files of panel codes.
+    /// Write only the part below z = 0, cut there, in files of panel codes.
     pub immersed: bool,
     /// Only patches with one of these tags; empty: all.
     pub tags: Vec<String>,
-    /// Both sides of a symmetric model, joined in its planes, where files cannot name these planes.
+    /// Write both sides of a symmetric model, joined in its planes, if the format cannot name these
+    /// planes.
     pub whole: bool,
     /// Triangles only.
     pub triangles: bool,
     /// Maximum error of fitted spline patches, default 1e-5 of the model's diagonal; in files of
     /// panels, maximum distance of panels from their surfaces, by default that of their divisions.
     pub tolerance: Option<f64>,
-    /// In files of panels, the greatest turn of a surface along a panel, in radians.
+    /// In files of panels, the maximum turn of a surface along a panel, in radians.
     pub angle: Option<f64>,
 }
 
@@ -57,7 +59,7 @@ impl WriteOptions {
     }
 }
 
-/// Why a model could not be written.
+/// Reason why a model could not be written.
 #[derive(Clone, Debug)]
 pub enum ExportFailure {
     /// The format cannot hold it.
@@ -67,7 +69,7 @@ pub enum ExportFailure {
 }
 
 impl ExportFailure {
-    /// The same as diagnostics, for the format of that name.
+    /// The failure as diagnostics, for the format of that name.
     pub fn diagnostics(self, format: &str) -> Vec<Diagnostic> {
         match self {
             Self::Model(diagnostics) => diagnostics,
@@ -201,7 +203,7 @@ fn encoded<T: ?Sized>(
     files.map_err(|failure| failure.diagnostics(format.name))
 }
 
-/// The name of the main file, without folder.
+/// File name of the main file, without folder.
 #[derive(Clone, Copy, Debug)]
 pub struct FileName<'a>(pub &'a str);
 
@@ -219,7 +221,7 @@ impl<'a> FileName<'a> {
         vec![NamedFile { name: self.0.into(), bytes }]
     }
 
-    /// The files, that which is named after the stem and this ending being the main one.
+    /// The files; the file named after the stem with this ending is the main one.
     pub fn renamed(&self, ending: &str, mut files: Vec<NamedFile>) -> Vec<NamedFile> {
         let usual = format!("{}.{ending}", self.stem());
         if let Some(main) = files.iter_mut().find(|file| file.name == usual) {
@@ -235,13 +237,13 @@ pub struct Export<'d> {
     pub document: &'d mut Document,
     /// The row.
     pub format: &'static Format,
-    /// The name of the main file.
+    /// File name of the main file.
     pub main: FileName<'d>,
     /// Options.
     pub options: WriteOptions,
 }
 
-/// The panels that are to be written.
+/// The panels to be written.
 pub struct Panels {
     whole: Arc<Panelled>,
     part: Option<Mesh>,
@@ -350,7 +352,7 @@ pub fn panels(document: &mut Document, options: &WriteOptions) -> Result<Panels,
 }
 
 impl Panels {
-    /// All panels of the model, and those that are written where they are others.
+    /// All panels of the model, and the panels to be written if these differ.
     pub fn into_parts(self) -> (Arc<Panelled>, Option<Mesh>) {
         (self.whole, self.part)
     }

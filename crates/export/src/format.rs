@@ -10,11 +10,11 @@ use moldloft_mesh::Blocks;
 pub struct Format {
     /// Its name in commands and calls.
     pub name: &'static str,
-    /// Other names that mean it.
+    /// Other names of the format.
     pub aliases: &'static [&'static str],
-    /// The end of its files' names, without the dot.
+    /// Extension of its files, without the dot.
     pub suffix: &'static str,
-    /// Another end that its files are known by, which does not tell the format.
+    /// Another usual extension of its files, which does not identify the format.
     pub other_suffix: &'static str,
     /// A line about it.
     pub about: &'static str,
@@ -24,19 +24,19 @@ pub struct Format {
     pub symmetry: SymmetryPlanes,
     /// Treatment of lids.
     pub lids: Lids,
-    /// The immersed part alone can be written.
+    /// True if the immersed part alone can be written.
     pub immersed: bool,
-    /// The main file is text.
+    /// True if the main file is text.
     pub text: bool,
     /// Makes the files. The main one is named [`Export::main`].
     pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure>,
-    /// Makes the files of grids of points, where the format holds such.
+    /// Makes the files of grids of points, if the format holds these.
     pub grids: Option<Encoder<[StructuredGrid]>>,
-    /// Makes the files of the cells of solids, where the format holds such.
+    /// Makes the files of the cells of solids, if the format holds these.
     pub volume: Option<Encoder<Blocks>>,
 }
 
-/// Makes files of something, the main one of a given name.
+/// Makes files from a value; the name is that of the main file.
 pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
 
 impl Format {
@@ -82,7 +82,7 @@ impl Format {
     }
 }
 
-/// Content of a format's files.
+/// Contents of a format's files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// Panels.
@@ -121,18 +121,19 @@ impl Holds {
 pub enum SymmetryPlanes {
     /// None: one side is written as it is.
     None,
-    /// y = 0; a model that is mirrored in x = 0 is written with its image.
+    /// y = 0; a model that is mirrored in x = 0 too is written with both sides of it.
     Y,
-    /// y = 0, or both; a model that is mirrored in x = 0 alone is written with its image.
+    /// y = 0, or both; a model that is mirrored in x = 0 alone is written with both sides.
     YThenX,
-    /// Either; a model that is mirrored in both is written with its image in x = 0.
+    /// Either; a model mirrored in both is written with both sides of x = 0.
     Either,
     /// Either, or both.
     Both,
 }
 
 impl SymmetryPlanes {
-    /// True when a file can name x = 0, for a model that is mirrored in y = 0 or is not.
+    /// True when a file can name x = 0 for a model that is mirrored in y = 0 or not mirrored at
+    /// all.
     pub fn names_x(self, mirror_y: bool) -> bool {
         match self {
             Self::None | Self::Y => false,
@@ -146,7 +147,7 @@ impl SymmetryPlanes {
 /// Treatment of lids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lids {
-    /// They are patches as others.
+    /// Written as patches like any other.
     Patches,
     /// Written on request.
     Asked,

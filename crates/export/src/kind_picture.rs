@@ -23,8 +23,8 @@ const STEPS: usize = 96;
 const PANELS: usize = 8;
 
 /// The picture of a model with the objects of one kind highlighted: visible curves as lines, points
-/// as dots, planes and frames as their outline, the solids of that kind as their faces. If there
-/// are only points, the path to each along x, y and z is drawn too.
+/// as dots, planes and frames as outlines, solids by their faces. If there are only points, the
+/// path to each along x, y and z is drawn too.
 ///
 /// # Errors
 /// An impossible size; a model without panels that can be made.

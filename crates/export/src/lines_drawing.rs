@@ -31,7 +31,8 @@ pub(crate) fn lines_drawing(
     Ok(views.into_iter().map(sheet).collect())
 }
 
-/// The lines plan on one sheet for an A3 page on its side: profile, half-breadth plan and body plan to one scale, as SVG.
+/// The lines plan on one landscape A3 sheet: profile, half-breadth plan and body plan at one scale,
+/// as SVG.
 ///
 /// # Errors
 /// Panels that cannot be made.

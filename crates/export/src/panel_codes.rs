@@ -7,7 +7,8 @@ use moldloft_io::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, MeshError};
 
 impl Export<'_> {
-    /// Refuses a skin that is open below the water z = 0; where a part is allowed it is a remark.
+    /// Refuses a skin that is open below the water, z = 0; a warning if partial figures are
+    /// allowed.
     ///
     /// # Errors
     /// Which edges are open.
@@ -18,7 +19,7 @@ impl Export<'_> {
         Ok(())
     }
 
-    /// The panels, and the options of the file.
+    /// The panels, and the options for the file.
     ///
     /// # Errors
     /// As [`Export::panels`]; a skin that is open below the water z = 0, unless patches are chosen by

@@ -187,7 +187,7 @@ impl SurfaceFit<'_> {
                 "not-fitted",
                 format!("no B-spline comes within {allowed:.2e} of `{name}`"),
             )
-            .found(format!("the best is off by {off:.2e}"))
+            .found(format!("the error of the best fit is {off:.2e}"))
             .help("ask for less with a larger tolerance")
             .into());
         }

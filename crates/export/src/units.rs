@@ -6,7 +6,7 @@ use moldloft_lang::model_file::units::{self, PhysicalDimension};
 /// Standard gravity in metres per second squared (ISO 80000-3).
 pub const GRAVITY: f64 = 9.80665;
 
-/// The model's unit of length and its size in millimetres; metres if no known one is stated.
+/// The model's unit of length and its size in millimetres; metres without a known unit.
 pub fn length_unit(document: &Document) -> (String, f64) {
     let stated = units::parsed(&document.units()).unwrap_or_default();
     let length = stated.into_iter().find(|u| u.1 == PhysicalDimension::Length);

@@ -2,17 +2,17 @@
 
 use std::fmt;
 
-/// Why something cannot be faired.
+/// Reason why a curve or surface cannot be faired.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FairError {
     /// Too few control points for the degree.
     TooFew {
-        /// The fewest that make sense.
+        /// The minimum number.
         expected: usize,
         /// The number given.
         actual: usize,
     },
-    /// Coordinates are so large or so small that the squares of the measures leave the range of double
+    /// Coordinates are so large or small that squares in the measures leave the range of double
     /// precision.
     Range {
         /// The largest coordinate.
@@ -23,24 +23,24 @@ pub enum FairError {
         /// Index of the point, from 0.
         index: usize,
     },
-    /// Two neighbouring data points coincide where a parameter range between them is needed.
+    /// Two neighbouring data points coincide, but need different parameters.
     Coincident {
         /// Index of the first of the two, from 0.
         first: usize,
     },
-    /// Points are not monotone along the direction of their parameters.
+    /// Points are not monotone along the direction that defines their parameters.
     TurnsAlong {
-        /// Index of the first that does, from 0.
+        /// Index of the first point that reverses, from 0.
         index: usize,
     },
-    /// Data farther from every spline of so few control points than their tolerance.
+    /// A datum is farther than its tolerance from every spline with this number of control points.
     OutOfReach {
-        /// Index of the datum that is farthest off, in tolerances.
+        /// Index of the datum with the largest distance relative to its tolerance.
         index: usize,
         /// Distance of the best curve found.
         distance: f64,
     },
-    /// A budget or share is out of range, or does not apply to the measure.
+    /// A budget or share is out of range or does not apply to the measure.
     Goal(&'static str),
     /// The derivative is not available.
     NoDerivative(&'static str),
@@ -49,7 +49,7 @@ pub enum FairError {
         /// The number given.
         value: f64,
     },
-    /// A closed curve shrinks to a point when nothing holds it: it needs a tolerance.
+    /// A closed curve without a tolerance would shrink to a point.
     ClosedWithoutTolerance,
     /// A mark is not the index of a control point.
     Mark {
@@ -69,17 +69,17 @@ pub enum FairError {
     Count {
         /// Counted items.
         what: &'static str,
-        /// The number that is needed.
+        /// The required number.
         expected: usize,
         /// The number given.
         actual: usize,
     },
     /// Knots or parameters are not increasing.
     Unsorted {
-        /// Index of the first that is smaller than the one before it.
+        /// Index of the first value that is smaller than the one before it.
         index: usize,
     },
-    /// The knots are at fault.
+    /// The knots are invalid.
     Knots(moldloft_spline::KnotError),
     /// The degree is too low for the measure.
     Degree {
@@ -103,7 +103,7 @@ pub enum FairError {
     Shape {
         /// Violated shape conditions, by index in the given list.
         shapes: Vec<usize>,
-        /// Largest violation, as a move of the curve.
+        /// Largest violation, as a distance.
         miss: f64,
     },
     /// No curve within the tolerance has so small a measure.
@@ -120,24 +120,24 @@ pub enum FairError {
         /// Reason and remedy.
         why: String,
     },
-    /// A curve has the opposite direction to the neighbour that it should continue.
+    /// A curve has the opposite direction to the neighbour that it continues.
     TurnsBack,
     /// Two surfaces cannot be joined at an edge.
     Seam {
-        /// The number of the seam in the list given.
+        /// Index of the seam in the given list.
         number: usize,
         /// Why.
         why: String,
     },
-    /// Steps of single points cannot keep more of a seam than its position.
+    /// Local steps can preserve only the position of a seam.
     SeamsByPasses,
-    /// A solver met a matrix that it could not factor.
+    /// A solver could not factor its matrix.
     Singular,
-    /// The problem is larger than the direct solver takes on.
+    /// The problem is too large for the direct solver.
     TooLarge {
-        /// Numbers of storage that the factor would need.
+        /// Number of stored entries that the factor needs.
         needed: usize,
-        /// The most that is allowed.
+        /// Maximum number allowed.
         allowed: usize,
     },
 }
@@ -170,15 +170,16 @@ impl fmt::Display for FairError {
             Self::TurnsAlong { index } => {
                 write!(
                     f,
-                    "point {} runs back along the direction that gives parameters: take `chord`",
+                    "point {} is behind the point before it along the direction of the \
+                    parameters: use `chord`",
                     index + 1
                 )
             }
             Self::OutOfReach { index, distance } => {
                 write!(
                     f,
-                    "a spline of so few control points stays {distance:.3e} off point {}: more \
-                     control points, or a larger tolerance",
+                    "the spline is {distance:.3e} from point {}: use more control points or a \
+                    larger tolerance",
                     index + 1
                 )
             }
@@ -225,14 +226,15 @@ impl fmt::Display for FairError {
             }
             Self::Energy { asked, least } => write!(
                 f,
-                "no curve within the tolerance measures {asked:.6e}: the least is {least:.6e}"
+                "no curve within the tolerance has a measure of {asked:.6e}: the minimum is \
+                {least:.6e}"
             ),
             Self::Shapeless { shape, why } => write!(f, "shape {}: {why}", shape + 1),
             Self::Squares => {
-                write!(f, "a sum of lengths has no steps of single points: take the optimum")
+                write!(f, "local steps do not apply to a sum of lengths: use the optimum")
             }
             Self::TurnsBack => {
-                write!(f, "the curve runs back from its neighbour at their common end: a cusp")
+                write!(f, "the curve reverses at the common end with its neighbour: a cusp")
             }
             Self::Singular => write!(f, "the equations have no unique solution"),
             Self::TooLarge { needed, allowed } => {

@@ -15,7 +15,8 @@ pub enum Measure {
     Third,
     /// Sum of squared jumps of the highest derivative.
     Jumps,
-    /// Sum of the lengths of the jumps: most become exactly zero, few polynomial pieces remain.
+    /// Sum of the lengths of the jumps: most become exactly zero, so that few polynomial pieces
+    /// remain.
     JumpLengths,
     /// The integral of the squared second derivative.
     Bending,
@@ -60,13 +61,13 @@ impl Measure {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// Norm in which its rows are summed.
+    /// Norm of its rows.
     pub fn norm(self) -> RowNorm {
         if self == Measure::JumpLengths { RowNorm::Length } else { RowNorm::Square }
     }
 
-    /// The rows of the measure on a space, free of the parameter's unit: a row times the control
-    /// points is a length.
+    /// The rows of the measure on a space, independent of the parameter's unit: a row times the
+    /// control points is a length.
     ///
     /// # Errors
     /// [`FairError::Degree`] when the spline has no derivative of that order.
@@ -172,10 +173,10 @@ impl Measure {
         }
     }
 
-    /// The measure of points themselves at parameters with a total range of 1 (closed: from the
-    /// first to itself): divided differences, each weighted with the square root of its interval,
-    /// so that the sum of squares approximates the integral of the squared derivative. Zero on
-    /// polynomials below its order at any spacing.
+    /// The measure of the points themselves, at parameters with a total range of 1 (closed curve:
+    /// from the first point round to itself): divided differences, each weighted with the square
+    /// root of its interval, so that the sum of squares approximates the integral of the squared
+    /// derivative. Zero for polynomials of degree below the order, at any spacing.
     pub fn divided<T: moldloft_num::Real>(
         self,
         at: &[T],

@@ -7,7 +7,7 @@ use crate::{EndContinuity, Measure, Motion};
 use moldloft_num::Vec3;
 use std::fmt;
 
-/// A word that an option does not have, or has only with something else.
+/// A word that is not a value of an option, or only in combination with another option.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WordError {
     /// The kind of fault: "unknown-name", "no-share" or "other-mode".
@@ -48,7 +48,7 @@ pub const GOALS: [&str; 6] = ["near", "budget", "fairest", "nearest", "energy", 
 /// Default of `share` for the goal "nearest".
 const NEAREST: f64 = 0.1;
 
-/// The goal called `word`, with its share: of "near" and "budget" `budget` without one.
+/// The goal called `word`, with its share; for "near" and "budget" `budget` by default.
 ///
 /// # Errors
 /// For an unknown word, and for "energy" without a measure.
@@ -63,7 +63,7 @@ pub fn goal(word: &str, share: Option<f64>, budget: f64) -> Result<Goal, WordErr
             id: "no-share",
             noun: "goal",
             found: word.to_string(),
-            expected: "the largest measure as its share".to_string(),
+            expected: "the largest measure, as `share`".to_string(),
         })?),
         _ => return Err(WordError::unknown("goal", word, &GOALS)),
     })

@@ -4,7 +4,7 @@ use moldloft_budget::Spent;
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
 
-/// Why a primitive, a set, a blend or a question to them is refused.
+/// Reason why a primitive, set, blend or query is refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FieldError {
@@ -13,7 +13,7 @@ pub enum FieldError {
         /// Name of the quantity.
         what: &'static str,
     },
-    /// A size that must be above zero.
+    /// A size that must be positive.
     NotPositive {
         /// Name of the quantity.
         what: &'static str,
@@ -25,7 +25,7 @@ pub enum FieldError {
         /// Name of the quantity.
         what: &'static str,
     },
-    /// Primitives may be divided by a real other than zero only.
+    /// Primitives may be divided only by a real other than zero.
     Division,
     /// Exponents are whole numbers from 0 to 1000.
     Exponent {
@@ -37,12 +37,12 @@ pub enum FieldError {
         /// Given value.
         value: f64,
     },
-    /// The two rails of a transition meet, or could not be shown to keep apart.
+    /// The two rails of a transition meet, or could not be proved to be apart.
     RailsMeet {
         /// Position of the fault.
         place: Box3,
     },
-    /// On its rail the blend meets an inverted body: the rail is inside the other body.
+    /// The blend meets an inverted body on its rail: the rail is inside the other body.
     RailInside {
         /// Number of the body that the rail should leave outside.
         body: usize,
@@ -63,7 +63,7 @@ pub enum FieldError {
         /// High corner.
         high: Vec3,
     },
-    /// The set has no end along an axis, so a box must be given.
+    /// The set is unbounded along an axis, so a box must be given.
     Unbounded {
         /// The axis, 0 to 2.
         axis: usize,
@@ -84,7 +84,8 @@ pub enum FieldError {
         /// The side of a cell.
         step: f64,
     },
-    /// Nearly all cells of large parts of the box hold the surface: the set has waves smaller than they are.
+    /// Nearly all cells of large parts of the box contain the surface: the set has waves smaller
+    /// than these.
     TooRough {
         /// Number of such cells found.
         cells: usize,
@@ -100,7 +101,7 @@ pub enum FieldError {
         /// Approximate minimum depth for small enough cells.
         depth: u32,
     },
-    /// The accuracy was not reached with the cells allowed.
+    /// The accuracy was not reached with the allowed number of cells.
     NotReached {
         /// Requested accuracy.
         asked: f64,
@@ -109,9 +110,9 @@ pub enum FieldError {
         /// Number of cells used.
         cells: usize,
     },
-    /// The box is thinner than its cells, so that its content would be lost.
+    /// The box is thinner than one cell, so its content would be lost.
     ThinBox {
-        /// The axis along which it is, 0 to 2.
+        /// Axis along which it is thin, 0 to 2.
         axis: usize,
         /// Its side.
         side: f64,
@@ -125,12 +126,12 @@ pub enum FieldError {
         /// Number of edges without an equal number of triangles on both sides.
         edges: usize,
     },
-    /// A body with too many faces for the allowed size of its set.
+    /// A body with too many faces for a set.
     ManyFaces {
-        /// The most primitives that a set may name.
+        /// Maximum number of primitives in a set.
         most: usize,
     },
-    /// Round sides of a body touch, or cross, so that no plane beside them parts them.
+    /// Round sides of a body touch or cross, so no auxiliary plane separates them.
     RoundSides,
     /// An edge inside a body, or in one of its faces, whose mitre would protrude from the offset
     /// body.
@@ -148,14 +149,14 @@ pub enum FieldError {
         /// The set found.
         found: String,
     },
-    /// Two faces that meet in no edge of the set.
+    /// Two faces without a common edge in the set.
     NoEdge {
         /// Their names.
         faces: [String; 2],
     },
-    /// A function from outside, which has no text.
+    /// A function without a text, from outside the language.
     Outside,
-    /// Cancelled by the caller, or memory or time are used up.
+    /// Cancelled by the caller, or memory or time is used up.
     Spent(Spent),
     /// A primitive had no finite value.
     NoValue {
@@ -210,8 +211,8 @@ impl fmt::Display for FieldError {
             ),
             Self::Thin { place, step, depth } => write!(
                 f,
-                "near {} a part of the set is thinner than cells of {step:.3e}, and would get lost: depth = {depth} would \
-                 show it",
+                "near {} a part of the set is thinner than cells of {step:.3e}, and would be \
+                lost: depth = {depth} resolves it",
                 Corners(place)
             ),
             Self::NotReached { asked, reached, cells } => write!(
@@ -221,7 +222,7 @@ impl fmt::Display for FieldError {
             ),
             Self::Unbounded { axis, sign } => {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
-                write!(f, "the set has no end towards {end}{axis}: give the box to look at")
+                write!(f, "the set is unbounded towards {end}{axis}: give a box")
             }
             Self::ThinBox { axis, side, step, .. } => write!(
                 f,
@@ -239,8 +240,8 @@ impl fmt::Display for FieldError {
             }
             Self::HiddenEdge { place } => write!(
                 f,
-                "at ({:.6}, {:.6}, {:.6}) two parts of the set meet in an edge that the body does not show, and whose mitre \
-                 would stand out of it",
+                "at ({:.6}, {:.6}, {:.6}) two parts of the set meet in an internal edge, whose \
+                mitre would protrude from the offset body",
                 place.x, place.y, place.z
             ),
             Self::NoDistance { kind } => write!(
@@ -248,7 +249,7 @@ impl fmt::Display for FieldError {
                 "the distance from a {kind} has no closed form; planes, balls, cylinders, cones and tori have one"
             ),
             Self::NoHull { found } => {
-                write!(f, "no convex hull or Minkowski sum is known of {found}")
+                write!(f, "there is no closed form of the convex hull or Minkowski sum of {found}")
             }
             Self::NoEdge { faces: [a, b] } => {
                 write!(f, "there is no edge between faces called `{a}` and `{b}`")

@@ -97,7 +97,7 @@ impl fmt::Display for GridError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooFew { expected, actual: [m, n] } => {
-                write!(f, "expected at least {expected} points each way, found [{m},{n}]")
+                write!(f, "expected at least {expected} points in each direction, found [{m},{n}]")
             }
             Self::NotFinite { at: [i, j] } => write!(f, "point [{i},{j}] is not finite"),
             Self::EdgesApart { corner, gap } => {
@@ -121,7 +121,7 @@ impl fmt::Display for GridError {
                 write!(f, "point [{i},{j},{k}] is not finite")
             }
             Self::March(failure) => write!(f, "{failure}"),
-            Self::Diverged { step } => write!(f, "the grid grew beyond bounds in step {step}"),
+            Self::Diverged { step } => write!(f, "the grid diverged in step {step}"),
             Self::Spent(spent) => write!(f, "{spent}"),
             Self::Heights { at, value } => {
                 write!(f, "heights ascend from 0, but height {at} is {value}")

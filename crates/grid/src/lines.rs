@@ -65,7 +65,7 @@ impl<T: Real> ZebraRows<T> {
     }
 }
 
-/// The same for control terms, whose two directions are exchanged.
+/// Control terms with the two directions exchanged.
 pub fn transposed_control<T: Real>(control: &Control<T>, m: usize, n: usize) -> Control<T> {
     let turn = |plane: &Vec<T>| (0..m * n).map(|k| plane[k % m * n + k / m]).collect();
     Control { along: turn(&control.across), across: turn(&control.along) }

@@ -13,7 +13,7 @@ use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The most bytes of one file.
+/// Maximum size of a file, in bytes.
 pub const LARGEST: u64 = 256 << 20;
 
 /// The most bytes of the files that one model reads.
@@ -109,7 +109,7 @@ fn hidden(path: &Path) -> bool {
     })
 }
 
-/// Why a file is not read.
+/// Reason why a file is not read.
 #[derive(Debug)]
 pub enum ReadFault {
     /// It cannot be opened or read.

@@ -45,14 +45,15 @@ impl FitLimits {
 /// Maximum number of cells of a surface.
 const MOST_CELLS: usize = 6000;
 
-/// The same limit while derivatives are fitted as well: such a cell costs several times as much.
+/// Maximum number of cells while derivatives are fitted as well: such a cell costs several times as
+/// much.
 const MOST_CELLS_FOR_SLOPES: usize = 1500;
 
 /// Maximum number of halvings of a cell in one direction.
 const DEEPEST: u32 = 40;
 
-/// The same limit where only derivatives with respect to model parameters miss their tolerance,
-/// which rounding may prevent.
+/// Maximum number of halvings where only derivatives with respect to model parameters miss their
+/// tolerance, which rounding may prevent.
 const DEEPEST_FOR_SLOPES: u32 = 8;
 
 impl<T: Real> PolynomialCell<T> {
@@ -363,7 +364,7 @@ impl<T: Real> CellFrame<'_, T> {
         points
     }
 
-    /// The same with the derivatives of moving boundaries.
+    /// The points with the derivatives of moving boundaries.
     fn moving_places(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec3<T>> {
         let [u0, u1, v0, v1] = self.ends;
         let along = |a: T, b: T| shares.iter().map(|&s| a + (b - a) * s).collect::<Vec<T>>();

@@ -123,7 +123,7 @@ impl<T: Real> ChartBoundary<T> {
         Self((0..NODES).map(coefficient).collect())
     }
 
-    /// The same without its last coefficients, where they are rounding.
+    /// This polynomial without its last coefficients, where they are rounding.
     pub fn shortened(mut self) -> Self {
         let negligible = |c: &T| (0..T::PARTS).all(|part| c.probe(part).abs() < 1e-16);
         while self.0.len() > 1 && self.0.last().is_some_and(negligible) {
@@ -189,7 +189,7 @@ impl<T: Real> Chart<T> {
         })
     }
 
-    /// The same point without derivatives.
+    /// The point at these parameters without derivatives.
     pub fn real(&self, place: [f64; 2]) -> [f64; 2] {
         let [u, v] = self.at(place.map(T::from)).map(T::re);
         let within = |w: f64, closed: bool| if closed { w } else { w.clamp(0.0, 1.0) };
@@ -419,7 +419,7 @@ impl<T: Real> Cutter<'_, T> {
             let place = if along == 0 { [s, t] } else { [t, s] };
             cutter.inside(line.plane, chart, place)[line.axis] - line.at
         };
-        // Where the line enters or leaves across a side.
+        // Positions where the line enters or leaves across a side.
         for side in [0.0, 1.0] {
             let step = |k: usize| k as f64 / STEPS as f64;
             for k in 0..STEPS {

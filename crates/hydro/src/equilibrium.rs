@@ -78,18 +78,17 @@ impl fmt::Display for FloatError {
         match self {
             Self::Mass { mass } => write!(f, "the displacement {mass} is not a positive number"),
             Self::NoCentre => {
-                write!(f, "trim and heel need a centre of gravity to come to rest")
+                write!(f, "free trim and heel require a centre of gravity")
             }
             Self::HalfHeels => write!(f, "half a body cannot heel"),
             Self::NoBody => write!(f, "the panels enclose no body that could float"),
-            Self::Sinks { mass, most, rim: None } => write!(
-                f,
-                "the displacement {mass} is more than the body displaces all under water, {most}"
-            ),
+            Self::Sinks { mass, most, rim: None } => {
+                write!(f, "the displacement {mass} exceeds that of the submerged body, {most}")
+            }
             Self::Sinks { mass, most, rim: Some([trim, heel]) } => write!(
                 f,
-                "the displacement {mass} is more than the body displaces before its open edge is under water, {most}, at a \
-                 trim of {:.2} and a heel of {:.2} degrees",
+                "the displacement {mass} exceeds the largest one without an immersed open edge, \
+                {most}, at a trim of {:.2} and a heel of {:.2} degrees",
                 trim.to_degrees(),
                 heel.to_degrees()
             ),

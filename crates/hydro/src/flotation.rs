@@ -136,7 +136,8 @@ pub struct Flotation<T> {
     /// Righting arm: horizontal distance across the body from the line of gravity to that of
     /// buoyancy, positive to the immersed side.
     pub gz: Option<T>,
-    /// The same along the body: zero in longitudinal equilibrium.
+    /// Horizontal distance along the body from the line of gravity to that of buoyancy: zero in
+    /// longitudinal equilibrium.
     pub trim_arm: Option<T>,
     /// Product moment of the waterplane about horizontal axes through its centre: the integral of x
     /// y.

@@ -93,7 +93,7 @@ impl<T: Real> HydrostaticIntegrals<T> {
         ]
     }
 
-    /// Those with these numbers.
+    /// The integrals with these numbers, in the order of `numbers`.
     pub fn of_numbers(n: [T; 19]) -> Self {
         Self {
             forms: [n[0], n[1], n[2]],

@@ -21,7 +21,7 @@ const MOST_NODES: usize = 97_999;
 /// Width of the column of a coordinate.
 const WIDTH: usize = 10;
 
-/// The file of the mesh's skin; coordinates have the seven or eight digits that their column holds.
+/// The file of the mesh's skin; coordinates have seven or eight digits, the width of their column.
 ///
 /// # Errors
 /// [`WriteError::AboveWater`] for panels that reach above z = 0; more than 97 999 vertices (numbers

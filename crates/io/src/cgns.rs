@@ -48,8 +48,8 @@ fn data(file: &Hdf5File<'_>, node: StoredObject) -> Result<Option<StoredNumbers>
     Ok(None)
 }
 
-/// All zones of a file, in the order in which they were made where the file kept it, else by names; of several bases
-/// one after the other. Boundaries, solutions and interfaces are left out.
+/// All zones of a file, in the order of creation if the file records it, else by name; those of
+/// several bases in sequence. Boundaries, solutions and interfaces are omitted.
 ///
 /// # Errors
 /// [`ReadError`] for other files (those in the old ADF among them), unstructured zones, zones without Cartesian

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// A step may be shorter than the required one by this, relatively.
 const ROUNDING: f64 = 1e-12;
 
-/// A cut of the model with a plane of constant coordinate.
+/// An intersection of the model with a plane of constant coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaneCut {
     /// Shown beside the line; may be empty.
@@ -55,7 +55,7 @@ impl View {
         }
     }
 
-    /// The same as a word of names.
+    /// The view's name as one word, for names of layers and files.
     fn word(self) -> String {
         self.title().replace(' ', "-")
     }
@@ -81,7 +81,7 @@ pub struct DrawingOptions {
     pub unit_mm: f64,
     /// The n of the scale 1 : n; `None` for the largest round scale that fits `width_mm`.
     pub scale: Option<f64>,
-    /// Width that the drawing itself may take, in millimetres.
+    /// Maximum width of the drawing itself, in millimetres.
     pub width_mm: f64,
     /// True when the bow is at low x.
     pub bow_at_low_x: bool,
@@ -114,9 +114,9 @@ impl Default for DrawingOptions {
 const MARGIN: f64 = 16.0;
 const FOOT: f64 = 16.0;
 
-/// The sheet: the view's own contours as lines, the others' values as nothing; a grid of round
-/// numbers with labels, the centre line and z = 0 heavier, names on the lines, the
-/// scale in words and as a bar. Points that are not finite end a line.
+/// The sheet: the contours of the view as lines; a grid of round numbers with labels; the centre
+/// line and z = 0 in heavy lines; names on the lines; the scale in words and as a bar. A point that
+/// is not finite ends a line.
 pub fn draw(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec<u8> {
     let lines = projected(view, contours, options);
     let sheet = SheetLayout::around(&lines, options);
@@ -134,8 +134,9 @@ pub fn draw(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec<
     out.into_bytes()
 }
 
-/// The lines plan: profile, half-breadth plan below it and body plan beside it on one sheet and to one scale, with the
-/// same grid, so that stations, waterlines and buttocks are in line from view to view.
+/// The lines plan: profile, half-breadth plan below it and body plan beside it on one sheet at one
+/// scale, with a common grid, so that stations, waterlines and buttocks are aligned between the
+/// views.
 pub fn draw_plan(contours: &[PlaneCut], options: &DrawingOptions) -> Vec<u8> {
     let [profile, plan, body] = [View::Buttocks, View::Waterlines, View::BodyPlan]
         .map(|view| (view, projected(view, contours, options)));

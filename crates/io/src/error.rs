@@ -4,7 +4,7 @@ use moldloft_mesh::{Blocks, Mesh, MeshError};
 use moldloft_num::Vec3;
 use std::fmt;
 
-/// Why a mesh cannot be written.
+/// Reason why a mesh cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WriteError {
     /// A position is NaN or infinite, or beyond the range of the format's numbers.
@@ -14,16 +14,16 @@ pub enum WriteError {
         /// The vertex.
         vertex: u32,
     },
-    /// More items than the format's counters can name.
+    /// More items than the format can number.
     TooLarge {
         /// Name of the items.
         what: &'static str,
         /// Number of items.
         count: usize,
     },
-    /// A structured format for patches without a grid.
+    /// A patch without a grid, in a structured format.
     NoGrid {
-        /// The patches without one; empty when there are no patches at all.
+        /// The patches without a grid; empty when there are no patches at all.
         patches: Vec<String>,
     },
     /// A mesh declared as one half extends to both sides of its symmetry plane.
@@ -33,14 +33,14 @@ pub enum WriteError {
         /// A patch beyond the plane.
         patch: String,
     },
-    /// The model has something that the format cannot hold.
+    /// The model contains something that the format cannot hold.
     CannotHold {
         /// The format.
         format: &'static str,
         /// Unsupported content.
         what: &'static str,
     },
-    /// An object is of a dimension that the format cannot hold.
+    /// An object has a dimension that the format cannot hold.
     NoPlace {
         /// The format.
         format: &'static str,
@@ -62,7 +62,7 @@ pub enum WriteError {
         format: &'static str,
         /// A patch that would lose its shape.
         patch: String,
-        /// Distance between neighbouring numbers there.
+        /// Spacing of representable numbers there.
         step: Bits,
     },
     /// A cell of a grid is too thin for the format's single precision.
@@ -85,7 +85,7 @@ pub enum WriteError {
     },
 }
 
-/// A number that is compared by its bits.
+/// A number compared by its bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits(u64);
 
@@ -168,7 +168,7 @@ pub enum FilePosition {
     Block(usize),
 }
 
-/// Why bytes are not a file of a format.
+/// Reason why bytes are not a file of a format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Name of the format.

@@ -5,11 +5,11 @@ use crate::{FilePosition, ReadError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
-/// A mesh that another program wrote.
+/// A mesh written by another program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForeignMesh {
-    /// Points and faces; a patch for each run of faces of one group. Polygons of more than four corners are fans of
-    /// triangles around their first corner.
+    /// Points and faces; each run of faces of one group is a patch. Polygons of more than four
+    /// corners are triangle fans around their first corner.
     pub mesh: Mesh,
     /// Warnings about omitted or doubtful parts of the file.
     pub remarks: Vec<String>,

@@ -46,8 +46,8 @@ impl Header {
     }
 }
 
-/// The file of the mesh's skin: patches that are lids, water or symmetry planes are left out, but
-/// lids are kept with `lids`.
+/// The file of the mesh's skin, without patches that are water or symmetry planes, and with lids
+/// only if `lids` is set.
 ///
 /// Corners within 1e-9 of the mesh's diagonal from a symmetry plane are written with an exact zero.
 ///
@@ -71,7 +71,7 @@ pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteE
 /// A B-spline patch with clamped uniform knots on [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplinePatch {
-    /// The surface that it is, or is a part of.
+    /// The surface that contains the patch.
     pub name: String,
     /// Degrees in u and v.
     pub degree: [usize; 2],
@@ -79,7 +79,7 @@ pub struct SplinePatch {
     pub spans: [usize; 2],
     /// Control points, v fastest.
     pub points: Vec<Vec3>,
-    /// The largest distance found from the surface; rounding where the form is exact.
+    /// The largest deviation found from the surface; rounding if the form is exact.
     pub deviation: f64,
 }
 
@@ -152,7 +152,7 @@ pub fn write_patches(patches: &[SplinePatch], header: &Header) -> Vec<u8> {
 }
 
 /// The header and the panels. Corners at bit-equal positions become one vertex; panels without area
-/// are left out.
+/// are omitted.
 ///
 /// # Errors
 /// Words that are no numbers, and fewer or more corners than the file promises.

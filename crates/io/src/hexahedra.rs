@@ -176,7 +176,7 @@ pub enum Periodicity {
 }
 
 impl Periodicity {
-    /// The point of the other boundary that belongs to one of this.
+    /// The point of the other boundary that corresponds to one of this.
     pub fn moved(self, p: Vec3) -> Vec3 {
         match self {
             Periodicity::Translation(d) => p + d,
@@ -192,7 +192,7 @@ impl Periodicity {
     }
 }
 
-/// The other boundary of a periodic one, and the position of its points relative to those of this
+/// The partner of a periodic boundary, and the position of its points relative to those of this
 /// one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PeriodicPartner {
@@ -200,6 +200,6 @@ pub struct PeriodicPartner {
     pub name: String,
     /// Its partner.
     pub partner: String,
-    /// The map from the boundary to its partner.
+    /// Map from the boundary to its partner.
     pub how: Periodicity,
 }

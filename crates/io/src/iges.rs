@@ -10,14 +10,14 @@ use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
 
-/// Header of a file besides its shapes.
+/// Header data of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IgesHeader<'a> {
     /// The name of the model.
     pub title: &'a str,
     /// The unit of length in metres.
     pub metres: f64,
-    /// The version of the program that writes.
+    /// Version of the writing program.
     pub version: &'a str,
 }
 

@@ -10,16 +10,17 @@ pub struct MapFace {
     pub block: usize,
     /// The face: i1, in, j1, jn, k1, kn from 0.
     pub face: usize,
-    /// Node (i, j, k), from 0, at which it begins.
+    /// Node (i, j, k), from 0, of its first corner.
     pub from: [usize; 3],
-    /// Node at which it ends; less than the begin along an axis that runs backwards.
+    /// Node of its last corner; less than the first along an axis that runs backwards.
     pub to: [usize; 3],
 }
 
 /// An entry of a map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MapEntry {
-    /// Two faces with the same points, and the axis of the second block, 0 to 2, along each of the first.
+    /// Two faces with the same points; for each axis of the first block, the axis of the second, 0
+    /// to 2.
     Joined([MapFace; 2], [usize; 3]),
     /// A boundary and its type.
     Boundary(MapFace, String),

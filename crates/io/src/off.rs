@@ -10,7 +10,8 @@ use moldloft_num::Vec3;
 
 const FORMAT: &str = "OFF";
 
-/// The file. Quads stay quads; patches have no names here, for readers differ on comments.
+/// The file. Quads are written as such; patches have no names, because readers disagree on
+/// comments.
 ///
 /// # Errors
 /// Positions that are not finite.
@@ -35,9 +36,9 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(out.into_bytes())
 }
 
-/// The mesh of a text: `OFF`, also with the letters of colours, normals and textures before it, which are left out;
-/// counts of vertices, faces and edges; a vertex and a face to a line. The counts may follow `OFF` in its line, and the
-/// word may be missing.
+/// The mesh of a text: `OFF`, possibly with letters for colours, normals and textures before it,
+/// which are skipped; counts of vertices, faces and edges; one vertex or face per line. The counts
+/// may follow `OFF` on its line, and the word may be missing.
 ///
 /// # Errors
 /// Counts that are more than there are lines, bad numbers, corners that are no vertices; other dimensions than three,

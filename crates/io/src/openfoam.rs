@@ -48,7 +48,7 @@ fn type_entries(mesh: &HexMesh, patch: &BoundaryPatch, periodic: &[PeriodicPartn
     out
 }
 
-/// A blockMeshDict of OpenFOAM: a block for each cell, so that its points are those of the grid.
+/// A blockMeshDict of OpenFOAM: a block for each cell, so that the points are those of the grid.
 pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
     let mut out = header("dictionary", "blockMeshDict");
     out.push_str("scale 1;\ndefaultPatch { name defaultFaces; type patch; }\nvertices\n(\n");
@@ -76,7 +76,7 @@ pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
     out.into_bytes()
 }
 
-/// A file of a polyMesh, and its name in the folder.
+/// A file of a polyMesh, with its name in the folder.
 pub type FoamFile = (&'static str, Vec<u8>);
 
 /// A polygon between two cells, or between a cell and the outside.
@@ -227,8 +227,9 @@ fn matched(
     if matched.len() == own.len() { Ok(matched) } else { Err(fault()) }
 }
 
-/// The files points, faces, owner, neighbour and boundary of a polyMesh: inner faces in upper triangular order, each
-/// from the owner to the neighbour, then those of each boundary; cells at poles are the polyhedra that they are.
+/// The files points, faces, owner, neighbour and boundary of a polyMesh: inner faces in upper
+/// triangular order, each from the owner to the neighbour, then those of each boundary; cells at
+/// poles are written as polyhedra.
 ///
 /// # Errors
 /// Cells that touch themselves or overlap; periodic boundaries without a partner.

@@ -16,8 +16,8 @@ use moldloft_num::Vec3;
 
 const FORMAT: &str = "PLY";
 
-/// The file. Quads stay quads where there are no triangles: common readers (trimesh 5, gmsh 4.15) refuse a binary
-/// list of faces of different lengths.
+/// The file. Quads are written as such if there are no triangles: common readers (trimesh 5, gmsh
+/// 4.15) refuse a binary list of faces of different lengths.
 ///
 /// # Errors
 /// Positions that are not finite; more than 2^31 - 1 vertices.

@@ -20,18 +20,18 @@ pub struct PointTable {
     pub columns: usize,
     /// The line of each row, from 1.
     pub lines: Vec<usize>,
-    /// Runs of rows that empty lines separate.
+    /// Groups of rows separated by empty lines.
     pub blocks: Vec<Range<usize>>,
     /// Lines before the first row: comments first, then titles or names of columns.
     pub head: Vec<String>,
     /// Separator of the columns of the first row; `None` for blanks.
     pub delimiter: Option<char>,
-    /// The numbers of points of an aerofoil in two halves, each from the nose. The rows are then
-    /// one run, from the upper trailing edge round the nose.
+    /// The numbers of points of an aerofoil in two halves, each from the leading edge. The rows are
+    /// then one run, from the upper trailing edge round the leading edge.
     pub halves: Option<[usize; 2]>,
 }
 
-/// The points of a text with two or three numbers to a line.
+/// The points of a text with two or three numbers per line.
 ///
 /// Blanks, tabs, commas and semicolons separate, also behind the last number. `#` begins a comment.
 /// Before the first row there may be lines without numbers (names of columns) and one title with
@@ -240,12 +240,12 @@ pub struct PointLayout {
     pub separator: String,
     /// Groups of rows with an empty line between them; one group without such lines.
     pub blocks: Vec<Range<usize>>,
-    /// The counts of an aerofoil's two halves, each written from the nose.
+    /// The counts of an aerofoil's two halves, each written from the leading edge.
     pub halves: Option<[usize; 2]>,
 }
 
 /// The text of rows of two or three numbers. Each number reads back as the same double; -0 becomes
-/// 0. A layout whose halves or blocks are not of these rows is left out of account.
+/// 0. A layout whose halves or blocks do not match the rows is ignored.
 ///
 /// # Panics
 /// When there are not two or three columns.
@@ -280,7 +280,7 @@ pub fn write(rows: &[Vec3], columns: usize, layout: &PointLayout) -> String {
     out.join("\n")
 }
 
-/// A table of points under the names of its columns, with commas.
+/// A table of points, with the names of its columns, separated by commas.
 pub fn write_csv(rows: &[Vec3], columns: usize) -> String {
     let head = vec!["x,y,z"[..2 * columns - 1].to_owned()];
     write(rows, columns, &PointLayout { head, separator: ",".into(), ..PointLayout::default() })

@@ -19,15 +19,16 @@ pub struct BoundaryLine {
 pub struct PlaneMesh {
     /// Nodes: the two coordinates in the plane.
     pub points: Vec<[f64; 2]>,
-    /// Cells by their nodes, counter-clockwise; three of a triangle.
+    /// Cells by their nodes, counter-clockwise; three for a triangle.
     pub cells: Vec<Vec<usize>>,
     /// The boundary.
     pub lines: Vec<BoundaryLine>,
 }
 
 impl PlaneMesh {
-    /// The plane mesh under a mesh of one layer of cells, which `normal` leads out of the plane: `axes` are the two
-    /// coordinates in it, and the patches called `sides` its upper and lower side.
+    /// The plane mesh of a mesh with one layer of cells, which is extruded along `normal`: `axes`
+    /// are the two coordinates in the plane, and the patches called `sides` are its upper and lower
+    /// side.
     pub fn under(mesh: &HexMesh, axes: [usize; 2], normal: Vec3, sides: &str) -> Self {
         // Both nodes of a column are one node of the plane: its coordinates are the same.
         let mut numbers: HashMap<usize, usize> = HashMap::new();
@@ -57,7 +58,7 @@ impl PlaneMesh {
             }
             cells.push(quad);
         }
-        // Edges go round their cell.
+        // Edges are traversed around their cell.
         let mut along: HashMap<[usize; 2], ()> = HashMap::new();
         for quad in &cells {
             for k in 0..quad.len() {

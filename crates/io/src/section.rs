@@ -10,9 +10,10 @@ const FORMAT: &str = "aerofoil";
 /// Order of points in an aerofoil file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listing {
-    /// From the trailing edge along the upper side to the nose and back along the lower side.
+    /// From the trailing edge along the upper side to the leading edge, and back along the lower
+    /// side.
     Selig,
-    /// Two lists, upper and lower, each from the nose to the trailing edge.
+    /// Two lists, upper and lower side, each from the leading to the trailing edge.
     Lednicer,
 }
 
@@ -21,17 +22,17 @@ pub enum Listing {
 pub struct AerofoilSection {
     /// The heading.
     pub name: String,
-    /// Points from the trailing edge along the upper side to the nose and back along the lower, in the
-    /// file's units; z = 0.
+    /// Points from the trailing edge along the upper side to the leading edge, and back along the
+    /// lower, in the file's units; z = 0.
     pub points: Vec<Vec3>,
-    /// The index of the nose: the point of least x.
+    /// Index of the leading edge: the point of least x.
     pub nose: usize,
     /// Order of the points in the file.
     pub listing: Listing,
 }
 
-/// The section of an aerofoil file, in Selig's or Lednicer's listing, distinguished by the
-/// numbers of points that the latter begins with.
+/// The section of an aerofoil file, in Selig's or Lednicer's order; the latter begins with two
+/// numbers of points.
 ///
 /// # Errors
 /// Fewer than five points, lines that are no pairs of numbers, and lists of another length than they
@@ -73,8 +74,8 @@ pub fn read_aerofoil(bytes: &[u8]) -> Result<AerofoilSection, ReadError> {
     if nose == 0 || nose + 1 == points.len() {
         return error(
             last,
-            "points from the trailing edge around the nose and back".into(),
-            "the nose at an end of the list".into(),
+            "points from the trailing edge around the leading edge and back".into(),
+            "the leading edge at an end of the list".into(),
         );
     }
     Ok(AerofoilSection { name, points, nose, listing })

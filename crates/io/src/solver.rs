@@ -12,9 +12,9 @@ const SNAP: f64 = 1e-9;
 /// Options of a panel code's file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanelFileOptions {
-    /// x = 0 is a symmetry plane and the mesh one side of it.
+    /// The mesh is one side of the symmetry plane x = 0.
     pub mirror_x: bool,
-    /// y = 0 is a symmetry plane and the mesh one side of it.
+    /// The mesh is one side of the symmetry plane y = 0.
     pub mirror_y: bool,
     /// Lids are written among the panels of the skin.
     pub lids: bool,

@@ -19,9 +19,9 @@ const TRIANGLE: usize = 50;
 /// Number of triangles written between two checks for cancellation.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
-/// The binary file. Quads are split along their shorter diagonal. Triangles two of whose corners
-/// coincide in single precision are left out, which closes no and opens no gap; thin ones stay,
-/// because their neighbours need them.
+/// The binary file. Quads are split along their shorter diagonal. Triangles with two coincident
+/// corners in single precision are omitted, which neither closes nor opens a gap; other thin ones
+/// are kept, since their neighbours need them.
 ///
 /// # Errors
 /// Positions that are not finite in single precision, or so far from the origin that single
@@ -66,8 +66,8 @@ fn write_while(mesh: &Mesh, name: &str, go_on: &dyn Fn() -> bool) -> Result<Vec<
     Ok(out)
 }
 
-/// The text file, a solid for each patch with faces, its name without blanks. Coordinates are the shortest decimals of
-/// double precision, so that neighbours agree to the bit.
+/// The text file, with a solid for each patch that has faces; blanks are removed from its name.
+/// Coordinates are the shortest decimals of double precision, so that neighbours agree to the bit.
 ///
 /// # Errors
 /// Positions that are not finite.
@@ -98,10 +98,10 @@ pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(out.into_bytes())
 }
 
-/// The triangles, with corners at equal positions merged; those that then have no area are left
-/// out. A file is binary if its size agrees with its count, otherwise text if it begins with
-/// `solid` and has a facet. A count of 0 or the maximum, as left by programs that write without
-/// seeking, is derived from the size.
+/// The triangles, with corners at equal positions merged; triangles left without area are omitted.
+/// A file is binary if its size agrees with its count, otherwise text if it begins with `solid` and
+/// has a facet. A count of 0 or the maximum, as left by programs that write without seeking, is
+/// derived from the size.
 ///
 /// # Errors
 /// A size that does not fit the count, coordinates that are not finite, and text out of order.
@@ -217,8 +217,8 @@ fn text(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
 }
 
 /// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
-/// area at poles are dropped. Facets face out of closed bodies, whatever the orientation of their
-/// surfaces, and out of open ones where their rims determine the outside; else along r_i x r_j.
+/// area at poles are dropped. Facets point out of closed bodies regardless of the orientation of
+/// their surfaces, and out of open ones whose rims determine the outside; else along r_i x r_j.
 /// With `flip` they are reversed.
 ///
 /// # Errors

@@ -11,12 +11,12 @@ pub struct StructuredGrid {
     pub size: [usize; 3],
     /// All x, all y, all z, i running fastest. A plane grid has z = 0.
     pub planes: [Vec<f64>; 3],
-    /// A number for each point that says whether it counts (0: it does not), if there is one.
+    /// A number for each point, if present: 0 for a point that does not count.
     pub iblank: Option<Vec<i32>>,
 }
 
 impl StructuredGrid {
-    /// The surface of points (i, j) at `i * n + j`, as arrays of the language and of NumPy have them.
+    /// The surface of points (i, j) at `i * n + j`, the order of arrays in the language and NumPy.
     ///
     /// # Panics
     /// When there are not `m * n` points.

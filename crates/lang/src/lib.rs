@@ -28,7 +28,8 @@ pub use source::{
 };
 pub use value::display;
 
-/// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
+/// Inner parts, public for the integration tests of this crate; unit tests would compile it a
+/// second time.
 #[doc(hidden)]
 pub mod parts {
     pub use crate::functions::elementary::small_remainder;

@@ -27,8 +27,8 @@ pub struct Nearest<const N: usize> {
     pub xyz: Vec3,
     /// Distance.
     pub distance: f64,
-    /// `Ok`, `EdgeClamped` at an end or edge, `Multiple` where others are equally near, `Tangent`
-    /// where the distance is stationary to second order, `Diverged` for a point that is not finite.
+    /// `Ok`, `EdgeClamped` at an end or edge, `Multiple` if others are equally near, `Tangent` if
+    /// the distance is stationary to second order, `Diverged` for a point that is not finite.
     pub status: LocateStatus,
 }
 
@@ -40,7 +40,7 @@ impl<const N: usize> Nearest<N> {
     }
 }
 
-/// A surface prepared for many nearest-point questions.
+/// A surface prepared for many nearest-point queries.
 ///
 /// On surfaces that are exactly cubic pieces (B-splines up to degree three) the answer is the
 /// nearest point, to 1e-9 of the size: a cell is excluded only if a bound of its distance exceeds
@@ -288,7 +288,7 @@ impl NearestSurface {
         self.cells.tree.bounds
     }
 
-    /// The number of cells that the surface was cut into.
+    /// Number of cells that the surface is divided into.
     pub fn cells(&self) -> usize {
         self.cells.flats.len()
     }
@@ -536,8 +536,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// An order in which consecutive points are near each other, so that data of a search stay in the
-/// cache: along a Morton curve through the box around them (Morton 1966).
+/// An order in which consecutive points are near each other, which keeps the data of a search in
+/// the cache: along a Morton curve through the box around them (Morton 1966).
 pub fn by_place(points: &[Vec3]) -> Vec<u32> {
     let finite = points.iter().copied().filter(|p| p.is_finite());
     let around = Box3::around(finite);
@@ -562,7 +562,7 @@ pub fn by_place(points: &[Vec3]) -> Vec<u32> {
     keys.into_iter().map(|k| k as u32).collect()
 }
 
-/// A curve prepared for many nearest-point questions; see [`NearestSurface`].
+/// A curve prepared for many nearest-point queries; see [`NearestSurface`].
 #[derive(Clone, Debug)]
 pub struct NearestCurve {
     tree: CurveTree,

@@ -27,7 +27,7 @@ use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
 
-/// Minimum length of branches that are found, relative to the size.
+/// Minimum length of the branches that are found, relative to the size.
 pub const SMALLEST: f64 = 0.02;
 
 /// Maximum number of pairs in a search, which coincident shapes exceed.
@@ -63,14 +63,14 @@ pub struct Touch {
 /// All branches of an intersection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Branches {
-    /// The branches, in the order in which they were found, which depends on the shapes only.
+    /// The branches, in the order of finding, which depends only on the shapes.
     pub branches: Vec<Branch>,
     /// Contacts without a branch.
     pub touches: Vec<Touch>,
-    /// False when the search ran into its limit, as it does where shapes coincide or touch along a
+    /// False when the search reached its limit, as it does if shapes coincide or touch along a
     /// line.
     pub complete: bool,
-    /// The length from which on branches are found.
+    /// Minimum length of the branches found.
     pub smallest: f64,
 }
 
@@ -201,7 +201,7 @@ struct TreeNode<'a> {
     bounds: &'a Box3,
 }
 
-/// A surface cut up for intersections.
+/// A surface divided for intersections.
 #[derive(Clone, Debug)]
 pub struct CutSurface {
     cells: Cells,
@@ -214,7 +214,7 @@ pub struct CutSurface {
 }
 
 impl CutSurface {
-    /// Cuts a surface up, for many intersections.
+    /// Divides a surface, for many intersections.
     pub fn new(surface: &dyn Surface<f64>) -> Self {
         Self::of(Cells::fine(surface))
     }
@@ -278,7 +278,7 @@ struct Finder<'a> {
 }
 
 impl Crossing<'_> {
-    /// All branches; the module states which are guaranteed.
+    /// All branches; the module documentation states which are guaranteed.
     pub fn branches(&self) -> Branches {
         let first = CutSurface::rough(self.first);
         match self.other {
@@ -287,8 +287,8 @@ impl Crossing<'_> {
         }
     }
 
-    /// All branches of surfaces that were cut up before: the crossing's first, and its second unless
-    /// that is a plane.
+    /// All branches of surfaces divided before: the first of the crossing, and the second unless it
+    /// is a plane.
     pub fn branches_in(&self, first: &CutSurface, second: Option<&CutSurface>) -> Branches {
         // Pieces that are the surface itself are faster to evaluate.
         fn chosen<'b>(

@@ -94,9 +94,9 @@ impl<const N: usize> Three<'_, N> {
         newton(start, &self.closed().map(UnknownBounds::parameter), size, |q| self.residual(q))
     }
 
-    /// The common point that Newton's method leads to from a start; without one, or if that fails,
-    /// of all common points the one nearest to it in parameter space (by default to the middle), or
-    /// to the point `near` if that is given.
+    /// The common point to which Newton's method converges from a start. Without a start, or if
+    /// that fails, the one of all common points nearest to the start in parameter space (by default
+    /// to the middle), or to the point `near` if given.
     ///
     /// # Errors
     /// The report if there is no solution.

@@ -216,8 +216,8 @@ fn newton_step(slope: [f64; 2], [h, m, k]: [f64; 3], plain: [f64; 2], free: [boo
     }
 }
 
-/// Intersection of two curves, as (t, s). From a start it is the one that descent leads to; without
-/// one, or if that fails, the one of all intersections nearest to the start in parameters.
+/// Intersection of two curves, as (t, s): the result of descent from a start. Without a start, or
+/// if that fails, the one of all intersections nearest to the start in parameters.
 ///
 /// # Errors
 /// The report if there is none: with the nearest points of the curves, ends included, and their

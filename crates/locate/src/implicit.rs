@@ -41,8 +41,8 @@ pub fn solve<T: Real, const N: usize>(a: &[[T; N]; N], b: [T; N]) -> Option<[T; 
     Some(x)
 }
 
-/// The unknowns with their derivatives in T, from the plain solution: one Newton step in T without
-/// its real part, because the solution has already converged.
+/// The unknowns with their derivatives in T, from the converged plain solution: one Newton step in
+/// T without its real part.
 pub fn refined<T: Real, const N: usize, F: Implicit<T, N>>(
     f: &F,
     q: [f64; N],

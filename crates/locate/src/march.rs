@@ -38,9 +38,9 @@ pub struct Crossing<'a> {
     pub first: &'a dyn Surface<f64>,
     /// The plane or the other surface.
     pub other: Other<'a>,
-    /// The length to which accuracies are relative.
+    /// The reference length of accuracies.
     pub size: f64,
-    /// For each unknown, whether its 0 and 1 are one seam of a closed surface.
+    /// For each unknown, true if its 0 and 1 are the same seam of a closed surface.
     pub closed: [bool; 4],
     /// The pieces of both surfaces where they are at hand and the surfaces themselves, to rounding.
     pub(crate) quick: [Option<&'a Polynomials>; 2],
@@ -51,7 +51,7 @@ pub struct Crossing<'a> {
 pub struct TracePoint {
     /// The unknowns.
     pub q: Unknowns,
-    /// Their derivatives by the length along the branch.
+    /// Derivatives of the unknowns by arc length along the branch.
     pub rate: Unknowns,
     /// Position.
     pub x: Vec3,
@@ -62,32 +62,32 @@ pub struct TracePoint {
 /// Why a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BranchEnd {
-    /// Unknown `k` reached `value`: an edge.
+    /// Unknown `k` reached `value`, an edge of a surface.
     Edge {
         /// Index of the unknown.
         unknown: usize,
         /// 0 or 1.
         value: f64,
     },
-    /// It came back to its start.
+    /// The branch returned to its start.
     Closed,
-    /// The surfaces touch there, so that it has no direction.
+    /// The surfaces are tangent there, so the branch has no direction.
     Tangent,
-    /// There were too many steps.
+    /// The maximum number of steps was reached.
     Lost,
 }
 
 /// A connected part of an intersection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// Points along it; of a closed one the last is the first again.
+    /// Points along it; on a closed branch the last equals the first.
     pub stations: Vec<TracePoint>,
-    /// Why it ends, at its two ends.
+    /// Reasons why the branch ends, at its start and its end.
     pub ends: [BranchEnd; 2],
 }
 
 impl Branch {
-    /// True when it comes back to its start.
+    /// True when the branch returns to its start.
     pub fn closed(&self) -> bool {
         self.ends[0] == BranchEnd::Closed
     }
@@ -189,8 +189,8 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// For single points of an intersection with a known size: no branch can be followed across a
-    /// seam.
+    /// For single points of an intersection, given the size; branches are not followed across
+    /// seams.
     pub fn local(first: &'a dyn Surface<f64>, other: Other<'a>, size: f64) -> Self {
         Self { first, other, size, closed: [false; 4], quick: [None; 2] }
     }
@@ -249,19 +249,19 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// The point of the intersection in the plane through `x` across `d`, near `guess`.
+    /// The point of the intersection in the plane through `x` perpendicular to `d`, near `guess`.
     pub fn across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
         self.solved(guess, |_, j| (d.dot(j.p - x), [d.dot(j.u), d.dot(j.v), 0.0, 0.0]))
     }
 
-    /// The same from a guess that is good, as a rule: some plain Newton steps before damped ones.
+    /// As `across`, from a guess that is usually good: some plain Newton steps before damped ones.
     pub fn across_near(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
         let settled = self.settled(guess, x, d).map(|s| s.q);
         settled.or_else(|| self.across(guess, x, d))
     }
 
-    /// The same from a guess with half of the digits: one Newton step doubles them. After a longer
-    /// step the iteration continues.
+    /// As `across`, from a guess with half of the digits, which one Newton step doubles. After a
+    /// longer step the iteration continues.
     pub fn across_close(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
         let view = self.view(guess, x, d);
         if let Some((q, way)) = self.next(guess, &view, d)
@@ -272,14 +272,14 @@ impl<'a> Crossing<'a> {
         self.across_near(guess, x, d)
     }
 
-    /// The point of the intersection in the plane through `x` across `d` with its tangent, from a
-    /// guess that is good, as a rule.
+    /// The point of the intersection in the plane through `x` perpendicular to `d`, with its
+    /// tangent, from a guess that is usually good.
     pub fn station_across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<TracePoint> {
         let q = self.steps(guess, x, d, Until::Close).map(|s| s.q);
         self.station(q.or_else(|| self.across(guess, x, d))?)
     }
 
-    /// The point of the intersection at which unknown `k` has a value, near `guess`.
+    /// The point of the intersection with a given value of unknown `k`, near `guess`.
     pub fn at_line(&self, guess: Unknowns, k: usize, value: f64) -> Option<Unknowns> {
         let size = self.size;
         self.solved(guess, |q, _| {
@@ -296,14 +296,15 @@ impl<'a> Crossing<'a> {
         (view.j, view.k, u.cross(v).normalized().unwrap_or_default(), view.normal)
     }
 
-    /// The direction n1 x n2 at a point that need not be on the intersection; its length is the
-    /// sine of the angle between the shapes.
+    /// The direction n1 x n2 at a point that may be off the intersection; its length is the sine of
+    /// the angle between the shapes.
     pub fn direction(&self, q: Unknowns) -> Vec3 {
         let (_, _, a, b) = self.normals(q);
         a.cross(b.normalized().unwrap_or_default())
     }
 
-    /// Distance of two points with nearly the same unknowns, the larger of those on both shapes.
+    /// Distance of two points with nearly the same unknowns: the larger of the distances on both
+    /// shapes.
     pub fn distance(&self, a: &Unknowns, b: &Unknowns) -> f64 {
         let on = |surface: &dyn Surface<f64>, k: usize| {
             let j = surface.jet(a[k], a[k + 1], Order::First);
@@ -315,7 +316,7 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// The point with its tangent; `None` where the shapes are tangent.
+    /// The point with its tangent; `None` if the shapes are tangent there.
     pub fn station(&self, q: Unknowns) -> Option<TracePoint> {
         let (j, k, _, b) = self.normals(q);
         self.station_of(q, &j, k.as_ref(), b)
@@ -809,8 +810,8 @@ impl<'a> Crossing<'a> {
         Some(Branch { stations, ends: [begin, end] })
     }
 
-    /// The point of the intersection near the point (u, v) of the first surface, in the plane
-    /// through both normals there.
+    /// The point of the intersection near the point (u, v) of the first surface, in the plane of
+    /// both normals there.
     pub fn near(&self, [u, v]: [f64; 2], second: Option<[f64; 2]>) -> Option<Unknowns> {
         let x = self.first.jet(u, v, Order::Zero).p;
         let [p, r] = match (self.other, second) {

@@ -598,7 +598,7 @@ pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> 
     found
 }
 
-/// The same on a curve that was cut up before, without a start.
+/// As `nearest_on_curve`, on a curve divided before and without a start.
 pub fn nearest_in_curve(
     curve: &dyn Curve<f64>,
     tree: &CurveTree,
@@ -684,7 +684,7 @@ pub fn nearest_on_surface(
     found
 }
 
-/// The same on a surface that was cut up before, without a start. For many points see
+/// As `nearest_on_surface`, on a surface divided before and without a start. For many points see
 /// [`crate::NearestSurface`].
 pub fn nearest_in_surface(
     surface: &dyn Surface<f64>,

@@ -3,7 +3,7 @@
 use crate::implicit::solve;
 use moldloft_num::period::principal;
 
-/// Steps are cut to this length in any parameter.
+/// Maximum length of a step in any parameter.
 pub const LONGEST_STEP: f64 = 0.2;
 
 /// Maximum excess of a solution beyond [0, 1].
@@ -12,7 +12,7 @@ pub const OUTSIDE: f64 = 1e-6;
 /// Maximum number of steps.
 pub const MOST_STEPS: u32 = 50;
 
-/// Residual, relative to the size, that counts as zero.
+/// Relative residual that counts as zero.
 pub const ACCURACY: f64 = 1e-12;
 
 /// Result of an iteration.
@@ -20,13 +20,13 @@ pub const ACCURACY: f64 = 1e-12;
 pub struct NewtonResult<const N: usize> {
     /// The last unknowns.
     pub at: [f64; N],
-    /// Length of the residual there.
+    /// Norm of the residual at the solution.
     pub residual: f64,
     /// Steps that were taken.
     pub iterations: u32,
     /// True when the residual is zero to [`ACCURACY`].
     pub found: bool,
-    /// True when the matrix was singular, or nearly so, at the end.
+    /// True when the matrix was singular, or nearly so, in the last step.
     pub singular: bool,
 }
 
@@ -42,7 +42,7 @@ pub struct UnknownBounds {
 }
 
 impl<const N: usize> NewtonResult<N> {
-    /// The same with the parameters of closed shapes in their first turn.
+    /// The solution with the parameters of closed shapes reduced to their first period.
     pub fn within(mut self, closed: &[bool; N]) -> Self {
         for (x, _) in self.at.iter_mut().zip(closed).filter(|(_, closed)| **closed) {
             *x = principal(*x);
@@ -56,7 +56,7 @@ impl UnknownBounds {
     pub const PARAMETER: UnknownBounds =
         UnknownBounds { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
 
-    /// The parameter of a closed shape: a turn to both sides of the first.
+    /// The parameter of a closed shape, extended by a period on both sides.
     pub const ROUND: UnknownBounds = UnknownBounds { low: -1.0, high: 2.0, step: LONGEST_STEP };
 
     /// The range of a shape's parameter.
@@ -70,8 +70,8 @@ impl UnknownBounds {
 }
 
 /// The root of `f` from `start`: full Newton steps limited to the longest of the ranges, halved
-/// while the residual does not decrease, held within the ranges. [`ACCURACY`] is relative to the
-/// length `size`; `f` gives residuals in lengths and their derivatives.
+/// while the residual does not decrease, and confined to the ranges. [`ACCURACY`] is relative to
+/// the length `size`; `f` gives residuals in lengths and their derivatives.
 pub fn newton<const N: usize>(
     start: [f64; N],
     ranges: &[UnknownBounds; N],

@@ -21,32 +21,31 @@ const MOST_PIECES: usize = 1 << 13;
 /// A cubic piece of a curve.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePiece {
-    /// Its parameters on the curve.
+    /// The range of its parameters on the curve.
     pub t: [f64; 2],
     /// Bernstein control points.
     pub net: [Vec3; 4],
-    /// Bound of the curve's distance from the piece.
+    /// Bound on the distance of the curve from the piece.
     pub slack: f64,
-    /// Its part of the piece that the slack was measured on.
+    /// The range of the measured piece that it covers, for the slack.
     pub share: f64,
-    /// For each side, first and last, true if the curve may continue in another direction beyond it
-    /// or not at all: an end or a corner.
+    /// For each end, true if the curve may end or change its direction there: an end or a corner.
     pub open: [bool; 2],
 }
 
 /// A bicubic piece of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct BezierPatch {
-    /// Its parameters on the surface: from and to in u, from and to in v.
+    /// The ranges of its parameters on the surface: start and end in u, start and end in v.
     pub uv: [[f64; 2]; 2],
     /// Bernstein control points, [i * 4 + j] with i along u.
     pub net: [Vec3; 16],
-    /// Bound of the surface's distance from the piece.
+    /// Bound on the distance of the surface from the piece.
     pub slack: f64,
-    /// Its parts, along u and v, of the piece that the slack was measured on.
+    /// The ranges, along u and v, of the measured piece that it covers, for the slack.
     pub share: [f64; 2],
-    /// For each side, low and high in u and in v, true if the surface may continue in another
-    /// direction beyond it or not at all: an edge or a crease.
+    /// For each side (low and high in u, then in v), true if the surface may end or change its
+    /// direction there: an edge or a crease.
     pub open: [[bool; 2]; 2],
 }
 
@@ -94,8 +93,8 @@ impl CurvePiece {
         ]
     }
 
-    /// Distance of the inner control points from the chord's thirds: a bound of the distance from a
-    /// line of constant speed, and of the turn of the tangent.
+    /// Distance of the inner control points from the thirds of the chord: a bound on the distance
+    /// from a line with constant speed, and on the turn of the tangent.
     pub fn bend(&self) -> f64 {
         let [a, b, c, d] = self.net;
         let third = (d - a) * (1.0 / 3.0);
@@ -134,7 +133,7 @@ impl BezierPatch {
         self.uv.map(|[a, b]| 0.5 * (a + b))
     }
 
-    /// Lengths of its sides along u and v, roughly: the longest of the legs of the control net.
+    /// Approximate lengths of its sides along u and v: the longest legs of the control net.
     pub fn lengths(&self) -> [f64; 2] {
         let n = &self.net;
         let leg = |a: usize, b: usize| n[a].distance(n[b]);
@@ -142,7 +141,7 @@ impl BezierPatch {
     }
 
     /// Distance of its control points from those of the parallelogram of three of its corners: a
-    /// bound of the distance from an affine map.
+    /// bound on the distance from an affine map.
     pub fn bend(&self) -> f64 {
         let n = &self.net;
         let centre = (n[0] + n[3] + n[12] + n[15]) * 0.25;
@@ -160,10 +159,10 @@ impl BezierPatch {
     }
 }
 
-/// Result of the bounds for the distance from a point to a piece.
+/// Number of minima of the distance from a point to a piece, as proved by bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feet {
-    /// The minimum is on a border shared with a neighbouring piece, which has it too.
+    /// The minimum is on a border with a neighbouring piece, which contains it too.
     Elsewhere,
     /// There is at most one minimum.
     One,
@@ -172,8 +171,8 @@ pub enum Feet {
 }
 
 impl CurvePiece {
-    /// Result of the derivatives of the distance from `p`, with bounds of their change along the
-    /// piece from their own control points.
+    /// Bounds the number of minima of the distance from `p`, by its derivatives and their change
+    /// along the piece.
     pub fn feet(&self, p: Vec3) -> Feet {
         let b = &self.net;
         let first = [0, 1, 2].map(|k| (b[k + 1] - b[k]) * 3.0);
@@ -308,8 +307,8 @@ pub fn distance_sq(b: &Box3, p: Vec3) -> f64 {
     d.norm_sq()
 }
 
-/// The length to which accuracies are relative: the diagonal of the box, and a fraction of its
-/// distance from the origin, whose rounding is part of every coordinate.
+/// The reference length of accuracies: the diagonal of the box, plus a fraction of its distance
+/// from the origin, because every coordinate contains that rounding.
 pub fn size_of(b: &Box3) -> f64 {
     let far = b.low.norm().max(b.high.norm());
     let size = b.diagonal() + 1e-3 * far;
@@ -390,7 +389,7 @@ fn alike([a, b]: [Vec3; 2]) -> bool {
     a.distance(b) <= 1e-7 * a.norm().max(b.norm())
 }
 
-/// The pieces of a surface, cells of the breaks' grid one after the other.
+/// The pieces of a surface: the cells of the grid of breaks, in order.
 pub fn patches(surface: &dyn Surface<f64>) -> Vec<BezierPatch> {
     let [us, vs] = surface.joints().map(with_ends);
     // All cells at once: surfaces have fast grids.

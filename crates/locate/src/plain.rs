@@ -2,8 +2,8 @@
 
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 
-/// A curve of any scalar seen through its real parts. Searches run on these, so that discrete
-/// choices are the same with and without derivatives.
+/// A curve of any scalar reduced to its real parts. Searches use these, so that discrete choices
+/// are the same with and without derivatives.
 pub struct PlainCurve<'a, T: Real>(pub &'a dyn Curve<T>);
 
 impl<T: Real> Curve<f64> for PlainCurve<'_, T> {
@@ -22,7 +22,7 @@ impl<T: Real> Curve<f64> for PlainCurve<'_, T> {
     moldloft_num::curve_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
-/// A surface of any scalar seen through its real parts; see [`PlainCurve`].
+/// A surface of any scalar reduced to its real parts; see [`PlainCurve`].
 pub struct PlainSurface<'a, T: Real>(pub &'a dyn Surface<T>);
 
 impl<T: Real> Surface<f64> for PlainSurface<'_, T> {

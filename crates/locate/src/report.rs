@@ -11,34 +11,34 @@ pub type Parameters = SmallVec<[f64; 4]>;
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LocateStatus {
-    /// Found from the start that was given, or the only solution there is.
+    /// Found from the given start, or the only solution.
     Ok,
-    /// The iteration from the start failed; the solution is the one nearest to the start, in
-    /// parameter space, of all that subdivision found.
+    /// The iteration from the start failed; the solution is the nearest to the start, in parameter
+    /// space, of all found by subdivision.
     Fallback,
-    /// The solution is at an end or edge because the unbounded one is beyond it.
+    /// The solution is at an end or edge, because the unconstrained one is beyond it.
     EdgeClamped,
-    /// The shapes touch, or nearly so: the system of equations is singular at the solution.
+    /// The shapes are tangent or nearly so: the system of equations is singular at the solution.
     Tangent,
-    /// There is no solution; the parameters are those of the least residual that was met.
+    /// There is no solution; the parameters are those of the least residual found.
     NoSolution,
-    /// The search ran into its limit before it found a solution: there may be some.
+    /// The search reached its limit without a solution; there may be one.
     Unfinished,
-    /// There are several solutions, and nothing that says which is meant.
+    /// There are several solutions, and no start to choose between them.
     Multiple {
         /// Number of solutions.
         count: usize,
         /// Index of the result, from 0, in the order of the parameters.
         chosen: usize,
-        /// Distance in space from the chosen one to the next nearest of the others.
+        /// Distance in space from the chosen solution to the nearest other one.
         next: f64,
     },
-    /// The numbers grew beyond bounds or were not finite.
+    /// The iteration diverged, or a number is not finite.
     Diverged,
 }
 
 impl LocateStatus {
-    /// The word for it in the language and in Python.
+    /// The word used in the language and in Python.
     pub fn word(self) -> &'static str {
         match self {
             LocateStatus::Ok => "ok",
@@ -72,7 +72,7 @@ impl fmt::Display for LocateStatus {
     }
 }
 
-/// A solution that was not taken.
+/// A solution that was not chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alternative {
     /// Its parameters.
@@ -88,13 +88,13 @@ pub struct LocateReport {
     pub status: LocateStatus,
     /// Residual of the equations, in the unit of length.
     pub residual: f64,
-    /// Steps of the iteration that led to the solution.
+    /// Number of iterations that led to the solution.
     pub iterations: u32,
     /// The parameters it began with.
     pub start: Parameters,
     /// The parameters it ended with.
     pub last: Parameters,
-    /// The solutions that were not taken, in the order of the parameters.
+    /// The solutions not chosen, in the order of the parameters.
     pub alternatives: Vec<Alternative>,
 }
 
@@ -103,14 +103,14 @@ pub struct LocateReport {
 pub struct Solution<const N: usize> {
     /// The parameters.
     pub at: [f64; N],
-    /// For each parameter, true if it is that of a joint with a kink: the minimum distance to a
-    /// corner or a knuckle is there, and stays there.
+    /// For each parameter, true if it is that of a joint with a kink: the minimum distance is at a
+    /// corner or a knuckle, and stays there.
     pub joint: [bool; N],
     /// Report of the search.
     pub report: LocateReport,
 }
 
-/// A root as a search without a start finds it.
+/// A root found by a search without a start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoundRoot<const N: usize> {
     /// Its parameters.
@@ -130,18 +130,17 @@ pub struct FoundRoot<const N: usize> {
 pub struct Roots<const N: usize> {
     /// The roots.
     pub roots: Vec<FoundRoot<N>>,
-    /// False when the search ran into its limit, as it does where shapes coincide: there may be
-    /// more.
+    /// False when the search reached its limit, as it does if shapes coincide: there may be more.
     pub complete: bool,
-    /// The parameters of the least residual that was met, for messages.
+    /// The parameters of the least residual found, for messages.
     pub closest: Option<([f64; N], f64)>,
-    /// For each parameter, true if closed, so that 0 and 1 are one.
+    /// For each parameter, true if closed, so that 0 and 1 are the same.
     pub closed: [bool; N],
 }
 
 impl<const N: usize> Roots<N> {
-    /// The root nearest to `start` in parameter space, over seams where that is shorter; among equally near
-    /// ones the first.
+    /// The root nearest to `start` in parameter space, across seams if that is shorter; the first
+    /// of equally near ones.
     pub fn nearest_to(&self, start: &[f64]) -> Option<usize> {
         let away = |root: &FoundRoot<N>| -> f64 {
             let apart = |k: usize| parameter_distance(root.at[k], start[k], self.closed[k]);
@@ -151,8 +150,8 @@ impl<const N: usize> Roots<N> {
         (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)))
     }
 
-    /// The solution that takes root `chosen`; `given` states that there was a start, from which the
-    /// iteration had failed.
+    /// The solution that chooses root `chosen`; `given` is true if there was a start, from which
+    /// the iteration failed.
     pub fn choose(&self, chosen: usize, start: &[f64], given: bool) -> Solution<N> {
         let root = &self.roots[chosen];
         let others = self.roots.iter().enumerate().filter(|(k, _)| *k != chosen);
@@ -178,8 +177,7 @@ impl<const N: usize> Roots<N> {
         Solution { at: root.at, joint: [false; N], report }
     }
 
-    /// The report that there is no root, or that none was found before the search reached its
-    /// limit.
+    /// The report that there is no root, or that the search reached its limit before finding one.
     pub fn none(&self, start: &[f64]) -> LocateReport {
         let (last, residual) = match self.closest {
             Some((at, residual)) => (at.iter().copied().collect(), residual),

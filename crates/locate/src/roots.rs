@@ -25,7 +25,7 @@ pub(crate) const TANGENT: f64 = 1e-6;
 /// Residual, relative to the size, of contacts without a transversal root.
 const TOUCH: f64 = 1e-10;
 
-/// A function g of space whose zeros along a curve are searched.
+/// A function g of space whose zeros along a curve are sought.
 #[derive(Clone, Copy)]
 pub enum Level<'a> {
     /// n . X - offset, with a unit normal n.
@@ -144,7 +144,7 @@ pub(crate) fn from_all<const N: usize>(
 }
 
 /// Intersection of a curve with a level. From a `start` it is the result of Newton's method;
-/// otherwise, or if that fails, the one of all intersections nearest to the start (default 0.5).
+/// otherwise, or if that fails, the intersection nearest to the start (default 0.5).
 ///
 /// # Errors
 /// The report if there is none.
@@ -242,7 +242,7 @@ impl<const N: usize> RootCollector<N> {
         Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack, closed }
     }
 
-    /// Counts a pair; true when there were too many.
+    /// Counts a pair; true when the limit is exceeded.
     pub fn exhausted(&mut self) -> bool {
         self.pairs += 1;
         self.pairs > MOST_PAIRS || self.roots.len() > 2_000
@@ -259,7 +259,7 @@ impl<const N: usize> RootCollector<N> {
         }
     }
 
-    /// Takes the result of an iteration that began in the cell, if it ended in or near it.
+    /// Adds the result of an iteration that began in the cell, if it ended in or near it.
     pub fn offer(
         &mut self,
         walk: &NewtonResult<N>,
@@ -365,13 +365,13 @@ pub fn curve_surface(
     from_all(all, start.as_ref().map(<[f64; 3]>::as_slice), |all| all.nearest_to(&from))
 }
 
-/// All meetings of a curve and a surface, as (t, u, v).
+/// All intersections of a curve and a surface, as (t, u, v).
 pub fn all_curve_surface(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>) -> Roots<3> {
     let (a, b) = (CurveTree::new(curve), SurfaceTree::new(surface));
     meetings(curve, &a, surface, &b)
 }
 
-/// The same for shapes that were cut up before.
+/// As `all_curve_surface`, for shapes divided before.
 pub fn meetings(
     curve: &dyn Curve<f64>,
     curve_tree: &CurveTree,
@@ -440,7 +440,7 @@ pub fn meetings(
 
 /// Intersection of the line through `p` along `d` with a surface, as (u, v, distance in lengths of
 /// `d`). From a start (u, v) it is the result of Newton's method; without one, or if that fails,
-/// the one of all intersections nearest to `p`.
+/// the intersection nearest to `p`.
 ///
 /// # Errors
 /// The report when the line misses the surface.

@@ -6,7 +6,7 @@ use moldloft_num::{Box3, Curve, Surface, Vec3};
 /// A node of a tree of boxes.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// The box around all below.
+    /// The box around all items below.
     pub bounds: Box3,
     /// First item, for a leaf; index of the second child otherwise (the first follows the node).
     pub first: u32,
@@ -24,8 +24,8 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// The tree over these boxes with at most `leaf` items in a leaf: split at the median of the
-    /// centres along the longest side, ties by index, so that it is the same on every run.
+    /// The tree over these boxes with at most `leaf` items per leaf. Nodes are split at the median
+    /// of the centres along the longest side, ties by index, so the tree is deterministic.
     pub fn new(bounds: &[Box3], leaf: usize) -> Self {
         let mut tree = Boxes { nodes: Vec::new(), order: (0..bounds.len() as u32).collect() };
         if !bounds.is_empty() {
@@ -64,7 +64,7 @@ impl Boxes {
         self.grow(bounds, begin + middle, end, leaf);
     }
 
-    /// Calls `f` with every item for which `wanted` holds for the box of each node above it.
+    /// Calls `f` for each item such that `wanted` is true for the boxes of all nodes above it.
     pub fn visit(&self, wanted: impl Fn(&Box3) -> bool, mut f: impl FnMut(u32)) {
         if self.nodes.is_empty() {
             return;
@@ -86,7 +86,7 @@ impl Boxes {
     }
 }
 
-/// A curve cut into bounded pieces, for searches.
+/// A curve divided into bounded pieces, for searches.
 #[derive(Clone, Debug)]
 pub struct CurveTree {
     /// The pieces, in the order of t.
@@ -106,7 +106,7 @@ impl CurveTree {
     }
 }
 
-/// A surface cut into bounded pieces, for searches.
+/// A surface divided into bounded pieces, for searches.
 #[derive(Clone, Debug)]
 pub struct SurfaceTree {
     /// The pieces.
@@ -117,7 +117,7 @@ pub struct SurfaceTree {
     pub bounds: Box3,
     /// The length to which accuracies are relative.
     pub size: f64,
-    /// True when every piece is the surface itself, to rounding.
+    /// True when every piece equals the surface up to rounding.
     pub exact: bool,
 }
 
@@ -133,7 +133,7 @@ impl SurfaceTree {
         Self { patches, boxes, bounds, size, exact }
     }
 
-    /// The patches whose boxes meet `b`, in the order of the patches.
+    /// The patches whose boxes intersect `b`, in order.
     pub fn meeting(&self, b: &Box3) -> Vec<u32> {
         let mut found = Vec::new();
         self.boxes.visit(
@@ -148,7 +148,7 @@ impl SurfaceTree {
         found
     }
 
-    /// The square of the greatest distance from `p` at which the surface certainly has a point.
+    /// The square of a distance from `p` within which the surface certainly has a point.
     pub fn reach_sq(&self, p: Vec3) -> f64 {
         let corner = |patch: &BezierPatch| (patch.net[0].distance(p) + patch.slack).powi(2);
         self.patches.iter().map(corner).fold(f64::INFINITY, f64::min)

@@ -126,7 +126,7 @@ pub fn of_text(method: &str, text: &str) -> Option<Answer> {
                 let whole = LineIndex::new(text).range(0, u32::MAX);
                 Ok(json!([{"range": whole, "newText": new}]))
             }
-            Err(_) => Err(failed("the text has errors and is left as it is")),
+            Err(_) => Err(failed("the text has errors and is unchanged")),
         }),
         ask::FoldingRangeRequest::METHOD => {
             let lines = LineIndex::new(text);
@@ -437,7 +437,7 @@ pub fn of_workspace(
                 )));
             }
             let document = document.ok_or_else(|| {
-                failed("the program did not run to its end, so that its names are not known")
+                failed("the program did not run to its end, so its names are unknown")
             })?;
             let new = params["newName"].as_str().unwrap_or("");
             let reserved = |name: &str| document.is_reserved(name);

@@ -102,7 +102,7 @@ pub struct Server {
     runs: u64,
     /// Texts that ended an engine, with the message about them.
     held: HashMap<String, String>,
-    /// Messages that go out with the next.
+    /// Messages to be sent with the next one.
     out: Vec<Message>,
 }
 
@@ -121,7 +121,7 @@ impl Server {
         }
     }
 
-    /// The messages that are ready to go out.
+    /// The messages ready to be sent.
     pub fn take_messages(&mut self) -> Vec<Message> {
         std::mem::take(&mut self.out)
     }

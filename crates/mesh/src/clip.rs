@@ -5,9 +5,9 @@ use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
 impl<T: Real> Mesh<T> {
-    /// The part of the mesh below `z = level`, its cut sides sharing their new vertices by identity;
-    /// open along the cut. Panels in the level are left out, but for those of lids. Patches keep their names, those that
-    /// are cut lose their grids; patches that are wholly above stay, empty.
+    /// The part of the mesh below `z = level`, open along the cut, where cut panels share new
+    /// vertices by identity. Panels in the level are omitted except those of lids. Patches keep
+    /// their names; cut ones lose their grids, and those wholly above the level are empty.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].

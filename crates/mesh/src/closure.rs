@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub enum EdgeName {
     /// Edge 0..4 of a structured patch: v = 0, u = 1, v = 1, u = 0.
     Side(u8),
-    /// Inside a structured patch, or of one without a grid.
+    /// Inside a structured patch, or an edge of a patch without a grid.
     Other,
 }
 
@@ -26,7 +26,7 @@ impl std::fmt::Display for EdgeName {
     }
 }
 
-/// Remedies of an open edge besides panels.
+/// Elements besides panels that close an open edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Closes {
     /// The mirror image in the plane through zero of axis 0..3.
@@ -37,7 +37,7 @@ pub enum Closes {
     Nothing,
 }
 
-/// An edge of a patch that is open, or a part of it.
+/// An open edge of a patch, or a part of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenEdge {
     /// Index of the patch.
@@ -69,12 +69,12 @@ impl Closure {
         self.any && self.open.is_empty()
     }
 
-    /// True when mirror images and lids close all that is open.
+    /// True when mirror images and lids close all open edges.
     pub fn closed_with_lids_and_mirror(&self) -> bool {
         self.any && self.leaks().next().is_none()
     }
 
-    /// The edges that nothing closes.
+    /// The open edges that nothing closes.
     pub fn leaks(&self) -> impl Iterator<Item = &OpenEdge> {
         self.open.iter().filter(|e| e.closes == Closes::Nothing)
     }

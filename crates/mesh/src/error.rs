@@ -33,14 +33,14 @@ pub enum MeshError {
         /// Length of the vertex list.
         actual: usize,
     },
-    /// The positions are not as many as the topology's vertices.
+    /// The number of positions differs from the number of vertices of the topology.
     PositionCount {
         /// Vertices of the topology.
         expected: usize,
         /// Positions given.
         actual: usize,
     },
-    /// More vertices, or corners of faces, than 32-bit indices can name.
+    /// More vertices or corners of faces than 32-bit indices can number.
     TooLarge {
         /// The given number.
         count: usize,

@@ -71,8 +71,8 @@ pub(crate) fn edges(sorted: &[HalfEdge]) -> impl Iterator<Item = &[HalfEdge]> {
 }
 
 impl Topology {
-    /// The edges at the rim of patches: those of one face only, and those whose faces belong to
-    /// different patches, lower vertex first, ordered by vertex.
+    /// The edges at the rims of patches (edges of one face only, and edges between faces of
+    /// different patches), lower vertex first, ordered by vertex.
     pub fn borders(&self) -> Vec<[u32; 2]> {
         let sorted = half_edges(self);
         let owner = |e: &HalfEdge| self.patch_of(e.face());

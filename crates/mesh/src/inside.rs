@@ -8,19 +8,19 @@ use crate::Mesh;
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 
-/// A piece of the skin with points inside another one.
+/// A piece of the skin with points inside another piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerSkin {
     /// A patch of it.
     pub patch: usize,
-    /// A patch of the piece around it: of the same piece where that overlaps its mirror image.
+    /// A patch of the piece around it; of the same piece if that overlaps its mirror image.
     pub around: usize,
-    /// True for one with open edges: a plate.
+    /// True for a piece with open edges: a plate.
     pub open: bool,
-    /// True for a closed piece wholly inside another one that faces the other way: its volume is
-    /// subtracted.
+    /// True for a closed piece wholly inside another one with the opposite orientation: its volume
+    /// is subtracted.
     pub cavity: bool,
-    /// A point of it inside the piece around it.
+    /// A point of the piece inside the piece around it.
     pub at: Vec3,
 }
 
@@ -42,7 +42,7 @@ struct SkinPiece {
     image_of: Option<usize>,
 }
 
-/// The pieces of the skin that are inside others, wholly or in part; `mirrors` are the axes normal
+/// The pieces of the skin that are inside others, wholly or partly; `mirrors` are the axes normal
 /// to the model's planes of symmetry.
 pub fn inner_skins(mesh: &Mesh<f64>, mirrors: &[u8]) -> Vec<InnerSkin> {
     let mut pieces = pieces(mesh);

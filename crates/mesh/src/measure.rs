@@ -10,14 +10,14 @@ use std::ops::Range;
 pub struct Measures<T> {
     /// Surface area.
     pub area: T,
-    /// Centre of the surface, each part weighed by its area; the origin for an empty mesh.
+    /// Centroid of the surface, weighted by area; the origin for an empty mesh.
     pub area_centre: Vec3<T>,
     /// Integral of the unit normal; zero for a closed mesh.
     pub vector_area: Vec3<T>,
     /// Signed volume of the cone from the origin to the surface: the enclosed volume of a closed,
-    /// outward mesh; without a meaning for an open one.
+    /// outward mesh; meaningless for an open one.
     pub volume: T,
-    /// Centre of that volume; `None` when the volume is zero.
+    /// Centroid of that volume; `None` when the volume is zero.
     pub centroid: Option<Vec3<T>>,
 }
 
@@ -62,7 +62,7 @@ impl<T: Real> Sums<T> {
     }
 }
 
-/// Area, volume and centres of the whole mesh.
+/// Area, volume and centroids of the whole mesh.
 ///
 /// Volumes are exact for the bilinear panels, areas exact for plane convex ones; against the smooth
 /// surface both converge at second order in the panel size.

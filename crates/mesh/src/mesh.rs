@@ -73,9 +73,9 @@ impl<T: Real> Mesh<T> {
     }
 
     /// The mesh together with its mirror image in the plane through zero of `axis` (0 for x = 0, 1
-    /// for y = 0, 2 for z = 0). Vertices exactly on the plane are shared, so a half that closes
-    /// there gives a closed whole; patches of the image are named with `suffix` and turned, so
-    /// they face outward too. Patches in the symmetry plane are not repeated.
+    /// for y = 0, 2 for z = 0). Vertices exactly on the plane are shared, so that a half bounded by
+    /// it gives a closed mesh. The patches of the image have names with `suffix` and reversed
+    /// panels, so that they face outward too. Patches in the symmetry plane are not repeated.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].
@@ -131,9 +131,8 @@ impl<T: Real> Mesh<T> {
 }
 
 impl Mesh<f64> {
-    /// The mesh with vertices of bit-equal positions (-0 counts as 0) made one: for files whose
-    /// format repeats the corners of every panel. Deterministic, O(n log n). Blocks keep their
-    /// shape.
+    /// The mesh with vertices of bit-equal positions merged (-0 counts as 0): for formats that
+    /// repeat the corners of every panel. Deterministic, O(n log n). Blocks keep their shape.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].

@@ -49,8 +49,8 @@ impl<T: Real> Panel<T> {
         }
     }
 
-    /// Points with vector areas whose sum over f gives the integral of f n dA: exactly for every
-    /// polynomial f up to degree 2 in space.
+    /// Points with vector areas, such that the sum of f times vector area is the integral of f n
+    /// dA: exactly for every polynomial f up to degree 2 in space.
     ///
     /// A quad has the 2 x 2 Gauss rule: S is linear and S_s x S_t at most linear in each parameter,
     /// so f n is cubic in each. A triangle has the midpoints of its sides, exact to degree 2
@@ -79,8 +79,8 @@ impl<T: Real> Panel<T> {
         }
     }
 
-    /// The area: exact for triangles and plane convex quads, else the 2 x 2 Gauss value of the
-    /// bilinear patch, whose error is of fourth order in the warp.
+    /// The area: exact for triangles and plane convex quads, otherwise the 2 x 2 Gauss value of the
+    /// bilinear patch, with an error of fourth order in the warp.
     #[inline]
     pub fn area(&self) -> T {
         match self {

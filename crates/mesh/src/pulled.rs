@@ -3,7 +3,8 @@
 use crate::{Mesh, Panel};
 use moldloft_num::{GAUSS_2_UNIT, Vec3};
 
-/// The derivatives of `area * A + volume * V` by each vertex, with the area A and the volume V of [`crate::measure`].
+/// The derivatives of `area * A + volume * V` by each vertex, with the area A and the volume V from
+/// `crate::measure`.
 ///
 /// V of a quad is ((a x b) . (c + d) + (c x d) . (a + b)) / 12, of a triangle (a x b) . c / 6. The area at a point of the
 /// quadrature is |S_s x S_t|, whose derivatives are S_t x n by S_s and n x S_s by S_t, with the unit normal n; zero where it

@@ -48,13 +48,15 @@ pub struct PatchQuality {
     /// Smallest angle between two sides of a panel, in radians.
     pub angle: Statistics,
     /// Ratio of the sizes of a panel and a neighbour, the larger over the smaller. Neighbours
-    /// across the edges of patches count; panels without area do not.
+    /// across the edges of patches are included, panels without area are not.
     pub jump: Statistics,
-    /// The panels of greatest aspect, skew, warp and jump; `None` for a patch of panels without area.
+    /// The panels with the greatest aspect, skew, warp and jump; `None` for a patch of panels
+    /// without area.
     pub worst: Option<[WorstPanel; 4]>,
-    /// The panel of smallest angle.
+    /// The panel with the smallest angle.
     pub sharpest: Option<WorstPanel>,
-    /// Panels without area although their corners have different numbers; they count in `size` only.
+    /// Panels without area although their corners are different vertices; they are included in
+    /// `size` only.
     pub without_area: usize,
 }
 
@@ -67,7 +69,7 @@ pub fn quality(mesh: &Mesh, patch: usize) -> Option<PatchQuality> {
     of_patch(mesh, patch, &jumps(mesh))
 }
 
-/// Quality of each patch; `None` for one that has no faces.
+/// Quality of each patch; `None` for one without faces.
 pub fn qualities(mesh: &Mesh) -> Vec<Option<PatchQuality>> {
     let jumps = jumps(mesh);
     (0..mesh.patches().len()).map(|patch| of_patch(mesh, patch, &jumps)).collect()

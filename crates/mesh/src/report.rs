@@ -7,7 +7,7 @@ use crate::{Mesh, Topology};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Real, Vec3};
 
-/// Result of matching the sides of all faces by vertex number.
+/// Result of matching the sides of all faces by vertex index.
 ///
 /// Joins are by identity: two patches that only touch in space are open along the seam.
 /// Intersections of faces are not tested.
@@ -19,14 +19,14 @@ pub struct TopologyReport {
     pub edges: usize,
     /// Faces.
     pub faces: usize,
-    /// Every edge belongs to two faces or more (and there is a face).
+    /// Every edge belongs to two or more faces (and there is a face).
     pub closed: bool,
     /// No edge has more than two faces, and the faces around each vertex form one fan.
     pub manifold: bool,
     /// True when any two faces at an edge traverse it in opposite directions.
     pub oriented: bool,
-    /// For a closed, manifold, oriented mesh: whether it encloses a positive volume, so that its
-    /// normals point outward. `None` where that question has no answer.
+    /// For a closed, manifold, oriented mesh: true if it encloses a positive volume, so that its
+    /// normals point outward. `None` for other meshes.
     pub outward: Option<bool>,
     /// Parts not joined by edges.
     pub components: usize,

@@ -26,8 +26,8 @@ pub fn section(mesh: &Mesh, plane: &Plane<f64>) -> Vec<Polyline> {
     section_where(mesh, |p| plane.distance(p), |_| true)
 }
 
-/// As [`section`], with the surface on which `height` is zero, as far as it `holds`: a cylinder, a half-plane. Sides of
-/// panels are cut once, so a surface that bends through a side twice is not seen there.
+/// As [`section`], with the surface on which `height` is zero, restricted by `holds`: a cylinder, a
+/// half-plane. Each side of a panel is cut at most once, so two crossings of one side are missed.
 pub fn section_where(
     mesh: &Mesh,
     height: impl Fn(Vec3) -> f64,

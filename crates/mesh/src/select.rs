@@ -4,8 +4,8 @@ use crate::{Block, Mesh, MeshError, PatchInfo, TopologyBuilder};
 use moldloft_num::Real;
 
 impl<T: Real> Mesh<T> {
-    /// The patches that `keep` wants, with the vertices that they use; vertices that patches share
-    /// stay shared. Patches and vertices keep their order.
+    /// The patches selected by `keep`, with the vertices that they use; shared vertices remain
+    /// shared. Patches and vertices keep their order.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`], never for a part of a mesh that could be made.

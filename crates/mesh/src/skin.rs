@@ -5,7 +5,8 @@ use crate::half_edge::{edges, half_edges};
 use moldloft_num::Real;
 
 impl<T: Real> Mesh<T> {
-    /// The faces of the patches that bound the body: all but lids, water and symmetry planes.
+    /// The faces of the patches that bound the body: all patches except lids, water and symmetry
+    /// planes.
     pub fn skin_faces(&self) -> Vec<usize> {
         let skin = self.patches().iter().filter(|p| p.info.tag.is_skin());
         skin.flat_map(|p| p.faces.clone()).collect()

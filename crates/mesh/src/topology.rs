@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Role of a patch for a flow solver or a builder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Tag {
-    /// Skin of the body, the usual case.
+    /// Skin of the body, the default.
     #[default]
     Wetted,
     /// A lid inside the body, such as the interior free surface of an irregular-frequency run.
@@ -17,12 +17,12 @@ pub enum Tag {
     Waterline,
     /// Part of a symmetry plane.
     Symmetry,
-    /// Anything else, by its name; counted as skin.
+    /// Any other role, by name; counted as skin.
     Other(String),
 }
 
 impl Tag {
-    /// The word for the tag, as files and tables show it.
+    /// The word for the tag in files and tables.
     pub fn word(&self) -> &str {
         match self {
             Self::Wetted => "wetted",
@@ -33,7 +33,7 @@ impl Tag {
         }
     }
 
-    /// The role of a word; any other word is a role of the user's own.
+    /// The role for a word; an unknown word is a role defined by the user.
     pub fn named(word: &str) -> Self {
         match word {
             "wetted" => Self::Wetted,
@@ -44,8 +44,8 @@ impl Tag {
         }
     }
 
-    /// The role among several words: the first known one, otherwise the first; wetted without
-    /// words.
+    /// The role among several words: the first known one, otherwise the first; wetted if there are
+    /// no words.
     pub fn among<'w>(words: impl IntoIterator<Item = &'w str>) -> Self {
         let mut own = None;
         for tag in words.into_iter().map(Self::named) {
@@ -57,7 +57,8 @@ impl Tag {
         own.unwrap_or_default()
     }
 
-    /// True for patches that bound the body itself: all but lids, water and symmetry planes.
+    /// True for patches that bound the body itself: all roles except lids, water and symmetry
+    /// planes.
     pub fn is_skin(&self) -> bool {
         matches!(self, Self::Wetted | Self::Other(_))
     }
@@ -66,7 +67,7 @@ impl Tag {
 /// Name and role of a patch.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PatchInfo {
-    /// Name, unique within a model by the caller's care.
+    /// Name, unique within a model; ensured by the caller.
     pub name: String,
     /// Role of the patch.
     pub tag: Tag,
@@ -79,27 +80,27 @@ pub struct PatchInfo {
 }
 
 impl PatchInfo {
-    /// A wetted patch of that name, without colour.
+    /// A wetted patch with a name, without colour.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// The same with another role.
+    /// The same patch with another role.
     pub fn tagged(self, tag: Tag) -> Self {
         Self { tag, ..self }
     }
 
-    /// True when it carries the tag, be it its role or a name of the user's.
+    /// True when it has the tag, as its role or as a name given by the user.
     pub fn is(&self, tag: &str) -> bool {
         self.tag.word() == tag || self.tags.iter().any(|t| t == tag)
     }
 
-    /// The same with a colour index.
+    /// The same patch with a colour index.
     pub fn coloured(self, colour: Option<u8>) -> Self {
         Self { colour, ..self }
     }
 
-    /// The same with an entity kind.
+    /// The same patch with an entity kind.
     pub fn of_kind(self, kind: impl Into<String>) -> Self {
         Self { kind: kind.into(), ..self }
     }
@@ -112,9 +113,9 @@ pub struct Block {
     pub nu: usize,
     /// Vertices along v.
     pub nv: usize,
-    /// Vertex of (i, j) at `[i * nv + j]`; a pole repeats one vertex.
+    /// Vertex (i, j) at `[i * nv + j]`; a pole repeats one vertex.
     pub vertices: Vec<u32>,
-    /// True when the panels are turned, so that their normals are against S_u x S_v.
+    /// True when the panels are reversed, so that their normals are against S_u x S_v.
     pub reversed: bool,
 }
 
@@ -125,7 +126,7 @@ impl Block {
     }
 }
 
-/// A named run of faces.
+/// A named range of faces.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Patch {
     /// Name and role.
@@ -136,7 +137,7 @@ pub struct Patch {
     pub block: Option<Block>,
 }
 
-/// Vertices by number, the faces between them, and the patches these belong to.
+/// Numbered vertices, the faces between them, and the patches of the faces.
 ///
 /// Every face has three or four different corners, all of them below [`Topology::vertex_count`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -156,7 +157,7 @@ pub fn is_triangle(face: [u32; 4]) -> bool {
 }
 
 impl Topology {
-    /// Number of vertices, those that no face uses included.
+    /// Number of vertices, including unused ones.
     pub fn vertex_count(&self) -> usize {
         self.vertex_count
     }
@@ -166,7 +167,7 @@ impl Topology {
         &self.faces
     }
 
-    /// The patches in the order they were added; their faces follow each other without gaps.
+    /// The patches in the order in which they were added, with consecutive faces.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
     }
@@ -196,8 +197,8 @@ impl Topology {
         self.patches.partition_point(|p| p.faces.end <= face)
     }
 
-    /// The same patches with every quad split into two triangles along its shorter diagonal (the
-    /// one from the first corner when both are equal). `positions` are real parts, one per vertex.
+    /// The same patches with every quad split into two triangles along its shorter diagonal (from
+    /// the first corner if both are equal). `positions` are real parts, one per vertex.
     pub fn triangulated(&self, positions: &[Vec3]) -> Self {
         let mut faces = Vec::with_capacity(self.faces.len() * 2);
         let mut patches = Vec::with_capacity(self.patches.len());
@@ -239,7 +240,7 @@ impl TopologyBuilder {
         Self { topology }
     }
 
-    /// Adds `count` vertices and returns their numbers.
+    /// Adds `count` vertices and returns their indices.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] beyond 32-bit numbers.
@@ -251,9 +252,9 @@ impl TopologyBuilder {
         Ok(start..end)
     }
 
-    /// Adds a structured patch of `nu` by `nv` vertices, that of (i, j) at `[i * nv + j]`. Its
-    /// panels have their normals along S_u x S_v, or against it when `reversed`. Panels with a
-    /// repeated corner become triangles; those without area by identity are left out.
+    /// Adds a structured patch of `nu` by `nv` vertices, with (i, j) at `[i * nv + j]`. The normals
+    /// of its panels are along S_u x S_v, or against it when `reversed`. Panels with a repeated
+    /// corner become triangles; those without area by identity are omitted.
     ///
     /// # Errors
     /// A wrong shape or an unknown vertex.
@@ -283,7 +284,7 @@ impl TopologyBuilder {
     }
 
     /// Adds an unstructured patch. Corners are counter-clockwise seen from outside; a triangle
-    /// repeats a corner. Faces without area by identity are left out.
+    /// repeats a corner. Faces without area by identity are omitted.
     ///
     /// # Errors
     /// An unknown vertex.

@@ -2,9 +2,9 @@
 
 use moldloft_num::Vec3;
 
-/// Triangles of a polygon as indices into `points`; loops wind counter-clockwise about `normal`, holes
-/// clockwise. Every edge of the loops is an edge of a triangle; no vertex is added. A polygon that
-/// crosses itself gives as many triangles, some of them turned.
+/// Triangles of a polygon as indices into `points`; loops wind counter-clockwise about `normal`,
+/// holes clockwise. Every edge of the loops is an edge of a triangle; no vertex is added. A
+/// self-intersecting polygon gives the same number of triangles, some with the wrong orientation.
 pub fn triangulate(points: &[Vec3], loops: &[Vec<usize>], normal: Vec3) -> Vec<[usize; 3]> {
     let u = if normal.norm_sq() > 0.0 { normal.perpendicular() } else { Vec3::of(1.0, 0.0, 0.0) };
     let v = normal.normalized().unwrap_or_default().cross(u);

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// The largest number of a shape: the sixth powers of lengths, which curvatures take, stay finite.
 const LARGEST: f64 = 1e50;
 
-/// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
+/// Maximum nesting of shapes, which protects the stack during evaluation.
 pub const DEEPEST_NESTING: u32 = 100;
 
 /// Fewer pending objects than this are evaluated on the calling thread.
@@ -67,9 +67,9 @@ pub struct Graph<T: Scalar> {
 /// Extent of an application: the whole model or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// A run: objects that it does not declare disappear.
+    /// A run: objects that it does not declare are removed.
     Whole,
-    /// An edit: objects that it does not mention stay.
+    /// An edit: objects that it does not mention are kept.
     Edit,
 }
 
@@ -84,12 +84,12 @@ pub struct Applied {
     pub failed: usize,
 }
 
-/// An object as a producer declares it.
+/// An object as declared by a producer.
 #[derive(Clone, Debug)]
 pub struct Declaration<'a, T: Scalar> {
     /// Its name.
     pub name: &'a str,
-    /// The row it is a call of.
+    /// The row of the call.
     pub row: &'a Arc<Row>,
     /// The arguments in the order of the row's fields, checked.
     pub args: Vec<Value<T>>,
@@ -208,12 +208,12 @@ impl<T: Scalar> Graph<T> {
         self.failed
     }
 
-    /// Number of objects whose construction deserves a warning.
+    /// Number of objects with a warning about their construction.
     pub fn remarked(&self) -> usize {
         self.remarked
     }
 
-    /// True when the program has read the value of some object while it ran.
+    /// True when the program has read the value of an object during its run.
     pub fn any_read(&self) -> bool {
         self.any_read
     }
@@ -234,12 +234,12 @@ impl<T: Scalar> Graph<T> {
         self.last_change
     }
 
-    /// Everything that depends on `key`, directly or not, in the order of declaration.
+    /// All objects that depend on `key`, directly or indirectly, in the order of declaration.
     pub fn dependents(&self, key: Key) -> Vec<Key> {
         self.closure(key, |o| &o.children)
     }
 
-    /// Everything that `key` depends on, directly or not, in the order of declaration.
+    /// All objects that `key` depends on, directly or indirectly, in the order of declaration.
     pub fn ancestors(&self, key: Key) -> Vec<Key> {
         self.closure(key, |o| &o.parents)
     }
@@ -692,7 +692,7 @@ impl<T: Scalar> Run<'_, T> {
         Ok(key)
     }
 
-    /// Gives an object of the model new arguments, in an edit.
+    /// Gives an object new arguments, in an edit.
     ///
     /// # Errors
     /// A [`CallError`] when it would depend on itself.
@@ -774,14 +774,14 @@ impl<T: Scalar> Run<'_, T> {
         self.graph.get(key).map_or(Class::Any, |o| o.row.class)
     }
 
-    /// The object called `name`, if this run (or, in an edit, the model) has it.
+    /// The object called `name`, if declared in this run (in an edit: in the model).
     pub fn find(&self, name: &str) -> Option<Key> {
         let key = self.graph.find(name)?;
         let object = self.graph.object(key);
         (self.extent == Extent::Edit || object.declared_at == self.graph.clock).then_some(key)
     }
 
-    /// The value of an object, evaluated now with all that it depends on.
+    /// The value of an object, evaluated immediately with all its dependencies.
     ///
     /// # Errors
     /// The reason why it has no value.
@@ -799,7 +799,7 @@ impl<T: Scalar> Run<'_, T> {
         }
     }
 
-    /// The value of an anonymous call, remembered by its arguments from this and the last run.
+    /// The value of an anonymous call, cached by its arguments from this run and the last.
     ///
     /// # Errors
     /// Errors of the row's implementation.
@@ -808,17 +808,17 @@ impl<T: Scalar> Run<'_, T> {
         graph.memo.call(row, args, graph.clock, &graph.context)
     }
 
-    /// Whole for a run, part for an edit.
+    /// The whole model for a run, a part for an edit.
     pub fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// The graph in its present state.
+    /// The graph in its current state.
     pub fn graph(&self) -> &Graph<T> {
         self.graph
     }
 
-    /// Removes an object that nothing depends on.
+    /// Removes an object without dependents.
     ///
     /// # Errors
     /// A [`CallError`] that names the dependents.
@@ -844,7 +844,7 @@ impl<T: Scalar> Run<'_, T> {
             .help("delete or rebuild those first"))
     }
 
-    /// Renames an object; references to it remain.
+    /// Renames an object; references to it are kept.
     ///
     /// # Errors
     /// A [`CallError`] when the name is taken.

@@ -5,14 +5,14 @@ use moldloft_registry::{Attributes, CallError, Row, Scalar, Value};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Why an object has no value.
+/// Reason why an object has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
-    /// Its own data make no such thing.
+    /// The call itself failed.
     CallError(CallError),
     /// Something that it depends on failed.
     Blocked {
-        /// The object at the root of the trouble.
+        /// The failed object that caused this.
         by: Key,
     },
 }
@@ -24,7 +24,7 @@ pub enum State<T: Scalar> {
     New,
     /// Its value.
     Ok(Value<T>),
-    /// Reason of the failure: a failed object is a value too, and other objects are not affected.
+    /// Failure as a value: other objects are not affected.
     Failed(Failure),
 }
 
@@ -47,7 +47,7 @@ impl<T: Scalar> State<T> {
         self.value().is_some_and(Value::warns)
     }
 
-    /// True if dependants need not be evaluated again.
+    /// True if dependents need not be evaluated again.
     pub fn same(&self, other: &Self) -> bool {
         match (self, other) {
             (State::Ok(a), State::Ok(b)) => a.same(b),
@@ -60,7 +60,7 @@ impl<T: Scalar> State<T> {
 /// A named object: a call of a row whose result is kept.
 #[derive(Clone, Debug)]
 pub struct Object<T: Scalar> {
-    /// Its identity, which outlives renaming.
+    /// Its identity, preserved by renaming.
     pub key: Key,
     /// Its name.
     pub name: Arc<str>,
@@ -84,7 +84,8 @@ pub struct Object<T: Scalar> {
     pub changed_at: u64,
     /// The clock at which its head changed last.
     pub head_changed_at: u64,
-    /// True when a statement of the program has read its value: a change must run it again.
+    /// True when a statement of the program has read its value, so that a change requires another
+    /// run.
     pub read_by_program: bool,
     pub(crate) declared_at: u64,
     pub(crate) verified_at: u64,
@@ -127,7 +128,7 @@ impl<T: Scalar> Object<T> {
         }
     }
 
-    /// Its own fault, if its data make no such thing.
+    /// Its own fault, if its call failed.
     pub fn fault(&self) -> Option<&CallError> {
         match &self.state {
             State::Failed(Failure::CallError(fault)) => Some(fault),
@@ -135,7 +136,7 @@ impl<T: Scalar> Object<T> {
         }
     }
 
-    /// The failed object that it waits for.
+    /// The failed object that it depends on.
     pub fn blocked_by(&self) -> Option<Key> {
         match &self.state {
             State::Failed(Failure::Blocked { by }) => Some(*by),

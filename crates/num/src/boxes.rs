@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 
-/// An axis-aligned box; empty until a point is put in.
+/// An axis-aligned box, initially empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Box3 {
     /// Low corner.
@@ -12,7 +12,7 @@ pub struct Box3 {
 }
 
 impl Box3 {
-    /// The box that contains nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         low: Vec3 { x: f64::INFINITY, y: f64::INFINITY, z: f64::INFINITY },
         high: Vec3 { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY, z: f64::NEG_INFINITY },
@@ -23,7 +23,7 @@ impl Box3 {
         points.into_iter().fold(Self::EMPTY, Self::including)
     }
 
-    /// The smallest box around this one and `p`.
+    /// The smallest box around this one and the point `p`.
     #[inline]
     pub fn including(self, p: Vec3) -> Self {
         let (low, high) = (self.low, self.high);
@@ -48,7 +48,7 @@ impl Box3 {
         if self.is_empty() { Vec3::zero() } else { (self.low + self.high) * 0.5 }
     }
 
-    /// Length of the diagonal; 0 for the empty box. The size from which tolerances are derived.
+    /// Length of the diagonal; 0 for the empty box. Tolerances are derived from it.
     pub fn diagonal(self) -> f64 {
         if self.is_empty() { 0.0 } else { self.low.distance(self.high) }
     }

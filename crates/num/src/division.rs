@@ -8,14 +8,14 @@ pub fn remainder(a: f64, b: f64) -> f64 {
     if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
 }
 
-/// floor(a / b), also where a / b rounds to the next whole number.
+/// floor(a / b), exact even if a / b rounds to the next integer.
 pub fn whole_quotient(a: f64, b: f64) -> f64 {
     let q = (a / b).floor();
     // Rounding can reach a whole number from below, and only from there.
     if q == a / b && remainder(a, b) / b > 0.5 { q - 1.0 } else { q }
 }
 
-/// The [`remainder`] with the derivatives of a - b q, q the whole quotient.
+/// The [`remainder`] with the derivatives of a - b q, where q is the integer quotient.
 pub fn modulo<T: Real>(a: T, b: T) -> T {
     let exact = remainder(a.re(), b.re());
     let follows = a - b * T::from(whole_quotient(a.re(), b.re()));

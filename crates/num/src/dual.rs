@@ -22,7 +22,7 @@ pub struct Dual<const N: usize> {
     pub eps: [f64; N],
 }
 
-/// The dual number of derivative passes: four directions at once.
+/// The dual number for derivatives in four directions at once.
 pub type Dual4 = Dual<4>;
 
 impl<const N: usize> Default for Dual<N> {

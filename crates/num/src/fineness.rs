@@ -5,11 +5,11 @@ use crate::{SurfJet, Vec3};
 /// Accuracy of panels relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
-    /// The greatest turn of the surface, or of its border, along a panel, in radians.
+    /// Maximum turn of the surface, or of its border, along a panel, in radians.
     pub angle: f64,
-    /// The greatest distance of a panel from the surface, in the unit of length.
+    /// Maximum distance of a panel from the surface, in the unit of length.
     pub chord: f64,
-    /// The greatest side of a panel, in the unit of length.
+    /// Maximum side of a panel, in the unit of length.
     pub side: f64,
 }
 
@@ -20,8 +20,9 @@ const MAX_ASPECT: f64 = 6.0;
 const NO_NORMAL: f64 = 1e-9;
 
 impl Fineness {
-    /// Divisions per parameter of a curve, from its first and second derivative and the turn of the surface's normal along
-    /// it per parameter: a chord of curvature k and length h is k h^2 / 8 off and turns by k h.
+    /// Divisions per parameter of a curve, from its first and second derivative and the turn of the
+    /// surface's normal along it per parameter: a chord of length h across curvature k deviates by
+    /// k h^2 / 8 and turns by k h.
     pub fn along(&self, d: Vec3, dd: Vec3, normal_turn: f64) -> f64 {
         let speed = d.norm();
         if speed.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
@@ -33,9 +34,9 @@ impl Fineness {
         if density.is_finite() { density } else { 0.0 }
     }
 
-    /// The metric in which the sides of a panel have a length of about 1 at a point: its entries of
-    /// u u and v v; `None` where the surface has no normal. The sides follow the principal
-    /// curvatures, one direction being at most six times as long as the other.
+    /// The metric in which the sides of a panel have length 1, approximately, at a point: its
+    /// entries u u and v v; `None` if the surface has no normal. The sides follow the principal
+    /// curvatures, with a ratio of at most six.
     pub fn metric(&self, s: &SurfJet<f64>) -> Option<[f64; 2]> {
         let (n, _) = unit_normal(s)?;
         let (e, f, g) = (s.u.dot(s.u), s.u.dot(s.v), s.v.dot(s.v));

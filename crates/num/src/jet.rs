@@ -8,7 +8,7 @@ use crate::shape::{CurveJet, Order, SurfJet};
 use crate::vec3::Vec3;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number of a shape's formula: the scalar `T` with derivatives by the shape parameters.
+/// A number in a shape's formula: the scalar `T` with derivatives by the shape parameters.
 pub trait Jet<T: Real>: Real {
     /// Order of its derivatives.
     const ORDER: Order;
@@ -206,7 +206,7 @@ jet_type!(
 );
 
 impl<T: Real> Tri1<T> {
-    /// The parameters of a solid themselves.
+    /// The parameters of a solid, as jets.
     pub fn parameters(u: T, v: T, w: T) -> [Self; 3] {
         let (z, one) = (Self::default(), T::one());
         [Self { f: u, u: one, ..z }, Self { f: v, v: one, ..z }, Self { f: w, w: one, ..z }]

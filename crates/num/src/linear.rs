@@ -6,7 +6,7 @@ use crate::{Real, Vec3};
 /// The matrix of a linear system is singular to working precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularMatrix {
-    /// The row at which elimination found no pivot.
+    /// The row without a pivot.
     pub row: usize,
 }
 
@@ -53,8 +53,8 @@ pub fn solve_dense<T: Real>(a: &mut [T], b: &mut [T]) -> Result<(), SingularMatr
 /// Pivots below this are zero, relative to the largest.
 const NO_PIVOT: f64 = 1e-11;
 
-/// The solution of a small system, by elimination with full pivoting on rows scaled to equal size; `None`
-/// when it is singular or not finite.
+/// The solution of a small system, by elimination with full pivoting on rows scaled to equal size;
+/// `None` if singular or not finite.
 pub fn solve_pivoting_fully(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
     let mut a: Vec<Vec<f64>> = Vec::with_capacity(n);

@@ -2,8 +2,8 @@
 
 use crate::Real;
 
-/// log₁₀ x, of a power of ten its whole exponent (ln x / ln 10 makes 2.9999999999999996 of 1000), with the derivatives of
-/// ln x / ln 10.
+/// log₁₀ x, an integer for powers of ten (ln x / ln 10 is 2.9999999999999996 for 1000), with the
+/// derivatives of ln x / ln 10.
 ///
 /// ```
 /// use moldloft_num::{Dual, log10};

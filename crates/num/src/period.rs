@@ -15,7 +15,7 @@ const SMOOTH: f64 = 1e-9;
 /// Positions along two opposite sides at which they are compared, corners included.
 const PLACES: [f64; 9] = [0.37, 0.0, 0.11, 0.25, 0.5, 0.63, 0.79, 0.93, 1.0];
 
-/// The parameter reduced to 0 .. 1 by whole turns; within `NEAR` of 0 and 1 it is unchanged.
+/// The parameter reduced to [0, 1] by whole periods; within `NEAR` of 0 and 1 it is unchanged.
 pub fn principal<J: Real>(t: J) -> J {
     let re = t.re();
     if (-NEAR..=1.0 + NEAR).contains(&re) { t } else { turned_back(t) }
@@ -26,7 +26,7 @@ pub fn within<J: Real>(closed: [bool; 2], w: [J; 2]) -> [J; 2] {
     [0, 1].map(|a| if closed[a] { principal(w[a]) } else { w[a] })
 }
 
-/// The parameter for an evaluation; values from 0 to 1 are unchanged.
+/// The parameter for an evaluation, reduced to [0, 1]; values from 0 to 1 are unchanged.
 pub fn turned_back<J: Real>(t: J) -> J {
     let re = t.re();
     if (0.0..=1.0).contains(&re) || !re.is_finite() { t } else { t - re.floor() }
@@ -39,7 +39,7 @@ pub fn parameter_distance(a: f64, b: f64, closed: bool) -> f64 {
 }
 
 /// The breaks of a shape in `low` .. `high`, which may extend beyond 0 and 1: those of a closed
-/// shape recur with each turn, and so does its seam, which may be a break.
+/// shape are repeated in each period, with its seam if that is a break.
 pub fn breaks_between(breaks: &[f64], closed: bool, low: f64, high: f64) -> Vec<f64> {
     let (low, high) = (low.min(high), low.max(high));
     if !closed || low >= 0.0 && high <= 1.0 || high - low > 1e4 {
@@ -53,7 +53,7 @@ pub fn breaks_between(breaks: &[f64], closed: bool, low: f64, high: f64) -> Vec<
     turns.flat_map(of_turn).filter(|b| *b > low && *b < high).collect()
 }
 
-/// True when a curve ends where it begins, to rounding, and is not one point all along.
+/// True when a curve ends where it begins, up to rounding, and is not a single point.
 pub fn closes<T: Real>(curve: &dyn Curve<T>) -> bool {
     let at = |t: f64| curve.jet(T::from(t), Order::Zero)[0].re();
     let (first, last) = (at(0.0), at(1.0));
@@ -66,8 +66,8 @@ pub fn closes<T: Real>(curve: &dyn Curve<T>) -> bool {
     }
 }
 
-/// For u and v of a surface, true if closed: the two sides are one line, to rounding. A side that
-/// is a single point, a pole, does not count.
+/// For u and v of a surface, true if closed: the two sides are the same line, up to rounding. A
+/// side that is a single point, a pole, does not count.
 pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
     let at = |axis: usize, end: f64, w: f64| {
         let [u, v] = if axis == 0 { [end, w] } else { [w, end] };
@@ -94,8 +94,8 @@ pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
     })
 }
 
-/// For u and v: true if `closed` and if the first derivatives are continuous across the seam, to
-/// rounding; they are compared at samples.
+/// For u and v, true if `closed` with continuous first derivatives across the seam, up to rounding,
+/// at samples.
 pub fn smooth_seams<T: Real>(surface: &dyn Surface<T>, closed: [bool; 2]) -> [bool; 2] {
     let jet = |axis: usize, end: f64, w: f64| {
         let [u, v] = if axis == 0 { [end, w] } else { [w, end] };
@@ -113,8 +113,8 @@ pub fn smooth_seams<T: Real>(surface: &dyn Surface<T>, closed: [bool; 2]) -> [bo
 }
 
 /// The derivatives of the parameter `t` of a corner of a curve, as a number whose real part is 0;
-/// its sides are evaluated `near` before and after it. `None` where the tangent does not turn:
-/// there the parameter does not affect a first derivative.
+/// both sides are evaluated, at the distance `near` from it. `None` if the tangent is continuous:
+/// the parameter does not affect a first derivative then.
 ///
 /// Both sides of a corner meet there whatever becomes of it: with C- and C+ the sides,
 /// dt = (dC+ - dC-) . n / n . n with n = C-' - C+'.
@@ -138,8 +138,7 @@ pub fn corner_rate<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> Option<T
 const ALONG: [f64; 7] = [0.03, 0.19, 0.37, 0.52, 0.68, 0.83, 0.96];
 
 /// The derivatives of the parameter of a crease of a surface, the parameter `at` of u (0) or v (1),
-/// as a number whose real part is 0; its sides are evaluated at the given distances before and
-/// after it.
+/// as a number whose real part is 0; both sides are evaluated, at the given distances from it.
 ///
 /// Both sides meet at the corner whatever the derivatives: with S- and S+ the sides, dt = (dS+ -
 /// dS-) . n / n . n with n = S-' - S+', over positions along the break. Zero where the tangent does

@@ -35,7 +35,7 @@ pub const GAUSS_8_UNIT: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
 ];
 
-/// The most points of a rule.
+/// Maximum number of points of a rule.
 pub const MAX_GAUSS_POINTS: usize = 24;
 
 /// The nodes and weights of the rule of `n` points on [0, 1], `1 <= n <= MAX_GAUSS_POINTS`.
@@ -93,9 +93,9 @@ const DEEPEST: i32 = 44;
 const MANY: usize = 1 << 12;
 const DEEP: i32 = 12;
 
-/// The integral of `f` over [`a`, `b`] to about `accuracy` (absolute, a hope rather than a bound):
+/// The integral of `f` over `a`, `b` to about `accuracy` (absolute, an estimate and not a bound):
 /// intervals are halved until two levels agree. The choice of intervals follows the real parts, so
-/// a dual number integrates over the same ones.
+/// a dual number is integrated over the same ones.
 ///
 /// A kink of `f` that is not declared is closed in upon: otherwise the derivatives of the integral
 /// would be wrong by the width of its interval.

@@ -86,7 +86,7 @@ pub type Weight<const D: usize> = Box<dyn Fn([f64; D]) -> f64>;
 pub struct Rational<const D: usize> {
     /// Its parameters.
     pub paces: [Pace; D],
-    /// The weight besides those of the paces, where it is not 1.
+    /// The weight in addition to those of the paces, unless it is 1.
     pub weight: Option<Weight<D>>,
 }
 
@@ -96,7 +96,7 @@ impl<const D: usize> Rational<D> {
         Self { paces: [Pace::Even; D], weight: None }
     }
 
-    /// The same paces and no other weight.
+    /// The same paces without another weight.
     pub fn paced(paces: [Pace; D]) -> Self {
         Self { paces, weight: None }
     }

@@ -4,7 +4,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// The scalar that all geometry is generic over: `f64`, a [`crate::Dual`], a [`crate::Rev`], or a [`crate::Jet`].
+/// The scalar type of all geometry: `f64`, a [`crate::Dual`], a [`crate::Rev`], or a
+/// [`crate::Jet`].
 ///
 /// Comparisons and branches look at [`Real::re`] only, so control flow is the same for every
 /// scalar. Elementary functions are those of `libm`: the same bits on every platform.
@@ -401,7 +402,7 @@ macro_rules! real_by_chain {
             }
             fn powf(self, exponent: Self) -> Self {
                 let x = self.value();
-                // x^p ln x, the derivative by the exponent, goes to 0 with x.
+                // x^p ln x, the derivative by the exponent, tends to 0 with x.
                 if exponent.is_constant() || (x.re() == 0.0 && exponent.re() > 0.0) {
                     let e = exponent.value();
                     let slope = |k: $base, value: $base| if k.re() == 0.0 { <$base>::from(0.0) } else { value };

@@ -10,7 +10,8 @@ use std::sync::Arc;
 pub type ReparametrizationJet<T> = [T; 3];
 
 /// A monotone law R of [0, 1] with R(0) = 0 and R(1) = 1 exactly: it redistributes the parameter of
-/// a curve c to C(t) = c(R(t)). Partial laws run between other values, and take a part of the curve.
+/// a curve c to C(t) = c(R(t)). Partial laws have other values at the ends, and select a part of
+/// the curve.
 ///
 /// Its slope is positive inside; at the ends it may vanish. Outside [0, 1] it is the natural
 /// continuation of its formula.
@@ -29,7 +30,7 @@ pub trait Reparametrization<T: Real>: Send + Sync {
     }
 }
 
-/// The law at a parameter that is itself a jet: the chain rule by Taylor's formula.
+/// The law at a parameter that is a jet: the chain rule by Taylor's formula.
 #[inline(always)]
 pub fn lift_reparametrization<T: Real, J: Jet<T>>(jet: &ReparametrizationJet<T>, t: J) -> J {
     if J::ORDER == Order::Zero {
@@ -63,7 +64,7 @@ macro_rules! reparametrization_jet_of {
     }};
 }
 
-/// The parameter t in [0, 1] with R(t) = `r`; 0 and 1 for values beyond the ends.
+/// The parameter t in [0, 1] with R(t) = `r`; 0 or 1 for values beyond the ends.
 pub fn inv_reparametrization<T: Real>(law: &dyn Reparametrization<T>, r: f64) -> f64 {
     if r <= 0.0 {
         return 0.0;
@@ -75,8 +76,8 @@ pub fn inv_reparametrization<T: Real>(law: &dyn Reparametrization<T>, r: f64) ->
     find_root(above, 0.0, 1.0).unwrap_or(r)
 }
 
-/// The same with derivatives: the root in plain numbers, then one Newton step in `T` (implicit
-/// function theorem). If the slope vanishes the root has no derivatives.
+/// As `inv_reparametrization`, with derivatives: the root in plain numbers, then one Newton step in
+/// `T` (implicit function theorem). If the slope is zero the root has no derivatives.
 pub fn inv_reparametrization_in<T: Real>(law: &dyn Reparametrization<T>, r: T) -> T {
     let t = inv_reparametrization(law, r.re());
     let [at, slope, _] = law.jet(T::from(t), Order::First);
@@ -87,11 +88,11 @@ pub fn inv_reparametrization_in<T: Real>(law: &dyn Reparametrization<T>, r: T) -
     step - step.re() + t
 }
 
-/// One law after another: R(t) = `second`(`first`(t)).
+/// The composition of two laws: R(t) = `second`(`first`(t)).
 pub struct Composed<T: Real> {
-    /// The law that sees t.
+    /// The law applied to t.
     pub first: Arc<dyn Reparametrization<T>>,
-    /// The law that sees its result.
+    /// The law applied to the result of the first.
     pub second: Arc<dyn Reparametrization<T>>,
 }
 

@@ -49,12 +49,12 @@ struct Dependence {
     rate: f64,
 }
 
-/// A recording: for each node the nodes that it depends on, and the rates.
+/// A recording: for each node, the nodes that it depends on and the partial derivatives.
 ///
 /// Nodes up to [`DerivativeTape::keep`] stay; those after it are *local*, until [`DerivativeTape::forget`].
 #[derive(Debug)]
 pub struct DerivativeTape {
-    /// Where the dependences of each node end.
+    /// End of the dependences of each node.
     ends: Vec<u32>,
     dependences: Vec<Dependence>,
     inputs: u32,
@@ -94,12 +94,13 @@ impl DerivativeTape {
         }
     }
 
-    /// Begins a recording on this thread. Numbers of the one before are of no use any more.
+    /// Begins a recording on this thread. Numbers of an earlier recording become invalid.
     pub fn clear() {
         TAPE.with_borrow_mut(|tape| *tape = Self::empty());
     }
 
-    /// The recording, which has just begun, knows the derivative of each number in one direction, [`Real::probe`].
+    /// Provides the derivative of each number in one direction, [`Real::probe`], in the recording
+    /// that has just begun.
     pub fn probe() {
         TAPE.with_borrow_mut(|tape| {
             debug_assert!(tape.ends.is_empty(), "before the first number");
@@ -107,7 +108,7 @@ impl DerivativeTape {
         });
     }
 
-    /// A number that others are differentiated by.
+    /// An independent variable.
     pub fn input(value: f64) -> Rev {
         TAPE.with_borrow_mut(|tape| {
             tape.inputs += 1;
@@ -125,7 +126,7 @@ impl DerivativeTape {
         TAPE.with_borrow(|tape| tape.inputs as usize)
     }
 
-    /// False when something was needed that a tape does not have: gradients would be wrong.
+    /// False when an operation without a reverse mode occurred, so that gradients would be wrong.
     pub fn is_sound() -> bool {
         TAPE.with_borrow(|tape| tape.sound)
     }
@@ -136,7 +137,7 @@ impl DerivativeTape {
         TAPE.with_borrow_mut(|tape| tape.sound = false);
     }
 
-    /// What was recorded so far stays; what follows is local.
+    /// Keeps everything recorded so far; later nodes are local.
     pub fn keep() {
         TAPE.with_borrow_mut(|tape| {
             debug_assert_eq!(tape.forgotten, 0, "a tape keeps once");
@@ -160,7 +161,7 @@ impl DerivativeTape {
         });
     }
 
-    /// The greatest size of this recording so far, in bytes.
+    /// Maximum size of this recording so far, in bytes.
     pub fn peak() -> usize {
         TAPE.with_borrow(Self::bytes)
     }
@@ -234,7 +235,7 @@ impl DerivativeTape {
     }
 }
 
-/// Derivatives of a weighted sum by the nodes of this thread's tape.
+/// Derivatives of a weighted sum with respect to the nodes of this thread's tape.
 #[derive(Clone, Debug, Default)]
 pub struct Adjoints {
     weights: Vec<f64>,
@@ -269,7 +270,7 @@ impl Adjoints {
         !self.infinite
     }
 
-    /// Carries the weights of local nodes to those that stay.
+    /// Propagates the weights of local nodes to the kept ones.
     pub fn pull_local(&mut self) {
         TAPE.with_borrow(|tape| {
             self.pull_down_to(tape, tape.kept as usize);
@@ -277,7 +278,7 @@ impl Adjoints {
         });
     }
 
-    /// Carries all weights to the inputs.
+    /// Propagates all weights to the inputs.
     pub fn pull(&mut self) {
         TAPE.with_borrow(|tape| self.pull_down_to(tape, 0));
     }
@@ -297,7 +298,7 @@ impl Adjoints {
         }
     }
 
-    /// The derivative by an input.
+    /// The derivative with respect to an input.
     pub fn of(&self, input: Rev) -> f64 {
         match input.node {
             0 => 0.0,
@@ -332,7 +333,8 @@ impl Rev {
         })
     }
 
-    /// Its node: two numbers share it only if their derivatives are the same; 0 for a constant.
+    /// Its node; 0 for a constant. Two numbers have the same node only if their derivatives are the
+    /// same.
     pub fn node(self) -> u64 {
         self.node
     }
@@ -594,7 +596,7 @@ impl Real for Rev {
     fn powf(self, exponent: Self) -> Self {
         let (x, e) = (self.value, exponent.value);
         let value = Real::powf(x, e);
-        // x^e ln x, the derivative by the exponent, goes to 0 with x.
+        // x^e ln x, the derivative by the exponent, tends to 0 with x.
         if exponent.node == 0 || (x == 0.0 && e > 0.0) {
             let slope = if e == 0.0 { 0.0 } else { e * Real::powf(x, e - 1.0) };
             return Self::one(value, self, slope);

@@ -1,6 +1,6 @@
 //! The root of a function of one variable in a bracket.
 
-/// Why no root was found.
+/// Reason why no root was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoRoot {
     /// The function has the same sign at both ends.
@@ -17,8 +17,8 @@ pub enum NoRoot {
     },
 }
 
-/// The root of `f` in [`low`, `high`], to the last bits: bisection guarded by the secant
-/// (the Illinois rule), so it always converges for a continuous function.
+/// The root of `f` in `low`, `high`, to the last bits: bisection with secant steps (the Illinois
+/// rule), which converges for every continuous function.
 ///
 /// # Errors
 /// [`NoRoot`] when the ends do not bracket a root or a value is not finite.

@@ -40,13 +40,13 @@ pub struct SurfJet<T> {
 }
 
 impl<T: Real> SurfJet<T> {
-    /// The unit normal along S_u x S_v, or zero where the surface is singular.
+    /// The unit normal along S_u x S_v; zero if the surface is singular.
     pub fn normal(&self) -> Vec3<T> {
         self.u.cross(self.v).normalized().unwrap_or_default()
     }
 }
 
-/// A curve C(t) for t in [0, 1]; outside that range the natural continuation of its formula.
+/// A curve C(t) for t in [0, 1]; outside this range its formula continues.
 ///
 /// Methods that affect speed and correctness have no default: each curve states them, a curve
 /// derived from another one forwards or changes them. [`curve_facts!`](crate::curve_facts) and
@@ -187,20 +187,20 @@ pub trait Surface<T: Real>: Send + Sync {
     }
 }
 
-/// The parameter plane of a surface, in which another one is a part.
+/// The parameter plane of a surface that contains another one as a part.
 pub struct InnerPlane<'a> {
     /// The point of the plane for a point (u, v) of the part.
     pub place: Box<dyn Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'a>,
-    /// The lines of the plane at which one formula ends and another begins; see [`Surface::joints`].
+    /// The lines of the plane between different formulas; see [`Surface::joints`].
     pub joints: [Vec<f64>; 2],
     /// The lines of the plane at which a first derivative may jump; see [`Surface::kinks`].
     pub kinks: [Vec<f64>; 2],
-    /// For each parameter, true if closed, so that the lines recur with each turn.
+    /// For each parameter, true if closed, so that the lines are repeated in each period.
     pub closed: [bool; 2],
 }
 
 impl<'a> InnerPlane<'a> {
-    /// The plane as it is seen through a map of parameters.
+    /// The plane seen through a map of parameters.
     pub fn through(self, map: impl Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'a) -> Self {
         let place = self.place;
         Self { place: Box::new(move |w| place(map(w))), ..self }
@@ -210,7 +210,7 @@ impl<'a> InnerPlane<'a> {
 /// Number of steps in which a smooth part of a path is searched for crossings.
 const STEPS: usize = 8;
 
-/// The parameters in (0, 1) at which a path meets the lines u = const and v = const; see
+/// The parameters in (0, 1) at which a path crosses the lines u = const and v = const; see
 /// [`Surface::crossings`].
 pub fn line_crossings(
     lines: &[Vec<f64>; 2],
@@ -259,7 +259,7 @@ pub trait Field<T: Real>: Send + Sync {
 /// Step of differences of a gradient, relative to the distance from the origin, or to 1 nearby.
 const GRADIENT_STEP: f64 = 1e-5;
 
-/// [`Field::second_order`] by differences of the gradient, to some ten digits.
+/// [`Field::second_order`] by differences of the gradient, to about ten digits.
 pub fn field_differences<T: Real>(
     field: &(impl Field<T> + ?Sized),
     p: Vec3<T>,

@@ -7,8 +7,8 @@
 use crate::Real;
 use smallvec::{SmallVec, smallvec};
 
-/// The identity of a named object, given out by the model, or of a part of one that has no name of its
-/// own: a corner or an edge of a surface, an end of a curve.
+/// The identity of a named object, assigned by the model, or of an unnamed part of one: a corner or
+/// an edge of a surface, an end of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u32);
 
@@ -60,11 +60,11 @@ impl Key {
     }
 }
 
-/// The corners at which edge 0..4 of a surface begins and ends.
+/// The corners at the begin and end of edge 0..4 of a surface.
 pub const EDGE_CORNERS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
-/// The identity of a root: an object itself, or one of the four edges of a surface object that
-/// has no curve of its own there.
+/// The identity of a root: an object, or one of the four edges of a surface object if it has no
+/// curve object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Root {
     /// A curve object.
@@ -74,12 +74,13 @@ pub enum Root {
     /// The straight line between two point objects, from the smaller key (t = 0) to the greater:
     /// any straight line with constant speed between the same two points.
     Segment(Key, Key),
-    /// The same from the first to the second, run by a law (the third): t is the law's argument.
+    /// The segment from the first to the second, reparametrised by a law (the third): t is the
+    /// law's argument.
     Governed(Key, Key, Key),
 }
 
 impl Root {
-    /// The begin or the end of the root, at t = 0 or 1, as far as the root itself names it.
+    /// The begin or the end of the root, at t = 0 or 1, if the root itself determines it.
     pub fn end(self, t: f64) -> Option<Key> {
         let k = match t {
             0.0 => 0,
@@ -99,11 +100,11 @@ impl Root {
 pub struct Mark<T> {
     /// Parameter on the root.
     pub t: T,
-    /// The point object there (a bead, or the point that the root ends at), if there is one.
+    /// The point object there, if any: a bead, or the end point of the root.
     pub point: Option<Key>,
 }
 
-/// A part of a root, run from `from` to `to` (which may be backwards), linearly in its parameter.
+/// A part of a root, from `from` to `to` (which may be backwards), linear in its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<T> {
     /// Its root.
@@ -112,13 +113,13 @@ pub struct Piece<T> {
     pub from: Mark<T>,
     /// End.
     pub to: Mark<T>,
-    /// The end of this piece in the alias's own parameter range, from 0 to 1 (the last: 1).
+    /// The end of this piece in the alias's parameter, from 0 to 1 (the last: 1).
     pub until: T,
 }
 
 impl<T: Real> Piece<T> {
-    /// The piece when a whole straight line between point objects is run by the law `law` instead
-    /// of evenly; `None` for any other piece.
+    /// The piece for a whole straight line between point objects that is reparametrised by the law
+    /// `law`; `None` for any other piece.
     pub fn governed(&self, law: Key) -> Option<Self> {
         let (Root::Segment(..), Some(from), Some(to)) = (self.root, self.from.point, self.to.point)
         else {
@@ -139,8 +140,8 @@ impl<T: Real> Piece<T> {
         Mark { t: self.from.t + (self.to.t - self.from.t) * share, point: mark.point }
     }
 
-    /// The whole of the straight line from one point object to another, up to the fraction `until`
-    /// of the alias; `None` if they are the same.
+    /// The straight line from one point object to another, up to the fraction `until` of the alias;
+    /// `None` if they are the same.
     pub fn straight(from: Key, to: Key, until: T) -> Option<Self> {
         let mark = |point: Key, other: Key| Mark {
             t: if point < other { T::zero() } else { T::one() },
@@ -158,7 +159,7 @@ impl<T: Real> Piece<T> {
 /// Roots of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trace<T> {
-    /// The curve is a root of its own; the point objects at its ends, where it has them.
+    /// The curve is its own root; the point objects at its ends, if any.
     Own([Option<Key>; 2]),
     /// The curve is an alias of pieces of roots.
     Pieces(SmallVec<[Piece<T>; 1]>),
@@ -167,13 +168,13 @@ pub enum Trace<T> {
 }
 
 impl<T: Real> Trace<T> {
-    /// A root of its own without known end points.
+    /// A curve that is its own root, without known end points.
     pub fn own() -> Self {
         Trace::Own([None, None])
     }
 
-    /// A straight line between two points, evenly divided: on the segment of its point objects,
-    /// or that point when both are one.
+    /// A straight line between two points with constant speed: on the segment of its point objects,
+    /// or a point if both are the same.
     pub fn straight(ends: [Option<Key>; 2]) -> Self {
         match ends {
             [Some(from), Some(to)] => match Piece::straight(from, to, T::one()) {
@@ -184,7 +185,7 @@ impl<T: Real> Trace<T> {
         }
     }
 
-    /// The chain of pieces of a curve with this trace, whose object is `root`.
+    /// The chain of pieces of a curve with this trace and the object `root`.
     pub fn pieces(&self, root: Root) -> SmallVec<[Piece<T>; 1]> {
         match self {
             Trace::Own(ends) => smallvec![Piece {
@@ -198,9 +199,9 @@ impl<T: Real> Trace<T> {
         }
     }
 
-    /// The trace of the part between two marks given in the alias's own parameter, which may run
-    /// backwards: whole pieces between them, and parts of the first and the last. A part of a point is
-    /// that point; a part of no length, or one that leaves a curve of several pieces, is a root of its own.
+    /// The trace of the part between two marks in the alias's parameter, which may run backwards:
+    /// whole pieces, and parts of the first and last. A part of a point is that point; a part of
+    /// zero length, or one that extends beyond a curve of several pieces, is its own root.
     pub fn part(&self, root: Root, from: Mark<T>, to: Mark<T>) -> Self {
         if let Trace::Point(point) = self {
             return Trace::Point(*point);
@@ -270,14 +271,14 @@ pub enum Edge<T> {
     Own,
     /// Along a chain of pieces.
     Pieces(SmallVec<[Piece<T>; 1]>),
-    /// The very same line as edge 0..4 of this surface, in the same direction (a closed surface).
+    /// The edge is the line of edge 0..4 of this surface, in the same direction (a closed surface).
     SameAs(u8),
-    /// A single point, with its object where it has one.
+    /// A single point, with its object if it has one.
     Pole(Option<Key>),
 }
 
 /// The four edges of a surface (v = 0, u = 1, v = 1, u = 0, each in increasing parameter), and the
-/// point objects at its corners (u,v) = (0,0), (1,0), (1,1), (0,1), where they are known.
+/// known point objects at its corners (u,v) = (0,0), (1,0), (1,1), (0,1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges<T> {
     /// The edges.
@@ -292,7 +293,7 @@ impl<T: Real> Edges<T> {
         Edges { edges: [Edge::Own, Edge::Own, Edge::Own, Edge::Own], corners: [None; 4] }
     }
 
-    /// The same with edge `k` (0..4) replaced.
+    /// The same edges with edge `k` (0..4) replaced.
     pub fn with(mut self, k: usize, edge: Edge<T>) -> Self {
         self.edges[k] = edge;
         self
@@ -300,7 +301,7 @@ impl<T: Real> Edges<T> {
 }
 
 /// Relation of the parameters (a, b) of a solid's face to those of a surface: swapped or not, then
-/// each reversed or not. Its number has these as bits 0, 1 and 2.
+/// each reversed or not. These are bits 0, 1 and 2 of its number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Turn(pub u8);
 
@@ -309,23 +310,23 @@ impl Turn {
     pub const ALL: [Turn; 8] =
         [Turn(0), Turn(1), Turn(2), Turn(3), Turn(4), Turn(5), Turn(6), Turn(7)];
 
-    /// True when the surface's u is along the face's b.
+    /// True when u of the surface is along b of the face.
     pub fn swaps(self) -> bool {
         self.0 & 1 == 1
     }
 
-    /// True when the surface's parameter 0 (u) or 1 (v) runs against the face's.
+    /// True when parameter 0 (u) or 1 (v) of the surface is opposite to the face's.
     pub fn flips(self, parameter: usize) -> bool {
         self.0 >> (1 + parameter) & 1 == 1
     }
 
-    /// The surface's (u, v) at the face's (a, b), all from 0 to 1.
+    /// The (u, v) of the surface for (a, b) of the face, all from 0 to 1.
     pub fn place<S: Real>(self, a: S, b: S) -> [S; 2] {
         let p = if self.swaps() { [b, a] } else { [a, b] };
         [0, 1].map(|k| if self.flips(k) { -p[k] + 1.0 } else { p[k] })
     }
 
-    /// The surface's edge 0..4 along face edge 0..4, and whether the two have opposite directions.
+    /// The surface's edge 0..4 along face edge 0..4, and true if the directions are opposite.
     pub fn edge(self, k: usize) -> (usize, bool) {
         // Face edges: 0 b = 0, 1 a = 1, 2 b = 1, 3 a = 0. On the surface, `across` is fixed.
         let (along, high) = [(0, 0), (1, 1), (0, 1), (1, 0)][k];
@@ -348,33 +349,33 @@ pub enum Face<T> {
     Own,
     /// The whole of a surface, with the roots of its edges.
     On {
-        /// The surface object; without a name it joins nothing.
+        /// The surface object; a face without one joins no other.
         surface: Option<Key>,
-        /// The solid whose face that surface is, if it is one.
+        /// The solid with that surface as a face, if there is one.
         face_of: Option<(Key, u8)>,
-        /// Relation of the face's parameters to it.
+        /// Relation of the face's parameters to those of the surface.
         turn: Turn,
         /// Its edges.
         edges: Box<Edges<T>>,
     },
-    /// The very same as face 0..6 (a closed solid), at equal parameters.
+    /// The face coincides with face 0..6 of the solid (a closed solid), at equal parameters.
     SameAs(u8),
 }
 
-/// Law of the points between the layers of a solid: solids whose layers meet and that have the same
-/// law meet between them too.
+/// Law of the points between the layers of a solid: solids with common layers and the same law
+/// share the points between these too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LayerLaw {
     /// B-splines of this degree across the layers.
     Blend(usize),
     /// An interpolating spline with ends of this number.
     Spline(usize),
-    /// The first layer moved along a curve object, without a name along nothing known; the number
-    /// states how.
+    /// The first layer moved along a curve object, or along an unnamed curve; the number states
+    /// how.
     Along(Option<Key>, u8),
 }
 
-/// The surfaces that a solid's lines along w depend on, point by point at equal u and v.
+/// The surfaces that determine a solid's lines along w, point by point at equal u and v.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers<T> {
     /// The surface objects with their edges, in order of w.
@@ -384,20 +385,20 @@ pub struct Layers<T> {
 }
 
 /// Roots of the six faces of a solid: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters of a
-/// face are the other two, in order. And the point objects at its corners, if known from the solid
-/// alone: u, v, w are bits 0, 1 and 2 of a corner's number.
+/// face are the other two, in order. Also the point objects at its corners, if the solid alone
+/// determines them; u, v, w are bits 0, 1 and 2 of a corner's number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faces<T> {
     /// The faces.
     pub faces: [Face<T>; 6],
     /// The corners.
     pub corners: [Option<Key>; 8],
-    /// For solids that are made of surfaces along w.
+    /// For solids made of surfaces along w.
     pub layers: Option<Layers<T>>,
 }
 
 impl<T: Real> Faces<T> {
-    /// Six faces of the solid's own.
+    /// Six faces that belong to this solid alone.
     pub fn own() -> Self {
         Faces {
             faces: [Face::Own, Face::Own, Face::Own, Face::Own, Face::Own, Face::Own],

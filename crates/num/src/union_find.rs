@@ -2,19 +2,19 @@
 //!
 //! The smallest member represents its set, so results do not depend on the order of the joins.
 
-/// Sets of the numbers 0 .. n.
+/// A partition of the numbers 0 .. n.
 #[derive(Clone, Debug, Default)]
 pub struct UnionFind {
     above: Vec<u32>,
 }
 
 impl UnionFind {
-    /// `n` sets of one number each.
+    /// `n` sets with one number each.
     pub fn new(n: usize) -> Self {
         Self { above: (0..n as u32).collect() }
     }
 
-    /// One more set, of one number, which is returned.
+    /// Adds a set with one number, which is returned.
     pub fn push(&mut self) -> u32 {
         self.above.push(self.above.len() as u32);
         self.above.len() as u32 - 1
@@ -31,7 +31,7 @@ impl UnionFind {
         M::of(k)
     }
 
-    /// Makes the sets of `a` and `b` one.
+    /// Merges the sets of `a` and `b`.
     pub fn join<M: MemberIndex>(&mut self, a: M, b: M) {
         let (a, b) = (self.find(a).index(), self.find(b).index());
         self.above[a.max(b)] = a.min(b) as u32;
@@ -71,8 +71,8 @@ impl MemberIndex for usize {
     }
 }
 
-/// Sets of the numbers 0 .. n whose members are alike or opposite to each other, such as patches that
-/// face the same side or not.
+/// A partition of the numbers 0 .. n into sets whose members have the same or opposite signs, such
+/// as patches that face the same side or not.
 #[derive(Clone, Debug, Default)]
 pub struct SignedUnionFind {
     /// Another member of the set, and whether this one is opposite to it.
@@ -85,7 +85,7 @@ impl SignedUnionFind {
         Self { above: (0..n).map(|k| (k, false)).collect() }
     }
 
-    /// The smallest member of the set of `k`, and whether `k` is opposite to it.
+    /// The smallest member of the set of `k`, and true if `k` has the opposite sign.
     pub fn find(&mut self, k: usize) -> (usize, bool) {
         let mut chain = Vec::new();
         let mut at = k;
@@ -101,8 +101,8 @@ impl SignedUnionFind {
         (at, opposite)
     }
 
-    /// Makes the sets of `p` and `q` one, `opposite` to each other or alike. Numbers in one set already
-    /// stay as they are: a band with a twist has no sides.
+    /// Merges the sets of `p` and `q` with the same or `opposite` signs. Numbers already in one set
+    /// keep their signs: a twisted band has no sides.
     pub fn join(&mut self, p: usize, q: usize, opposite: bool) {
         let ((a, p_opposite), (b, q_opposite)) = (self.find(p), self.find(q));
         if a != b {

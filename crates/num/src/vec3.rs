@@ -92,7 +92,7 @@ impl<T: Real> Vec3<T> {
         self.map(|a| a.re())
     }
 
-    /// A plain vector as a constant of this scalar.
+    /// A plain vector as a constant of another scalar.
     pub fn lifted(v: Vec3<f64>) -> Self {
         v.map(T::from)
     }
@@ -113,7 +113,7 @@ impl<T: Real> Vec3<T> {
         self.x.bits_eq(o.x) && self.y.bits_eq(o.y) && self.z.bits_eq(o.z)
     }
 
-    /// Some unit vector perpendicular to this one (which must not be zero).
+    /// A unit vector perpendicular to this one (which must not be zero).
     pub fn perpendicular(self) -> Self {
         let a = self.re();
         let (x, y, z) = (a.x.abs(), a.y.abs(), a.z.abs());

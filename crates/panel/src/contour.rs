@@ -5,7 +5,7 @@ use moldloft_num::{Order, Real, Vec3, find_root};
 use moldloft_registry::{Attributes, Family, SurfaceRef, TriangleBody};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One line of a section: points on the surface and in the plane, to rounding.
+/// One line of a section, with points that are on the surface and in the plane, up to rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contour {
     /// Points in order along the line.
@@ -16,8 +16,7 @@ pub struct Contour {
     pub closed: bool,
 }
 
-/// The grid on which a surface is searched for sections: a line that stays inside one cell is not
-/// seen.
+/// The grid for finding sections of a surface: a line inside a single cell is missed.
 pub struct ContourCutter<'s, T: Real> {
     surface: &'s SurfaceRef<T>,
     us: Vec<f64>,
@@ -29,7 +28,7 @@ pub struct ContourCutter<'s, T: Real> {
 type GridEdge = (usize, usize, bool);
 
 impl<'s, T: Real> ContourCutter<'s, T> {
-    /// Tabulates `surface` at least four times as fine as its panels, 32 steps at least.
+    /// Tabulates `surface` at least four times as finely as its panels, with 32 steps or more.
     pub fn new(surface: &'s SurfaceRef<T>, head: &Attributes) -> Self {
         let breaks = surface.breaks();
         let steps = |k: usize| {
@@ -49,8 +48,8 @@ impl<'s, T: Real> ContourCutter<'s, T> {
         Self { surface, us, vs, points }
     }
 
-    /// The lines in which the member `value` of a family cuts the surface, those that begin at an
-    /// edge first, each from the edge point of lowest grid index.
+    /// The lines in which the member `value` of a family cuts the surface: first those that begin
+    /// at an edge, each from the edge point of lowest grid index.
     pub fn section(&self, family: &Family<T>, value: T) -> Vec<Contour> {
         let nv = self.vs.len();
         let over = |p: Vec3| family.height(value, Vec3::lifted(p)).re();

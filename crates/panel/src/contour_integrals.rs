@@ -14,15 +14,15 @@ use moldloft_registry::{Family, SurfaceRef, TriangleBody};
 /// One line of a section, with its integrals.
 #[derive(Clone, Debug)]
 pub struct ContourPiece<T> {
-    /// Its points; for nesting and for ends that meet.
+    /// Its points, for nesting and for connecting ends.
     pub points: Vec<Vec3>,
     /// Its first point.
     pub from: Vec3<T>,
-    /// Its last point; the first one again when the line closes.
+    /// Its last point; the first one again for a closed line.
     pub to: Vec3<T>,
     /// Its length.
     pub length: T,
-    /// Half the integral of r x dr about the origin of coordinates given: for a closed line the vector of its area.
+    /// Half the integral of r x dr about a given origin: the area vector of a closed line.
     pub swept: Vec3<T>,
 }
 
@@ -56,8 +56,8 @@ struct ContourNode<T> {
     free: usize,
 }
 
-/// The integrals of a line of the section `value` of a surface; `None` where they are not finite or the line cannot be
-/// followed.
+/// The integrals of a line of the section `value` of a surface; `None` if they are not finite or
+/// the line cannot be followed.
 pub fn contour_piece<T: Real>(
     line: &Contour,
     surface: &SurfaceRef<T>,
@@ -231,8 +231,8 @@ impl<T: Real> SectionChord<T> {
     }
 }
 
-/// The integrals of the section of a body by a plane or half-plane: its length, and the vector of its area, outer
-/// lines positive along the plane's normal. `None` where the section is not plane.
+/// The integrals of the section of a body by a plane or half-plane: its length and its area vector,
+/// outer lines being positive along the plane's normal. `None` if the section is not plane.
 pub fn body_integrals<T: Real>(
     body: &TriangleBody<T>,
     family: &Family<T>,

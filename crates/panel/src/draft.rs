@@ -31,8 +31,8 @@ pub(crate) fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>
     }
 }
 
-/// The divisions of a surface itself: its own or, for an image without any, those of its original;
-/// the default for those left to the neighbours.
+/// The divisions of a surface: its own, or those of its original for an image without divisions;
+/// the default where neighbours would decide.
 pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
     let mut at = object;
     while !at.head.divided
@@ -50,7 +50,7 @@ pub(crate) type SharedKnuckles = Arc<Knuckles>;
 /// The knuckles of surfaces; an image breaks where its original does.
 struct KnuckleFinder<'g> {
     graph: &'g Graph<f64>,
-    /// Those of an earlier state, with the graph's last change at that time.
+    /// The knuckles of an earlier state, with the graph's last change at that time.
     before: Option<(&'g HashMap<Key, SharedKnuckles>, u64)>,
     found: HashMap<Key, SharedKnuckles>,
 }

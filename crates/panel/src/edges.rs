@@ -215,7 +215,7 @@ pub(crate) enum PatchParameters<T> {
 }
 
 impl<T: Scalar> PatchParameters<T> {
-    /// Those of a patch whose edges have their divisions at `edges`.
+    /// The parameters of the points of a patch whose edges have their divisions at `edges`.
     pub fn of(surface: &SurfaceRef<T>, frame: &PatchTopology, edges: &[Vec<T>; 4]) -> Self {
         let [south, east, north, west] = edges;
         let even =

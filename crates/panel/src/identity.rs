@@ -41,7 +41,7 @@ pub(crate) enum AliasStep {
     Part {
         /// The join.
         join: Key,
-        /// Which of its edges.
+        /// The edge of the join, 0 or 1.
         edge: u8,
     },
     /// Onto the part of a root between two points of it.

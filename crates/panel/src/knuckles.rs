@@ -44,10 +44,10 @@ pub(crate) struct KnuckleLine {
 /// The knuckles of a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Knuckles {
-    /// Those along u = const and v = const, ascending, between 0 and 1.
+    /// The knuckles along u = const and v = const, ascending, between 0 and 1.
     pub straight: [Vec<f64>; 2],
-    /// Those of the whole that cross it from edge to edge; of two from an edge to the opposite one, the first is below the
-    /// second on both.
+    /// Knuckles of the whole surface that cross it from edge to edge. Of two between the same
+    /// opposite edges, the first is below the second on both.
     pub across: Vec<KnuckleLine>,
     /// A point of one of the whole that is none of these: a loop, one through a corner, one that meets another.
     pub loose: Option<[f64; 2]>,

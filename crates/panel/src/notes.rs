@@ -2,34 +2,34 @@
 
 use moldloft_num::Vec3;
 
-/// A patch between two given counts, and its link to the next.
+/// A patch between two contradictory counts, and its link to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainStep {
     /// The patch.
     pub patch: String,
-    /// `'u'` or `'v'`: the parameter along which it has the count.
+    /// `'u'` or `'v'`: the parameter of the count.
     pub along: char,
     /// Link to the next patch; empty for the last.
     pub shares: String,
 }
 
-/// Something about the joins that the user may want to know.
+/// A note to the user about joins.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PanelNote {
-    /// Two given counts belong to one chain of patches but differ, so that panels do not join
-    /// somewhere between.
+    /// Two given counts contradict each other along a chain of patches, so panels do not join
+    /// somewhere between them.
     Divisions {
         /// The patches from one to the other.
         chain: Vec<ChainStep>,
         /// The counts stated for the first and the last.
         divisions: [u32; 2],
     },
-    /// The pieces of an edge do not add up to the count of its patch, so that panels do not join
-    /// there.
+    /// The counts of the pieces of an edge do not add up to that of its patch, so panels do not
+    /// join there.
     Pieces {
         /// The patch.
         patch: String,
-        /// The parameter along its edge.
+        /// The parameter along the edge.
         along: char,
         /// Its count.
         divisions: u32,
@@ -48,7 +48,7 @@ pub enum PanelNote {
     /// The corner of a patch is in the middle of an edge of another without being its vertex, or
     /// coincides with a different vertex of it.
     Junction {
-        /// The patch, and the edge's patch.
+        /// The patch with the corner, and the patch with the edge.
         patches: [String; 2],
         /// (u, v) of the corner.
         corner: [u8; 2],
@@ -61,7 +61,7 @@ pub enum PanelNote {
     },
     /// Two edges of patches coincide but are not joined.
     Unjoined {
-        /// The patches; twice the same for one that closes.
+        /// The patches; the same one twice for a patch that closes.
         patches: [String; 2],
         /// Their edges 0..4 (v = 0, u = 1, v = 1, u = 0).
         edges: [u8; 2],
@@ -74,22 +74,23 @@ pub enum PanelNote {
         /// Start.
         at: Vec3,
     },
-    /// A declared join of an edge with a part of another, whose ends are no points of that.
+    /// A declared join of an edge with a part of another edge, but the ends are not points of that
+    /// edge.
     PartEnds {
         /// The join.
         join: String,
-        /// The end that is none, if the other end is one.
+        /// The end that is not a point of the other edge, if only one is not.
         end: Option<String>,
     },
-    /// The border of a sheet of triangles intersects itself, or has no area, with the divisions of
-    /// its neighbours; so it is joined to none of them.
+    /// The border of a sheet of triangles intersects itself or has no area with the divisions of
+    /// its neighbours, so the sheet is not joined to them.
     Border {
         /// The sheet.
         patch: String,
         /// The divisions of the curves of its border.
         divisions: Vec<usize>,
     },
-    /// A knuckle of the original surface of a patch crosses its panels, which cut it off.
+    /// A knuckle of a patch's original surface crosses its panels, which cut it off.
     Knuckle {
         /// The patch.
         patch: String,
@@ -97,10 +98,10 @@ pub enum PanelNote {
         uv: [f64; 2],
         /// Position.
         at: Vec3,
-        /// The area of the panels and that of the surface.
+        /// The area of the panels, and that of the surface.
         area: Option<[f64; 2]>,
     },
-    /// Panels are farther from their surface than the tolerance.
+    /// Panels that are farther from their surface than the tolerance.
     Coarse {
         /// The patch.
         patch: String,
@@ -130,7 +131,7 @@ impl PanelNote {
         }
     }
 
-    /// True if it opens the mesh of a closed shape.
+    /// True if it leaves the mesh of a closed shape open.
     pub fn is_error(&self) -> bool {
         !matches!(
             self,
@@ -187,7 +188,7 @@ impl PanelNote {
         text.to_string()
     }
 
-    /// The object that it is reported with.
+    /// The object at which it is reported.
     pub fn object(&self) -> Option<&str> {
         match self {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
@@ -270,7 +271,7 @@ impl std::fmt::Display for PanelNote {
                 let edge = |k: u8| ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
                 write!(
                     f,
-                    "edge {} of `{a}` and edge {} of `{b}` lie in one place along {panels} panels \
+                    "edge {} of `{a}` and edge {} of `{b}` coincide along {panels} panels \
                      ({length:.6} long, from ({}, {}, {})) but are not joined",
                     edge(*k),
                     edge(*l),

@@ -23,7 +23,7 @@ pub struct FaceOutline {
     pub surface: SurfaceRef<f64>,
     /// True when its panels face against the natural normal.
     pub reversed: bool,
-    /// The loops; the first is the outer one. Sides follow one another.
+    /// The loops, the outer one first, with consecutive sides.
     pub loops: Vec<Vec<OutlineSide>>,
 }
 
@@ -34,9 +34,9 @@ pub struct OutlineSide {
     pub along: OutlineCurve,
     /// True if the loop has the opposite direction.
     pub backwards: bool,
-    /// The vertices of the mesh on it, by increasing parameter.
+    /// The vertices of the mesh on the side, by increasing parameter.
     pub vertices: Vec<u32>,
-    /// Their parameters, from 0 to 1.
+    /// The parameters of these vertices, from 0 to 1.
     pub at: Vec<f64>,
 }
 
@@ -50,8 +50,8 @@ pub enum OutlineCurve {
 }
 
 impl Panelling {
-    /// The faces of all shown surfaces and trimmed sheets, in the order of the mesh's patches; `None` when one
-    /// has no value. Bodies of triangles without surfaces are not among them: their names are the second part.
+    /// The faces of all shown surfaces and trimmed sheets, in the order of the mesh's patches, and
+    /// the names of bodies of triangles without surfaces; `None` when a surface has no value.
     pub fn outlines(&self, graph: &Graph<f64>) -> Option<(Vec<FaceOutline>, Vec<Arc<str>>)> {
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let mut faces = Vec::new();

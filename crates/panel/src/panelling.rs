@@ -36,10 +36,10 @@ const BYTES: u64 = 200;
 /// Maximum number of refinements until panels are accurate enough.
 const MAX_ROUNDS: usize = 4;
 
-/// The most panels of a model.
+/// Maximum number of panels of a model.
 pub const MOST_PANELS: u64 = 20_000_000;
 
-/// The fault of `count` panels.
+/// The error of a model with `count` panels.
 pub fn too_many_panels(count: u64) -> CallError {
     CallError::new("too-many-panels", format!("{count} panels are too many"))
         .expected(format!("at most {MOST_PANELS}"))
@@ -102,8 +102,9 @@ impl Panelling {
         Self::made(graph, None, None, None)
     }
 
-    /// The panelling with as many divisions as bring panels as near to their surfaces as this; stated divisions are the
-    /// least. Bodies that have no border are as they are. Panels that stay farther away are a remark.
+    /// The panelling with enough divisions for this accuracy; stated divisions are a minimum.
+    /// Bodies without a border are unchanged. Panels that remain farther away are reported as a
+    /// warning.
     ///
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
@@ -157,9 +158,9 @@ impl Panelling {
         farthest
     }
 
-    /// The same with the counts of `nominal` where lengths would decide them. Unchanged parts of
-    /// `before`, a panelling of the same graph at an earlier state, are reused; the result is the
-    /// same without it.
+    /// As `new`, with the counts of `nominal` where lengths would decide. Unchanged parts of
+    /// `before`, a panelling of the same graph at an earlier state, are reused, with the same
+    /// result.
     ///
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
@@ -284,7 +285,7 @@ impl Panelling {
         &self.remarks
     }
 
-    /// True when some count may follow from lengths, so that it may change with the shape.
+    /// True when a count depends on lengths, so that it may change with the shape.
     pub fn is_measured(&self) -> bool {
         self.measured
     }
@@ -304,13 +305,13 @@ impl Panelling {
     }
 
     /// The names of the patches' surfaces, in the order of the topology's patches; bodies of
-    /// triangles come after them.
+    /// triangles follow.
     pub fn surfaces(&self) -> impl Iterator<Item = &Arc<str>> {
         self.structure.patches.iter().filter(|f| f.meshed).map(|f| &f.name)
     }
 
     /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a surface
-    /// has no value there.
+    /// has no value in that graph.
     pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
         let points = evaluated_all(&self.structure, &self.names, graph, |_| None);
         let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
@@ -340,7 +341,7 @@ impl Panelling {
         Mesh::new(self.topology().clone(), self.positions(graph)?).ok()
     }
 
-    /// The mesh at the state that the panelling was made of.
+    /// The mesh of the state from which the panelling was made.
     pub fn own_mesh(&self) -> Option<Mesh<f64>> {
         Mesh::new(self.topology().clone(), self.gathered(&self.points, &self.own_body_points()))
             .ok()
@@ -370,7 +371,8 @@ impl Panelling {
         self.bodies.iter().flat_map(|b| b.own_points(&b.facets, &self.points)).collect()
     }
 
-    /// The vertices' positions from those of the patches by themselves, and those of the bodies.
+    /// The vertices' positions, from the separate positions of the patches and from those of the
+    /// bodies.
     fn gathered<T: Real>(&self, points: &[Arc<Vec<Vec3<T>>>], bodies: &[Vec3<T>]) -> Vec<Vec3<T>> {
         let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
         let last = positions.len() - bodies.len();

@@ -15,9 +15,10 @@ use std::ops::Range;
 const PART: usize = 2048;
 
 impl Panelling {
-    /// Adds the derivatives of weighted sums of the vertices by the nodes of this thread's tape, of which `graph` consists:
-    /// `weights` and `adjoints` are those of each sum. What was recorded before stays on the tape ([`DerivativeTape::keep`]); nothing
-    /// can be recorded after it.
+    /// Adds the derivatives of weighted sums of the vertices with respect to the nodes of this
+    /// thread's tape, on which `graph` was recorded; there is one of `weights` and `adjoints` for
+    /// each sum. Nodes recorded before are kept ([`DerivativeTape::keep`]); nothing can be recorded
+    /// afterwards.
     ///
     /// `None` when a surface has no value there, or another one than the panelling was made of.
     pub fn pull(

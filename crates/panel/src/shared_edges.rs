@@ -10,13 +10,13 @@ use std::sync::Arc;
 /// A part of an edge of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeStretch {
-    /// Its number: edges, of any patches, that have a stretch of the same number are one there.
+    /// Its number: edges with stretches of the same number coincide there.
     pub id: u32,
     /// True if the edge has the opposite direction to the stretch.
     pub backwards: bool,
-    /// The edge's parameter where the stretch begins and ends, ascending.
+    /// The range of the edge's parameter on the stretch, ascending.
     pub range: [f64; 2],
-    /// The vertices of the mesh there.
+    /// The vertices of the mesh on it.
     pub vertices: [u32; 2],
 }
 
@@ -29,12 +29,13 @@ pub struct PatchEdge {
     pub edge: u8,
     /// Its stretches, in increasing parameter; empty for a pole.
     pub stretches: Vec<EdgeStretch>,
-    /// The vertices of the mesh at its begin and end.
+    /// The vertices of the mesh at the ends of the edge.
     pub vertices: [u32; 2],
 }
 
 impl Panelling {
-    /// The edges of all patches that have panels, in the order of the topology's patches, four each.
+    /// The edges of all patches with panels, four per patch, in the order of the topology's
+    /// patches.
     ///
     /// Numbers of stretches are those of this panelling. An edge whose divisions contradict those
     /// of its neighbours, which is reported, has no stretches although it has a length.

@@ -12,7 +12,7 @@ use moldloft_registry::{Border, Scalar, SurfaceRef, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// Surfaces and panels that bound the body; independent of the scalar.
+/// The surfaces and panels that bound the body; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Skin {
     sides: Vec<SkinSide>,
@@ -46,9 +46,8 @@ enum SideShape<T: Scalar> {
 const MOST_PIECES: usize = 2500;
 
 impl Skin {
-    /// The skin of a mesh that `panelling` made of `graph`: the patches that bound the body.
-    /// `mirrors` are the axes normal to the model's planes of symmetry; edges open at these are not
-    /// open.
+    /// The skin of the mesh of `panelling` and `graph`: the patches that bound the body. `mirrors`
+    /// are the axes normal to the model's planes of symmetry; these planes close edges.
     pub fn new<T: Scalar>(
         panelling: &Panelling,
         mesh: &Mesh<f64>,
@@ -147,8 +146,8 @@ impl Skin {
         skin
     }
 
-    /// The patches that are measured on their panels: they have no surface, it has very many pieces, or
-    /// the loops of a part cross.
+    /// The patches measured by their panels: they have no surface, the surface has too many pieces,
+    /// or the loops of a part cross.
     pub fn on_panels(&self) -> &[String] {
         &self.on_panels
     }
@@ -158,18 +157,18 @@ impl Skin {
         &self.sides[index].name
     }
 
-    /// The patches with an edge that nothing closes: neither a neighbour nor a mirror image.
+    /// The patches with an open edge, closed neither by a neighbour nor by a mirror image.
     pub fn open(&self) -> &[String] {
         &self.open
     }
 
-    /// True when nothing bounds a body.
+    /// True when there is no body.
     pub fn is_empty(&self) -> bool {
         self.sides.is_empty() && self.faces.is_empty()
     }
 
-    /// The body with the scalar of `graph`; `None` if a surface has no value there, or one that is
-    /// not finite.
+    /// The body with the scalar of `graph`; `None` if a surface has no value there or is not
+    /// finite.
     pub fn body<T: Scalar>(
         &self,
         panelling: &Panelling,
@@ -187,7 +186,7 @@ impl Skin {
         self.with_sides(graph, |sides| Body::new(sides, panels, rims, self.size, accuracy))
     }
 
-    /// What is made of the sides; `None` if a surface has no value in `graph`.
+    /// The result of a function of the sides; `None` if a surface has no value in `graph`.
     fn with_sides<T: Scalar, R>(
         &self,
         graph: &Graph<T>,
@@ -215,10 +214,10 @@ impl Skin {
         made(&sides)
     }
 
-    /// Adds the derivatives of weighted sums of hydrostatic figures by the nodes of this thread's
-    /// tape, of which `graph` consists ([`pull_hydrostatics`]), and returns those by the vertices of
-    /// `mesh` on whose panels the skin is measured. `weights` are those of each sum by the name of
-    /// the figure, `mirrors` as for [`Skin::new`].
+    /// Adds the derivatives of weighted sums of hydrostatic figures with respect to the nodes of
+    /// this thread's tape, on which `graph` was recorded ([`pull_hydrostatics`]), and returns those
+    /// by the vertices of `mesh` on whose panels the skin is measured. `weights` are those of each
+    /// sum by the name of the figure, `mirrors` as for [`Skin::new`].
     pub fn pull_hydrostatics(
         &self,
         mesh: &Mesh<f64>,
@@ -252,7 +251,7 @@ impl Skin {
         Some(corners.into_iter().map(of_sum).collect())
     }
 
-    /// True when a part of the skin is measured on panels.
+    /// True when a part of the skin is measured by panels.
     pub fn has_panels(&self) -> bool {
         !self.faces.is_empty()
     }

@@ -97,7 +97,7 @@ type EdgePair = [(usize, u8); 2];
 impl Panelling {
     /// Coincident but unjoined elements, for checks: edges of patches, and corners on open edges of
     /// other patches, in the middle of a panel's edge (a T-junction) or at another vertex. It takes
-    /// longer than panelling itself.
+    /// longer than the panelling.
     pub fn junctions(&self, graph: &Graph<f64>) -> Vec<PanelNote> {
         let Some(open) = OpenEdges::new(self.sides(graph)) else { return Vec::new() };
         let known = PatchValues::new(graph, &self.structure, &self.names);

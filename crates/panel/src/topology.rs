@@ -31,11 +31,11 @@ const MOST_DIVISIONS: f64 = 1e6;
 /// Stretches of a patch's edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum EdgeRun {
-    /// These stretches, with the count on each.
+    /// Stretches of lines of the graph, with the count on each.
     Along(Vec<(EdgeInterval, u32)>),
     /// Stretches whose counts do not add up to that of the patch, so that it is joined at its two ends alone.
     Loose(Vec<EdgeInterval>),
-    /// The same line as edge 0..4 of the patch.
+    /// The line of another edge 0..4 of the same patch.
     Same(u8),
     /// One point.
     Pole(Option<Key>),
@@ -122,7 +122,7 @@ fn side(patch: usize, direction: usize) -> Node {
 /// whether its direction is reversed.
 type IntervalShares = HashMap<(IntervalId, u32), (bool, Shares)>;
 
-/// The counts of divisions of another state of a model, to be kept where they are free.
+/// The counts of divisions of a model in another state, used where counts are free.
 #[derive(Clone, Debug, Default)]
 pub struct Nominal(pub(crate) Arc<HashMap<(Arc<str>, Option<u32>), Counts>>);
 

@@ -12,7 +12,7 @@ use moldloft_num::Vec3;
 pub struct PointName {
     /// The point.
     pub at: Vec3,
-    /// The name; letters other than those of names of the language are drawn as boxes.
+    /// The name; characters that cannot occur in names of the language are drawn as boxes.
     pub text: String,
     /// sRGB colour.
     pub colour: [u8; 3],

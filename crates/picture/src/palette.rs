@@ -3,8 +3,8 @@
 use moldloft_mesh::{Patch, Tag};
 
 /// The sixteen colours of model files (the order of the EGA palette: black, blue, green, cyan, red,
-/// magenta, brown, light grey, then the bright eight), softened so that shading shows on them and
-/// they part from a light background. sRGB.
+/// magenta, brown, light grey, then the bright eight), softened so that shading is visible on them
+/// and they contrast with a light background. sRGB.
 pub const PALETTE: [[u8; 3]; 16] = [
     [0x46, 0x4d, 0x57],
     [0x3a, 0x66, 0xad],
@@ -27,7 +27,8 @@ pub const PALETTE: [[u8; 3]; 16] = [
 /// Colours of patches without their own, in turn.
 const TURN: [usize; 8] = [9, 14, 10, 12, 11, 13, 6, 7];
 
-/// The colour of a patch: its own by index, else by role, else the next in turn.
+/// The colour of a patch: by its colour index, otherwise by its role, otherwise the next in
+/// sequence.
 pub fn patch_colour(patch: &Patch, index: usize) -> [u8; 3] {
     let own = patch.info.colour.and_then(|c| PALETTE.get(c as usize));
     let by_role = match patch.info.tag {

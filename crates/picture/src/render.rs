@@ -27,7 +27,7 @@ pub struct StyledPolyline {
 pub struct PatchStyle {
     /// sRGB colour.
     pub colour: [u8; 3],
-    /// True to draw it slightly nearer, so that it covers a coincident surface.
+    /// True to draw the line slightly nearer, so that it covers a coincident surface.
     pub raised: bool,
 }
 
@@ -42,11 +42,12 @@ pub struct Options {
     pub camera: Camera,
     /// Draw the rims of the patches.
     pub borders: bool,
-    /// Draw the sides of the panels; they fade where panels are only a few points wide.
+    /// Draw the sides of the panels; they fade where panels are only a few pixels wide.
     pub edges: bool,
-    /// Shade across panels as if the surface were smooth, but for creases above 40 degrees.
+    /// Shade across panels as if the surface were smooth, except at creases above 40 degrees.
     pub smooth: bool,
-    /// Show the mirror images in these of the planes x = 0, y = 0, z = 0, too, and those of the images.
+    /// Also show the mirror images in these of the planes x = 0, y = 0, z = 0, and the images of
+    /// the images.
     pub mirrors: [bool; 3],
     /// Draw the directions of the axes in the corner.
     pub axes: bool,
@@ -77,7 +78,7 @@ impl Default for Options {
     }
 }
 
-/// Why there is no picture.
+/// Reason why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PictureError {
     /// A side of the picture is 0 or above [`PictureError::LARGEST`].
@@ -101,7 +102,7 @@ pub enum PictureError {
 }
 
 impl PictureError {
-    /// The most picture points along a side.
+    /// Maximum number of pixels along a side.
     pub const LARGEST: usize = 8192;
 }
 
@@ -131,7 +132,7 @@ const AT_ONCE: usize = 16;
 /// Colour of the rims of patches.
 const RIM: [u8; 3] = [0x2b, 0x33, 0x3f];
 
-/// The picture of a mesh and some lines, as the bytes of a PNG file. The camera sees all of them.
+/// The picture of a mesh and some lines, as the bytes of a PNG file. The camera shows all of them.
 ///
 /// # Errors
 /// An impossible size, positions that are not finite.
@@ -435,7 +436,7 @@ fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
     }
 }
 
-/// The PNG file of picture points, three bytes each, row by row from the top.
+/// The PNG file of pixels, three bytes each, row by row from the top.
 ///
 /// # Errors
 /// The error of the encoder.

@@ -5,7 +5,7 @@ use crate::{Argument, Attributes, CallError, Class, FieldId, FieldSpec, Row, Val
 use moldloft_num::Real;
 use moldloft_num::trace::Key;
 
-/// The arguments of a call as they were written.
+/// The arguments of a call, as written.
 #[derive(Clone, Debug)]
 pub struct Given<'a, T: Real> {
     /// In order.
@@ -15,8 +15,8 @@ pub struct Given<'a, T: Real> {
 }
 
 /// Puts arguments in the order of the row's fields, fills in defaults and checks count, names,
-/// classes and ranges; `class_of` reports the class of an object that was not read yet. Named
-/// arguments that belong to the head go there.
+/// classes and ranges; `class_of` gives the class of an object that has not been read. Named
+/// arguments of the head are stored there.
 ///
 /// # Errors
 /// A [`CallError`] with its position.
@@ -206,7 +206,7 @@ fn gives_items(item: Class, found: Class) -> bool {
     }
 }
 
-/// Checks that must wait for the evaluation of an object: number of items, and range of numbers.
+/// Checks that require the evaluation of an object: number of items, and range of numbers.
 ///
 /// # Errors
 /// A [`CallError`] with its item.

@@ -33,7 +33,7 @@ impl Spacing {
         ("end", Spacing::End),
     ];
 
-    /// True when all panels are alike.
+    /// True when all panels have the same length.
     pub fn is_even(&self) -> bool {
         matches!(self, Spacing::Uniform) || *self == Spacing::Growth(1.0)
     }
@@ -62,7 +62,7 @@ impl Spacing {
         }
     }
 
-    /// The same seen from the other end.
+    /// The same spacing seen from the other end.
     pub fn reversed(self) -> Self {
         match self {
             Spacing::Start => Spacing::End,
@@ -72,7 +72,7 @@ impl Spacing {
         }
     }
 
-    /// As an argument: a word or a number.
+    /// The spacing as an argument: a word or a number.
     pub fn spelled(&self) -> String {
         match self {
             Spacing::Growth(q) => q.to_string(),
@@ -87,12 +87,12 @@ impl Spacing {
 /// Attributes of a surface's panels besides their number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PanelAttributes {
-    /// The aimed length of panels along u and v, in the model's unit.
+    /// The target length of panels along u and v, in the model's unit.
     pub size: [Option<f64>; 2],
-    /// Their spacing along u and v, where it is stated.
+    /// Their spacing along u and v, if stated.
     pub spacing: [Option<Spacing>; 2],
-    /// Role of its patch for a flow solver or builder: "wetted", "lid", "waterline", "symmetry",
-    /// and names of the user's own.
+    /// Role of its patch for a flow solver or builder: "wetted", "lid", "waterline", "symmetry", or
+    /// names given by the user.
     pub tags: Vec<Arc<str>>,
 }
 
@@ -105,23 +105,22 @@ impl Eq for PanelAttributes {}
 pub struct Attributes {
     /// Colour index 0..=255; 0..=15 are the sixteen classic ones.
     pub colour: i32,
-    /// Visibility: positive shown, 0 or negative hidden; the magnitude is a display mask that is
-    /// kept as it is.
+    /// Visibility: positive shown, 0 or negative hidden; the magnitude is a display mask, stored
+    /// unchanged.
     pub visible: i32,
     /// Layer 0..=255.
     pub layer: i32,
-    /// Divisions in each parameter: panels along it. 0 leaves it to the neighbours.
+    /// Divisions along each parameter: the number of panels. With 0 the neighbours decide.
     pub divisions: [u32; 2],
     /// Subdivisions of each division: finer tabulation between panel edges.
     pub subdivisions: [u32; 2],
     /// 1 when the normal of the panels is opposite to the natural one.
     pub orientation: i32,
-    /// Attributes of a model file, such as `A:Note(port side)`, kept as they are.
+    /// Attributes of a model file, such as `A:Note(port side)`, stored unchanged.
     pub attributes: Option<Arc<str>>,
-    /// Divisions of a solid in u, v and w; 0 in a direction in which its neighbours, or the default,
-    /// decide.
+    /// Divisions of a solid in u, v and w; with 0 the neighbours, or the default, decide.
     pub blocks: [u32; 3],
-    /// True when divisions were given: an image without any is divided like its original.
+    /// True when divisions were given: an image without divisions has those of its original.
     pub divided: bool,
     /// Attributes of the panels besides their number.
     pub panels: Option<Arc<PanelAttributes>>,
@@ -152,14 +151,14 @@ pub const ATTRIBUTES: [FieldSpec; 10] = [
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
     head(
         "divisions",
-        "Panels along the curve, or {along u, along v}, or cells {u, v, w} of a solid; 0 or \"auto\": as the \
-         neighbours have.",
+        "Panels along the curve, or {along u, along v}, or cells {u, v, w} of a solid; 0 or \
+        \"auto\": taken from the neighbours.",
         DefaultValue::Unset,
     ),
     head("subdivisions", "Steps in each division, or {in u, in v}.", DefaultValue::Unset),
     FieldSpec {
         class: Class::Number,
-        ..head("size", "Aimed length of panels, or {along u, along v}.", DefaultValue::Unset)
+        ..head("size", "Target length of panels, or {along u, along v}.", DefaultValue::Unset)
     },
     FieldSpec {
         class: Class::Any,
@@ -175,19 +174,20 @@ pub const ATTRIBUTES: [FieldSpec; 10] = [
         many: true,
         ..head(
             "tags",
-            "What the patch is: \"wetted\", \"lid\", \"waterline\", \"symmetry\" or names of your own.",
+            "Role of the patch: \"wetted\", \"lid\", \"waterline\", \"symmetry\" or names of your \
+            own.",
             DefaultValue::Unset,
         )
     },
     head("orientation", "1 reverses the normals of a surface's panels.", DefaultValue::Unset),
     FieldSpec {
         class: Class::Text,
-        ..head("attributes", "Attributes of a model file, kept as they are.", DefaultValue::Unset)
+        ..head("attributes", "Attributes of a model file, stored unchanged.", DefaultValue::Unset)
     },
 ];
 
 impl Attributes {
-    /// The head of an object of `class` that says nothing.
+    /// The default head of an object of `class`.
     pub fn of(class: Class) -> Self {
         let (colour, divisions, subdivisions) = match class.dimension() {
             Some(0) => (14, [1, 1], [1, 1]),
@@ -209,7 +209,7 @@ impl Attributes {
         }
     }
 
-    /// True when the object is drawn and meshed.
+    /// True when the object is displayed and panelled.
     pub fn shown(&self) -> bool {
         self.visible > 0
     }
@@ -304,12 +304,12 @@ impl Attributes {
 }
 
 impl Attributes {
-    /// Its divisions; those left to the neighbours have the default of its class.
+    /// Its divisions; where neighbours decide, the default of its class.
     pub fn own_divisions(&self) -> [u32; 2] {
         self.divisions.map(|n| if n == 0 { 8 } else { n })
     }
 
-    /// The divisions that are stated, along u and v.
+    /// The stated divisions, along u and v.
     pub fn stated_divisions(&self) -> [Option<u32>; 2] {
         self.divisions.map(|n| (self.divided && n > 0).then_some(n))
     }

@@ -27,9 +27,9 @@ impl FieldId {
 pub enum Argument {
     /// The argument of a field.
     Field(FieldId),
-    /// The one with this number among the named arguments, as they are written.
+    /// The named argument with this number, as written.
     Named(usize),
-    /// The first that is too many.
+    /// The first superfluous argument.
     Extra,
 }
 
@@ -131,13 +131,13 @@ impl CallError {
         self
     }
 
-    /// Adds a note to another object, if it has a name: "`label`" is shown at its declaration.
+    /// Adds a note about another object, if it has a name: "`label`" is shown at its declaration.
     pub fn related(mut self, object: Option<Key>, label: impl Into<String>) -> Self {
         self.0.related.extend(object.map(|key| (key, label.into())));
         self
     }
 
-    /// Says which argument it is about, unless that is known already.
+    /// Sets the argument concerned, unless it is known already.
     pub fn in_field(self, field: FieldId) -> Self {
         self.in_argument(Argument::Field(field))
     }
@@ -149,14 +149,14 @@ impl CallError {
         self
     }
 
-    /// Says which item of a list argument it is about; the field is added by [`Self::in_field`].
+    /// Sets the item of a list argument concerned; the field is added by [`Self::in_field`].
     pub fn in_item(mut self, item: usize) -> Self {
         self.0.place = None;
         self.0.item = Some(item);
         self
     }
 
-    /// The position of the field that it is about.
+    /// Position of the field concerned.
     pub fn field(&self) -> Option<usize> {
         match self.0.place?.argument {
             Argument::Field(field) => Some(field.position()),
@@ -164,7 +164,7 @@ impl CallError {
         }
     }
 
-    /// The item of a list argument that it is about.
+    /// Item of the list argument concerned.
     pub fn item(&self) -> Option<usize> {
         self.0.place.map_or(self.0.item, |place| place.item)
     }

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Class of a value or argument. Classes are data: a bead is a point that also has its curve, so it
-/// is accepted wherever a point is expected.
+/// Class of a value or argument. Classes are data: a bead is a point with a curve, so it is
+/// accepted wherever a point is expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// Anything.
@@ -30,7 +30,7 @@ pub enum Class {
     Ring,
     /// A parametric curve.
     Curve,
-    /// A straight line, from the end of a curve to the other: an axis.
+    /// A straight line from one end of a curve to the other: an axis.
     Axis,
     /// A curve on a surface.
     Snake,
@@ -50,8 +50,8 @@ pub enum Class {
     AlongSnake,
     /// A surface, or a magnet on it as the start of a search.
     Onto,
-    /// Target of intersection or projection: a plane, a surface (or a magnet on it), a curve (or a
-    /// bead on it), a point, the zero set of a field.
+    /// Target of an intersection or projection: a plane, a surface (or a magnet on it), a curve (or
+    /// a bead on it), a point, or the zero set of a field.
     Target,
     /// A frame of three axes.
     Frame,
@@ -233,7 +233,7 @@ impl Class {
         }
     }
 
-    /// True for the classes of shapes that are meshed or drawn: they take divisions.
+    /// True for the classes of shapes that are panelled or displayed, which take divisions.
     pub fn dimension(self) -> Option<usize> {
         match self {
             Class::Point | Class::Bead | Class::Magnet | Class::Ring => Some(0),

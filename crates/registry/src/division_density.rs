@@ -30,7 +30,7 @@ impl Default for DivisionDensity {
 const SLACK: f64 = 1e-6;
 
 impl DivisionDensity {
-    /// Adds the stretch up to the next break: the integrals over equal parts of it.
+    /// Extends the table to the next break: the integrals over equal parts of the stretch.
     pub fn extend(&mut self, to: f64, parts: &[f64]) {
         let from = self.at[self.at.len() - 1];
         for (i, part) in parts.iter().enumerate() {
@@ -41,15 +41,15 @@ impl DivisionDensity {
         self.ends.push(self.at.len() - 1);
     }
 
-    /// Total of divisions: those of each stretch, rounded up.
+    /// Total number of divisions: that of each stretch, rounded up.
     pub fn count(&self) -> u32 {
         let parts = self.ends.windows(2).map(|w| self.sum[w[1]] - self.sum[w[0]]);
         parts.map(|x| (x - SLACK).ceil().clamp(1.0, 1e6) as u32).sum::<u32>().max(1)
     }
 
-    /// The ends of `count` divisions of the curve from one parameter to another: fractions of that
-    /// range, ascending, without 0 and 1. They have equal integrals; breaks are among them if there
-    /// are enough divisions.
+    /// The ends of `count` divisions of the curve from one parameter to another, as fractions of
+    /// that range, ascending, without 0 and 1. The divisions have equal integrals; breaks are among
+    /// the ends if there are enough divisions.
     pub fn shares(&self, from: f64, to: f64, count: u32) -> Vec<f64> {
         let mut stops = vec![from];
         let inner = self.ends.iter().map(|&k| self.at[k]);

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// One value of each type, made on first use. Copies share their content, so a model and its run
-/// with derivatives share it.
+/// One value of each type, made on first use. Copies share their content, so a model shares it with
+/// its runs with derivatives.
 ///
 /// The store must not change any result: it only saves work.
 #[derive(Clone, Default)]

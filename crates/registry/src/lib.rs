@@ -52,7 +52,7 @@ pub use triangle_body::{
 };
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Record, Value, Vectors};
 
-/// References of the derive macro's output.
+/// Definitions used by the output of the derive macro.
 #[doc(hidden)]
 pub mod export {
     pub use crate::relabelled::RELABEL_FIELD;

@@ -108,8 +108,9 @@ impl<T: Real> SurfaceRef<T> {
         *self.closed.get_or_init(|| closed_sides(&*self.shape))
     }
 
-    /// The parameters in (0, 1), in any order, at which a path, smooth between `spans`, may meet a line on which a
-    /// first derivative jumps: a part of its [crossings](Surface::crossings), which cost more.
+    /// The parameters in (0, 1), in any order, at which a path, smooth between `spans`, may meet a
+    /// line on which a first derivative jumps: a subset of its [crossings](Surface::crossings),
+    /// which are more expensive.
     pub fn kink_crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         let mut ends = spans.iter().flat_map(|t| path(*t));
         let closed = self.closed();

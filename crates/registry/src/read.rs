@@ -7,7 +7,7 @@ use crate::{
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Rev, Vec3};
 use std::sync::Arc;
 
-/// A type that an argument can be read as: the type of a kind's field.
+/// A type that an argument can be read as; the type of a kind's field.
 pub trait FromValue<T: Real>: Sized {
     /// The class the argument must have.
     const CLASS: Class;
@@ -237,7 +237,7 @@ fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, CallError> {
     Ok(Plane { point: Vec3::from(unit(at)), normal: Vec3::from(unit(1.0)) })
 }
 
-/// Element of mirroring or projection.
+/// Mirror or target of a projection.
 #[derive(Clone, Debug)]
 pub enum MirrorArgument<T: Real> {
     /// A plane.
@@ -263,8 +263,8 @@ impl<T: Real> MirrorArgument<T> {
         self.foot(p) * T::from(2.0) - p
     }
 
-    /// The map of free vectors that belongs to [`Self::image`] (to [`Self::foot`] with `project`):
-    /// its linear part.
+    /// The linear part of [`Self::image`] (of [`Self::foot`] with `project`), which maps free
+    /// vectors.
     pub fn direction(&self, d: Vec3<T>, project: bool) -> Vec3<T> {
         let foot = match self {
             MirrorArgument::Plane(plane) => d - plane.normal * plane.normal.dot(d),
@@ -274,7 +274,7 @@ impl<T: Real> MirrorArgument<T> {
         if project { foot } else { foot * T::from(2.0) - d }
     }
 
-    /// True when the image of a surface has its natural normal reversed.
+    /// True when the image of a surface has the opposite natural normal.
     pub fn reverses(&self) -> bool {
         !matches!(self, MirrorArgument::Line(_))
     }

@@ -12,20 +12,20 @@ use std::any::Any;
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
-/// A point in space with its parameters on a curve and on a surface, if it has any: so beads,
-/// magnets and rings are points with more data.
+/// A point in space with its parameters on a curve and on a surface, if any: beads, magnets and
+/// rings are points with more data.
 #[derive(Clone, Debug)]
 pub struct Point<T: Real> {
     /// Position.
     pub xyz: Vec3<T>,
-    /// The object, once it has a name; or another that it is the same point as by construction.
+    /// The object, once it has a name; or another object that is the same point by construction.
     pub key: Option<Key>,
     /// Curve and parameter t, for beads and rings.
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
     /// Surface and parameters (u, v), for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
-    /// The point whose image this is under a map of space. For joins: coincident images of one
-    /// point are one.
+    /// The original point of an image under a map of space. For joins: coincident images of one
+    /// point are the same.
     pub image_of: Option<Key>,
     /// Report of the search, if there was one.
     pub found: Option<Arc<SearchReport>>,
@@ -61,7 +61,7 @@ impl<T: Real> Point<T> {
         Self { xyz, key, on_curve, on_surface, image_of: None, found: None }
     }
 
-    /// The point of `surface` at (`u`, `v`); at a corner to the bit it is that corner, as for
+    /// The point of `surface` at (`u`, `v`); at a corner it equals that corner to the bit, as for
     /// [`Point::on_curve`].
     pub fn on_surface(surface: SurfaceRef<T>, u: T, v: T) -> Self {
         let corner = match (u.re(), v.re()) {
@@ -77,7 +77,7 @@ impl<T: Real> Point<T> {
         Self { xyz, key, on_curve: None, on_surface, image_of: None, found: None }
     }
 
-    /// The same point with the report of how it was found.
+    /// The same point with a report of its search.
     pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
@@ -108,18 +108,18 @@ impl<T: Real> Point<T> {
     }
 }
 
-/// Figures by which a construction judges its own result, such as the greatest deviation of a faired curve:
-/// members of the object.
+/// Figures of a construction about its own result, such as the greatest deviation of a faired
+/// curve: members of the object.
 pub type Figures = Arc<Vec<(&'static str, f64)>>;
 
-/// Two edges of patches that are declared to be one.
+/// Two edges of patches declared to be the same.
 #[derive(Clone)]
 pub struct DeclaredJoin<T: Real> {
     /// The edges.
     pub edges: [CurveRef<T>; 2],
-    /// Maximum distance of the two.
+    /// Maximum distance of the two edges.
     pub tolerance: f64,
-    /// True if they coincide as they are; else one of them coincides with a part of the other.
+    /// True if the whole edges coincide; otherwise one coincides with a part of the other.
     pub whole: bool,
 }
 
@@ -133,8 +133,8 @@ pub struct CurveRef<T: Real> {
     pub key: Option<Key>,
     /// Surface of a snake.
     pub surface: Option<Box<SurfaceRef<T>>>,
-    /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
-    /// parameters there of the part's ends.
+    /// For a part of another curve with proportional parameter: the original curve, which is not
+    /// such a part itself, and its parameters at the ends of the part.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
     /// For the common edge of a declared join.
     pub joins: Option<Arc<DeclaredJoin<T>>>,
@@ -162,13 +162,13 @@ pub struct SurfaceRef<T: Real> {
     pub found: Option<Arc<SearchReport>>,
     /// Figures of its construction.
     pub figures: Option<Figures>,
-    /// For a fillet: the snakes on both surfaces along which it touches them, at v = 0 and v = 1.
+    /// For a fillet: the contact lines, snakes on both surfaces, at v = 0 and v = 1.
     pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
     /// Nesting depth of its shapes, itself included.
     pub depth: u32,
 }
 
-/// An implicit function or a set that can tell whether another is the same.
+/// An implicit function or set that can be compared with another.
 pub trait ImplicitFunction<T: Real>: Field<T> + Any {
     /// True when both are the same expression of the same bits under the same names.
     fn alike(&self, o: &Self) -> bool;
@@ -195,7 +195,7 @@ impl<T: Real, P: ImplicitFunction<T>> Erased<T> for P {
 #[derive(Clone)]
 pub struct FieldRef<T: Real> {
     shape: Arc<dyn Erased<T>>,
-    /// The name that it was declared under.
+    /// The name of its declaration.
     pub name: Option<Arc<str>>,
 }
 
@@ -256,7 +256,7 @@ shape_ref!(ReparametrizationRef, Reparametrization, own => &*own.shape);
 shape_ref!(SolidRef, Solid, own => &*own.shape);
 
 impl<T: Real> CurveRef<T> {
-    /// A curve that refers to shapes nested `nesting` deep (0 without any).
+    /// A curve that refers to shapes with nesting depth `nesting` (0 if none).
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
         let shape: Arc<dyn Curve<T>> = Arc::new(shape);
         let depth = nesting + 1;
@@ -280,13 +280,13 @@ impl<T: Real> CurveRef<T> {
         Self { surface: Some(Box::new(surface)), ..Self::new(shape, depth - 1) }
     }
 
-    /// The same curve with the report of how it was found.
+    /// The same curve with a report of its search.
     pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
     }
 
-    /// The same curve with figures of its own.
+    /// The same curve with its figures.
     pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
         self.figures = Some(Arc::new(figures.to_vec()));
         self
@@ -315,9 +315,9 @@ impl<T: Real> CurveRef<T> {
         }
     }
 
-    /// The points at its two ends: a point object if the end is one, else the corner of the surface
-    /// or the end of the curve that it follows, or its own end; one point for a curve that its kind
-    /// makes a ring.
+    /// The points at its two ends: the end's point object if there is one, otherwise the corner of
+    /// the surface or the end of the curve that it follows, otherwise its own end. A closed curve
+    /// of a kind that closes it has one point.
     pub fn end_points(&self) -> [Option<Key>; 2] {
         let own = |k: usize| self.key.and_then(|key| key.end(k));
         match self.shape.trace() {
@@ -338,15 +338,15 @@ impl<T: Real> CurveRef<T> {
         }
     }
 
-    /// Origin of its shape, for joins: the object itself or, for one without a name, the original
-    /// whose image it is.
+    /// Origin of its shape, for joins: the object itself or, without a name, the original of the
+    /// image.
     pub fn made_of(&self) -> Vec<Key> {
         self.key.or_else(|| self.shape.image_of()).into_iter().collect()
     }
 }
 
 impl<T: Real> SurfaceRef<T> {
-    /// A surface that refers to shapes nested `nesting` deep (0 without any).
+    /// A surface that refers to shapes with nesting depth `nesting` (0 if none).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
         let depth = nesting + 1;
         Self {
@@ -367,13 +367,13 @@ impl<T: Real> SurfaceRef<T> {
         self
     }
 
-    /// The same surface with the report of how it was found.
+    /// The same surface with a report of its search.
     pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
     }
 
-    /// The same surface with figures of its own.
+    /// The same surface with its figures.
     pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
         self.figures = Some(Arc::new(figures.to_vec()));
         self
@@ -387,7 +387,7 @@ impl<T: Real> SurfaceRef<T> {
 }
 
 impl<T: Real> SolidRef<T> {
-    /// A solid that refers to shapes nested `nesting` deep (0 without any).
+    /// A solid that refers to shapes with nesting depth `nesting` (0 if none).
     pub fn new(shape: impl Solid<T> + 'static, nesting: u32) -> Self {
         Self { shape: Arc::new(shape), key: None, depth: nesting + 1 }
     }
@@ -457,12 +457,12 @@ impl<T: Real> SetRef<T> {
 }
 
 impl<T: Real> ReparametrizationRef<T> {
-    /// A law that refers to shapes nested `nesting` deep (0 without any).
+    /// A law that refers to shapes with nesting depth `nesting` (0 if none).
     pub fn new(law: impl Reparametrization<T> + 'static, nesting: u32) -> Self {
         Self { shape: Arc::new(law), key: None, depth: nesting + 1 }
     }
 
-    /// The same for a law that others hold on to as well.
+    /// As `new`, for a law with other owners.
     pub fn shared(law: Arc<dyn Reparametrization<T>>, nesting: u32) -> Self {
         Self { shape: law, key: None, depth: nesting + 1 }
     }

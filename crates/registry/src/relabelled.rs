@@ -12,8 +12,8 @@ use moldloft_num::{
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// The last argument of every kind of curve, and of every surface with a law of its own across its
-/// masters.
+/// The last argument of every kind of curve, and of every surface whose direction across its
+/// masters can be reparametrised.
 pub const RELABEL_FIELD: FieldSpec = FieldSpec {
     name: "relabel",
     help: "Reparametrisation of t (surfaces: v).",
@@ -30,7 +30,7 @@ pub const RELABEL_FIELD: FieldSpec = FieldSpec {
 /// Breaks nearer to each other than this are one.
 const ONE_BREAK: f64 = 1e-12;
 
-/// The curve C(t) = c(R(t)), or the surface S(u, v) = s(u, R(v)); without a law the value as it is.
+/// The curve C(t) = c(R(t)), or the surface S(u, v) = s(u, R(v)); the value itself without a law.
 ///
 /// Beads, meshes, sub-curves and neighbours all see the new parameter. A curve that is a root for
 /// joins stays one, so neighbours along it share its vertices at equal t. A part of another curve

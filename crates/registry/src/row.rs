@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Default tolerance of a model, in its unit.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 
-/// The closed list of scalars that models are evaluated with.
+/// The closed list of scalars for evaluating models.
 pub trait Scalar: Real + FromValue<Self> {
     /// The body of `row` for this scalar, called.
     ///
@@ -56,7 +56,8 @@ pub struct Context {
     pub remarks: Arc<Mutex<Vec<CallRemark>>>,
 }
 
-/// A note of a call besides its value: an iteration has not converged, a march ended early.
+/// A note about a call in addition to its value: an iteration has not converged, a march ended
+/// early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CallRemark {
     /// A stable id.
@@ -102,7 +103,7 @@ pub trait Build<T: Real> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError>;
 }
 
-/// The unit of a number, where language and model files differ.
+/// The unit of a number, if language and model files differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A plain number or a length in the model's unit.
@@ -114,7 +115,7 @@ pub enum Unit {
 /// Default of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DefaultValue {
-    /// Absent: the kind does without it.
+    /// Optional: the kind accepts its absence.
     Unset,
     /// A number.
     Number(f64),
@@ -158,7 +159,7 @@ pub struct FieldSpec {
     pub variadic: bool,
 }
 
-/// A function that is made at run time, such as a user's Python function.
+/// A function made at run time, such as a user's Python function.
 pub trait Foreign: Send + Sync {
     /// The value for plain numbers.
     ///
@@ -187,14 +188,14 @@ pub enum Implementation {
         plain: Call<f64>,
         /// For dual numbers.
         dual: Call<Dual4>,
-        /// For numbers of a tape; `None` where derivatives are those of forward differentiation alone.
+        /// For numbers of a tape; `None` if only forward differentiation is available.
         rev: Option<Call<Rev>>,
     },
     /// A function from outside.
     Foreign(Arc<dyn Foreign>),
 }
 
-/// Role of a kind for the interpreter besides its value.
+/// Role of a kind for the interpreter, in addition to its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
     /// Nothing else.
@@ -202,11 +203,12 @@ pub enum Role {
     Plain,
     /// Header of a model: units, symmetry, title.
     Header,
-    /// Made of the points of a file that its argument `file` names: the program reads them into `points`.
+    /// Made of the points of a file named by its argument `file`, which the program reads into
+    /// `points`.
     Table,
-    /// A list of objects under a name, read as its items.
+    /// A list of objects under a name; its value is the list of its items.
     List,
-    /// Unknowns and conditions that are solved before their dependants.
+    /// Unknowns and conditions to be solved before dependent objects are evaluated.
     SolveSet,
     /// A mass and its centre.
     Weight,
@@ -217,7 +219,7 @@ pub enum Role {
 /// A callable of the registry.
 #[derive(Clone)]
 pub struct Row {
-    /// Its name: a kind's starts with a capital letter, a function's does not.
+    /// Its name: kinds begin with a capital letter, functions do not.
     pub name: Cow<'static, str>,
     /// Its documentation; the first line is a summary.
     pub doc: Cow<'static, str>,
@@ -227,15 +229,16 @@ pub struct Row {
     pub fields: Cow<'static, [FieldSpec]>,
     /// True for a kind of entity: it is declared under a name.
     pub kind: bool,
-    /// The fields in the order of a model file's columns, by name, blank-separated; `relabel` may
-    /// be a column whose only value is `*`. `None` if model files have no such entity.
+    /// The names of the fields in the order of a model file's columns, separated by blanks;
+    /// `relabel` may be a column whose only value is `*`. `None` if model files have no such
+    /// entity.
     pub columns: Option<&'static str>,
     /// A self-contained example in the language.
     pub example: Cow<'static, str>,
-    /// For a kind that sweeps: the fields of the bead that is moved and of the point or curve that
-    /// follows, which the model gives as a [`crate::LocusRef`].
+    /// For a kind that sweeps: the field of the moving bead and the field of the point or curve
+    /// that follows it, which the model passes as a [`crate::LocusRef`].
     pub sweep: Option<[FieldId; 2]>,
-    /// True for a function that is as fast as finding its cached value: it is always called.
+    /// True for a function as fast as a look-up of its cached value: it is always called.
     pub cheap: bool,
     /// Role besides its value.
     pub role: Role,
@@ -261,22 +264,22 @@ impl Row {
         }
     }
 
-    /// The same, documented.
+    /// Sets the documentation.
     pub fn doc(self, doc: impl Into<Cow<'static, str>>) -> Self {
         Self { doc: doc.into(), ..self }
     }
 
-    /// The same with arguments.
+    /// Sets the arguments.
     pub fn fields(self, fields: Vec<FieldSpec>) -> Self {
         Self { fields: fields.into(), ..self }
     }
 
-    /// The same with an example.
+    /// Sets the example.
     pub fn example(self, example: impl Into<Cow<'static, str>>) -> Self {
         Self { example: example.into(), ..self }
     }
 
-    /// The same, called without a cache.
+    /// Marks the kind as cheap: its values are not cached.
     pub fn cheap(self) -> Self {
         Self { cheap: true, ..self }
     }

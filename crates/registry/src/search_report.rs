@@ -4,7 +4,7 @@
 use moldloft_num::Vec3;
 use std::fmt;
 
-/// A warning about a value: it is there, but the user should know something of it.
+/// A warning about a value that exists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
     /// Id of the diagnostic.
@@ -15,8 +15,8 @@ pub struct Remark {
     pub advice: &'static str,
 }
 
-/// Report of a construction by search or fit (a projection, an intersection, a fit). Carried by the
-/// point or curve; it depends on the model only.
+/// Report of a construction by search or fit (a projection, an intersection, a fit), stored with
+/// the point or curve; it depends only on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchReport {
     /// Result of the search.
@@ -29,9 +29,9 @@ pub struct SearchReport {
     pub start: Vec<f64>,
     /// The parameters it ended with.
     pub last: Vec<f64>,
-    /// Solutions that were not taken: their parameters and positions.
+    /// Solutions not chosen: their parameters and positions.
     pub alternatives: Vec<(Vec<f64>, Vec3)>,
-    /// Advice for another solution, or against the warning.
+    /// Advice on how to get another solution or to avoid the warning.
     pub advice: &'static str,
 }
 
@@ -40,11 +40,11 @@ pub struct SearchReport {
 pub enum SearchStatus {
     /// Found from the given start, or the only solution.
     Ok,
-    /// The iteration from the start failed; the nearest of all solutions was taken.
+    /// The iteration from the start failed; the nearest of all solutions was chosen.
     Fallback,
-    /// At an end or an edge, because the unbounded solution is beyond it.
+    /// At an end or an edge, because the unconstrained solution is beyond it.
     EdgeClamped,
-    /// The shapes touch: the solution is not well determined.
+    /// The shapes are tangent, so the solution is ill-conditioned.
     Tangent,
     /// A weighted sum whose weights do not add up to 1.
     Unbalanced {
@@ -57,13 +57,13 @@ pub enum SearchStatus {
         count: usize,
         /// Number of the result among them, from 0.
         chosen: usize,
-        /// Distance in space to the next of the others.
+        /// Distance in space to the nearest of the others.
         next: f64,
     },
 }
 
 impl SearchStatus {
-    /// Its word in the language and in Python.
+    /// Its word used in the language and in Python.
     pub fn word(self) -> &'static str {
         match self {
             SearchStatus::Ok => "ok",
@@ -91,7 +91,7 @@ fn list(parameters: &[f64]) -> String {
 }
 
 impl SearchReport {
-    /// The warning about it; `None` when there is nothing to say.
+    /// The warning about it, if any.
     pub fn remark(&self) -> Option<Remark> {
         let (id, message) = self.message()?;
         Some(Remark { id, message, advice: self.advice })
@@ -113,7 +113,7 @@ impl SearchReport {
             }
             SearchStatus::Tangent => (
                 "tangent-contact",
-                format!("the shapes touch at {at}; a small change may part them"),
+                format!("the shapes touch at {at}; a small change may separate them"),
             ),
             SearchStatus::Unbalanced { sum } => {
                 ("weight-sum", format!("the weights sum to {sum}: the point depends on the origin"))
@@ -133,7 +133,7 @@ impl SearchReport {
         })
     }
 
-    /// True when there is something to warn of.
+    /// True when there is a warning.
     pub fn warns(&self) -> bool {
         self.status != SearchStatus::Ok
     }

@@ -4,8 +4,8 @@ use crate::{CallError, Class, CurveRef, FromValue, Value};
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
-/// Value of an object when a bead that it depends on is moved: the objects between the two are
-/// evaluated again.
+/// Value of an object as a function of the parameter of a bead that it depends on: the objects
+/// between the two are evaluated again.
 pub trait Sweep<T: Real>: Send + Sync {
     /// The value of the object with the bead at `t` of its curve.
     ///
@@ -14,7 +14,8 @@ pub trait Sweep<T: Real>: Send + Sync {
     fn at(&self, t: T) -> Result<Value<T>, CallError>;
 }
 
-/// An object that follows a bead: made by the model for kinds that sweep, see [`crate::Row::sweep`].
+/// An object that follows a bead, made by the model for kinds that sweep; see
+/// [`crate::Row::sweep`].
 #[derive(Clone)]
 pub struct LocusRef<T: Real>(Arc<dyn Sweep<T>>);
 

@@ -11,10 +11,10 @@ use std::sync::Arc;
 /// the area.
 const NO_VOLUME: f64 = 1e-12;
 
-/// Positions at which a body does not meet its specification.
+/// Positions at which a body violates its specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// Kind, such as "blunt": the member of the body that gives the positions.
+    /// Its kind, such as "blunt", which is the member of the body that returns the positions.
     pub name: &'static str,
     /// The warning about it.
     pub remark: crate::Remark,
@@ -22,18 +22,18 @@ pub struct Flaw {
     pub places: Vec<Vec3>,
 }
 
-/// Triangles of a body that belong together, such as those of one implicit surface.
+/// Triangles of a body with a common origin, such as those of one implicit surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Its name; in meshes it follows the body's.
+    /// Its name, appended to that of the body in meshes.
     pub name: String,
     /// Kind of its surface, such as "cylinder".
     pub kind: String,
-    /// Index of a palette colour, 0 to 15, when it has one of its own.
+    /// Palette index of its colour, 0 to 15, if it has one.
     pub colour: Option<u8>,
     /// Further names, such as its material.
     pub tags: Vec<String>,
-    /// Distance below which two of its points count as one, when it has one of its own.
+    /// Its tolerance, below which two points count as one, if it has one.
     pub tolerance: Option<f64>,
     /// Its triangles.
     pub triangles: Range<usize>,
@@ -44,16 +44,16 @@ pub struct Group {
 pub struct BorderCurve<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
-    /// Its divisions, where they are stated.
+    /// Its divisions, if stated.
     pub stated: Option<u32>,
-    /// Its divisions when nothing else determines them.
+    /// Its default divisions.
     pub usual: u32,
     /// Spacing of divisions along it; `None` for equal steps of its parameter.
     pub density: Option<Arc<DivisionDensity>>,
 }
 
 impl<T: Real> BorderCurve<T> {
-    /// The parameters of its divisions when nothing else determines them, from 0 to 1.
+    /// The parameters of its default divisions, from 0 to 1.
     pub fn divisions(&self) -> Vec<f64> {
         let even = || (0..=self.usual).map(|k| f64::from(k) / f64::from(self.usual)).collect();
         self.density.as_ref().map_or_else(even, |density| {
@@ -63,8 +63,8 @@ impl<T: Real> BorderCurve<T> {
     }
 }
 
-/// A sheet of triangles bounded by curves, which can be triangulated again with the divisions of
-/// its neighbours.
+/// A sheet of triangles bounded by curves, which can be triangulated again with its neighbours'
+/// divisions.
 pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The surface that it is a part of.
     fn surface(&self) -> &SurfaceRef<T>;
@@ -97,7 +97,7 @@ pub struct SheetMeasures<T: Real> {
     pub area: T,
     /// Centroid of the volume, or of the area if no volume is enclosed.
     pub centroid: Vec3<T>,
-    /// The enclosed volume; of a part of a surface, the volume of the cone from the origin to it.
+    /// The enclosed volume; for a part of a surface, the volume of the cone from the origin to it.
     pub volume: T,
 }
 
@@ -126,27 +126,27 @@ pub struct TriangleBody<T: Real> {
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Number of panels with four corners: their halves a b c and a c d are the first triangles.
+    /// Number of quadrilateral panels: their halves a b c and a c d are the first triangles.
     pub quads: usize,
     /// The triangles grouped by surface, in order and without gaps; empty if the body is one
     /// surface.
     pub groups: Vec<Group>,
-    /// Polylines that belong to the body without being surface.
+    /// Polylines of the body that are not part of its surface.
     pub wires: Vec<Vec<Vec3<T>>>,
-    /// Points that belong to the body without being surface or line.
+    /// Points of the body that are on neither surface nor line.
     pub dots: Vec<Vec3<T>>,
-    /// Measures of the triangles, or more accurate ones from the maker of the body; use
+    /// Measures of the triangles, or more accurate ones given by the maker of the body; use
     /// [`Self::measures`].
     pub of_triangles: SheetMeasures<T>,
-    /// For a sheet that joins its neighbours.
+    /// For a sheet that is joined to its neighbours.
     pub border: Option<Border<T>>,
     /// Deviations from the specification.
     pub flaws: Vec<Flaw>,
 }
 
 impl<T: Real> TriangleBody<T> {
-    /// The triangles with the measures that follow from them (divergence theorem; the sums run about
-    /// the mean of the vertices, so that distant bodies keep their digits).
+    /// The body with the measures of its triangles (divergence theorem, relative to the mean of the
+    /// vertices, so that distant bodies lose no digits).
     ///
     /// # Panics
     /// When a corner is not a vertex.
@@ -182,7 +182,7 @@ impl<T: Real> TriangleBody<T> {
     }
 
     /// Area, centroid and volume: of the part of a surface that a sheet with a border represents,
-    /// otherwise of the body. `None` if the surface is not finite everywhere.
+    /// otherwise of the body. `None` if some position on the surface is not finite.
     pub fn measures(&self) -> Option<SheetMeasures<T>> {
         match &self.border {
             Some(border) => border.0.measures(),
@@ -190,7 +190,7 @@ impl<T: Real> TriangleBody<T> {
         }
     }
 
-    /// True when every edge is one of as many triangles in one sense as in the other, so that a volume is enclosed.
+    /// True when every edge is used equally often in both directions, so that a volume is enclosed.
     pub fn is_closed(&self) -> bool {
         let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
         for t in &self.triangles {
@@ -201,7 +201,7 @@ impl<T: Real> TriangleBody<T> {
         !edges.is_empty() && edges.values().all(|n| *n == 0)
     }
 
-    /// True when vertices and measures are the same bits and the triangles the same.
+    /// True when the triangles are the same, and vertices and measures are equal to the bit.
     pub fn same(&self, o: &Self) -> bool {
         let all = |a: &[Vec3<T>], b: &[Vec3<T>]| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.bits_eq(*b))

@@ -8,11 +8,11 @@ use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
-/// A row `[n]` or a grid `[m, n]` of numbers (or whatever); the first index runs fastest in meaning
-/// (i) and slowest in memory, as in NumPy.
+/// A row `[n]` or a grid `[m, n]` of numbers or other items. Memory order is that of NumPy: the
+/// last index runs fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<E> {
-    /// The extents; one or two of them.
+    /// The extents.
     pub shape: ArrayShape,
     /// The elements, `[i * n + j]`.
     pub items: Vec<E>,
@@ -27,8 +27,8 @@ pub enum ArrayShape {
     Grid(usize, usize),
 }
 
-/// A row `[n]` or a grid `[m, n]` of vectors, stored as three planes of components: operations on
-/// all x, all y and all z in turn have the speed of the memory.
+/// A row `[n]` or a grid `[m, n]` of vectors, stored as three planes of components, so that
+/// operations on all x, all y and all z run at memory speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vectors<T> {
     /// The extents; one or two of them.
@@ -68,7 +68,7 @@ impl<T: Copy> Vectors<T> {
         Self::new(ArrayShape::Grid(m, n), points)
     }
 
-    /// An array of one vector throughout.
+    /// An array with all vectors equal.
     pub fn filled(shape: ArrayShape, v: Vec3<T>) -> Self {
         Self { shape, planes: [v.x, v.y, v.z].map(|x| vec![x; shape.count()]) }
     }
@@ -138,7 +138,7 @@ impl std::fmt::Display for ArrayShape {
     }
 }
 
-/// Family of contours: each member is where this number has a constant value.
+/// Family of contours: on each member, this quantity is constant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Family<T> {
     /// The distance from a plane, along its normal.
@@ -158,7 +158,7 @@ pub enum Family<T> {
 /// Components of unit vectors below this are zero in the search for mirror images.
 const SYMMETRIC: f64 = 1e-12;
 
-/// The axis of contours that are not sections by planes of constant x, y or z.
+/// The axis of contours that are not planes of constant x, y or z.
 pub const OBLIQUE: usize = 3;
 
 /// A family of sections.
@@ -166,7 +166,7 @@ pub const OBLIQUE: usize = 3;
 pub struct Contours<T> {
     /// Axis of the sections' common normal: 0, 1, 2 for X, Y, Z, or [`OBLIQUE`].
     pub axis: usize,
-    /// The number that is constant on each section.
+    /// The quantity that is constant on each section.
     pub family: Family<T>,
     /// The values: coordinates, distances, radii, or angles in radians.
     pub values: Vec<T>,
@@ -188,7 +188,7 @@ impl<T: Real> Family<T> {
         }
     }
 
-    /// A function of position that vanishes on the section of that value, and changes sign there.
+    /// A function of position that is zero on the section of that value and changes sign across it.
     pub fn height(&self, value: T, p: Vec3<T>) -> T {
         match self {
             Family::Planes(plane) => plane.distance(p) - value,
@@ -215,7 +215,7 @@ impl<T: Real> Family<T> {
         }
     }
 
-    /// The unit normal of the section `value`, where all of it has one.
+    /// The unit normal of the section `value`, if it is a plane.
     pub fn normal(&self, value: T) -> Option<Vec3<T>> {
         match self {
             Family::Cylinders(_) => None,
@@ -223,8 +223,8 @@ impl<T: Real> Family<T> {
         }
     }
 
-    /// True when the mirror image in the coordinate plane `axis` = 0 of each section's points is on the same section,
-    /// which is not in that plane itself.
+    /// True when the reflection in the coordinate plane `axis` = 0 maps each section to itself, and
+    /// no section is that plane.
     pub fn is_symmetric(&self, axis: usize) -> bool {
         let across = |v: Vec3<T>| v.re()[axis].abs() <= SYMMETRIC;
         let along = |v: Vec3<T>| v.re()[axis].abs() >= 1.0 - SYMMETRIC;
@@ -239,8 +239,8 @@ impl<T: Real> Family<T> {
         }
     }
 
-    /// True where a zero of [`Self::height`] belongs to the section: for angles the half-plane on
-    /// its own side of the axis.
+    /// True where a zero of [`Self::height`] belongs to the section: for angles, the half-plane on
+    /// the right side of the axis.
     pub fn holds(&self, value: T, p: Vec3<T>) -> bool {
         match self {
             Family::Angles { axis, zero } => {
@@ -254,10 +254,10 @@ impl<T: Real> Family<T> {
     }
 }
 
-/// Anything that an expression, an argument or an object can be.
+/// Any value of an expression, an argument or an object.
 #[derive(Clone, Debug)]
 pub enum Value<T: Real> {
-    /// An argument that was not given and has no default (`*` in a model file).
+    /// An omitted argument without a default (`*` in a model file).
     Unset,
     /// A number.
     Number(T),
@@ -271,11 +271,12 @@ pub enum Value<T: Real> {
     Vectors(Arc<Vectors<T>>),
     /// A list.
     List(Arc<[Value<T>]>),
-    /// A grid `[l, m, n]` of numbers or vectors, as its layers k: grids of one shape and class, at least one.
+    /// A grid `[l, m, n]` of numbers or vectors, as its layers k: one or more grids of the same
+    /// shape and class.
     Block(Arc<[Value<T>]>),
     /// Members by name.
     Record(Arc<Record<T>>),
-    /// A declared object, not read yet.
+    /// A declared object that has not been read.
     Object(Key),
     /// A point, bead, magnet or ring.
     Point(Box<Point<T>>),
@@ -303,7 +304,7 @@ pub enum Value<T: Real> {
     Locus(LocusRef<T>),
 }
 
-/// Members by name, of a type that a program declares.
+/// A record: members by name, of a type declared by a program.
 #[derive(Clone, Debug)]
 pub struct Record<T: Real> {
     /// The name of the type.
@@ -345,8 +346,8 @@ impl<T: Real> Value<T> {
         layers.iter().all(|layer| of(layer) == Some(first)).then_some(Value::Block(layers))
     }
 
-    /// The value with each of its numbers mapped, in the order of memory; of a point its position. `None` for what is more
-    /// than numbers and texts: shapes, planes, sets.
+    /// The value with each number mapped, in memory order; for a point, its position. `None` for
+    /// values other than numbers and texts: shapes, planes, sets.
     pub fn map_numbers<S: Real>(&self, map: &mut impl FnMut(T) -> S) -> Option<Value<S>> {
         let mut vector = |v: Vec3<T>| {
             let [x, y, z] = v.to_array();
@@ -377,7 +378,7 @@ impl<T: Real> Value<T> {
         })
     }
 
-    /// All its numbers in the order of [`Self::map_numbers`].
+    /// All numbers, in the order of [`Self::map_numbers`].
     pub fn numbers(&self) -> Option<Vec<T>> {
         let mut all = Vec::new();
         self.map_numbers(&mut |x: T| {
@@ -387,7 +388,7 @@ impl<T: Real> Value<T> {
         Some(all)
     }
 
-    /// The class of the value; of an object that was not read yet, `Any`.
+    /// The class of the value; `Any` for an object that has not been read.
     pub fn class(&self) -> Class {
         match self {
             Value::Unset | Value::Object(_) => Class::Any,
@@ -420,7 +421,7 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// True when both are the same bits, the same objects and the very same shapes.
+    /// True when both have the same bits, the same objects and identical shapes.
     pub fn same(&self, o: &Self) -> bool {
         match (self, o) {
             (Value::Unset, Value::Unset) => true,
@@ -492,7 +493,7 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// The value under the name of an object: shapes and points remember whose they are.
+    /// The value with the name of an object, stored in shapes and points.
     pub fn named(mut self, key: Key) -> Self {
         match &mut self {
             // One that is an end of a curve by construction stays that end.
@@ -542,7 +543,8 @@ impl<T: Real> Value<T> {
         }
     }
 
-    /// The largest of its numbers and coordinates, without sign; zero for shapes. NaN and infinity do not count.
+    /// The largest absolute value of its numbers and coordinates; zero for shapes. NaN and infinity
+    /// are ignored.
     pub fn largest(&self) -> f64 {
         let of = |x: &T| Some(x.re().abs()).filter(|x| x.is_finite()).unwrap_or(0.0);
         let vector = |v: &Vec3<T>| of(&v.x).max(of(&v.y)).max(of(&v.z));

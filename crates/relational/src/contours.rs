@@ -113,7 +113,7 @@ contour_kind!(
      ZContours waterlines(-2, 4, 0, 0.5);"
 );
 
-/// Sections by planes parallel to a given one, at the distances start + i step along its normal,
+/// Sections by planes parallel to a given plane, at the distances start + i step along its normal,
 /// for i from first to last: diagonals, cant frames.
 #[derive(Kind)]
 #[kind(
@@ -125,7 +125,7 @@ contour_kind!(
                PlaneContours diagonals(deck, 0, 4, -1, 0.5);"
 )]
 pub struct PlaneContours<T: Real> {
-    /// The plane of distance 0.
+    /// The plane at distance 0.
     plane: Plane<T>,
     /// First index i.
     first: i32,
@@ -215,7 +215,7 @@ pub struct AngleContours<T: Real> {
     /// Angle between neighbouring sections, in radians (degrees in model files).
     #[field(angle)]
     step: T,
-    /// A point in the half-plane of angle 0.
+    /// A point of the half-plane at angle 0.
     zero: Option<Point<T>>,
     /// Surfaces and bodies to cut; default: all visible ones.
     surfaces: Option<Vec<Value<T>>>,

@@ -41,8 +41,8 @@ macro_rules! foil_kind {
             /// "64A", "65A", "66tmb" or "67", or its number in this list.
             #[field(default = "4-digit")]
             family: crate::arguments::NamedOption,
-            /// Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; "" is
-            /// the usual one of the family.
+            /// Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified";
+            /// "" is the default of the family.
             #[field(default = "")]
             mean: std::sync::Arc<str>,
             /// Position of the greatest camber of the parabolic mean line, in chords.
@@ -50,21 +50,25 @@ macro_rules! foil_kind {
             camber_at: T,
             /// Extent a of the uniform load of the mean line "a"; default: 0.8 for 66tmb, else 1.
             load: Option<T>,
-            /// Nose index of the modified form: 6 is the plain nose, 0 a sharp one.
+            /// Nose index of the modified form: 6 is the standard leading edge, 0 a sharp one.
             #[field(default = 6)]
             nose_index: T,
             /// Position of the greatest thickness of the modified form, from 0.2 to 0.6.
             #[field(default = 0.3)]
             thickness_at: T,
-            /// "closed" draws the tail to its points, "open" leaves the thickness that the form has there.
+            /// "closed" closes the trailing edge at its points, "open" keeps its thickness in the
+            /// form.
             #[field(default = "closed")]
             tail: std::sync::Arc<str>,
-            /// "affine" sets thickness off across the chord, "normal" across the mean line.
+            /// "affine" adds thickness perpendicular to the chord, "normal" perpendicular to the
+            /// mean line.
             #[field(default = "affine")]
             offset: std::sync::Arc<str>,
-            /// A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+            /// A curve of ordinates (x, half thickness, camber) from leading to trailing edge,
+            /// instead of a family.
             section: Option<moldloft_registry::CurveRef<T>>,
-            /// Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+            /// Ordinates {x, half thickness, camber} from leading to trailing edge, instead of a
+            /// family.
             ordinates: Option<Vec<moldloft_num::Vec3<T>>>,
             $($(#[$last])* metric: $Metric,)?
         }
@@ -298,7 +302,7 @@ fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
             .found(actual.to_string())
             .in_field(fields.points),
         FoilError::NoChord => CallError::new("coincident-points", text)
-            .expected("a nose distinct from the tail")
+            .expected("a leading edge distinct from the trailing edge")
             .found("no chord between them")
             .in_field(fields.points),
         FoilError::Metric => CallError::new("out-of-range", text)

@@ -4,7 +4,7 @@ use moldloft_num::Real;
 use moldloft_registry::{Array, Build, CallError, Context, Kind, Value};
 use std::sync::Arc;
 
-/// A list of numbers under a name, for use wherever a list of numbers is expected.
+/// A list of numbers under a name, accepted wherever a list of numbers is expected.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -49,7 +49,7 @@ impl<T: Real> Build<T> for KnotList<T> {
     }
 }
 
-/// Objects under a common name, for use wherever a list of such objects is expected: the wetted
+/// Objects under a common name, accepted wherever a list of such objects is expected: the wetted
 /// surfaces, the points of a curve.
 ///
 /// A list among the objects adds its own.

@@ -5,7 +5,7 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, TriangleBody, Value};
 use std::sync::Arc;
 
-/// Triangles between points of the model: a body where they close, else an open sheet.
+/// Triangles between points of the model: a body if they close, otherwise an open sheet.
 ///
 /// `levels` times, each triangle is divided into four and the vertices move as in Loop's
 /// subdivision surfaces (Loop 1987): smooth inside, cubic B-splines along open edges. The vertices
@@ -22,7 +22,7 @@ pub struct TriMesh<T: Real> {
     /// The vertices.
     #[field(min_items = 3)]
     points: Vec<Point<T>>,
-    /// Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
+    /// Corners of the triangles as vertex numbers from 1, counter-clockwise from outside.
     #[field(min_items = 3)]
     triangles: Vec<u32>,
     /// Number of subdivisions.

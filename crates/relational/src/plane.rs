@@ -149,7 +149,7 @@ impl<T: Real> Build<T> for PlaneThroughPoint<T> {
 }
 
 /// The tangent plane of a surface at a magnet, with the surface's normal; at a pole the limit along
-/// the parameter line that leads there.
+/// the parameter line through the magnet.
 #[derive(Kind)]
 #[kind(
     class = Plane,

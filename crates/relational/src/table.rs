@@ -25,15 +25,15 @@ pub struct TabPoint<T: Real> {
     /// The file, relative to the program that declares the point.
     #[field(default = "")]
     file: Arc<str>,
-    /// The number of the point, from 1.
+    /// Number of the point, from 1.
     #[field(default = 1, min = 1)]
     row: usize,
-    /// The points, where there is no file.
+    /// The points, if there is no file.
     #[field(default)]
     points: Option<Vec<Vec3<T>>>,
 }
 
-/// A curve through the points of a table, as a CCurve or, of degree 1, as the lines between them.
+/// A curve through the points of a table: a CCurve or, with degree 1, a polyline.
 ///
 /// The file has a point in a line: x, y, z (or x, y) with blanks or commas between.
 #[derive(Kind)]
@@ -48,7 +48,7 @@ pub struct TabCurve<T: Real> {
     /// The file, relative to the program that declares the curve.
     #[field(default = "")]
     file: Arc<str>,
-    /// 3 for the cubic spline, 1 for the lines between the points.
+    /// 3 for a cubic spline, 1 for a polyline.
     #[field(default = 3, min = 1, max = 3)]
     degree: usize,
     /// The points, where there is no file.
@@ -56,7 +56,7 @@ pub struct TabCurve<T: Real> {
     points: Option<Vec<Vec3<T>>>,
 }
 
-/// A surface through the points of a table: a C-loft of the curves through its rows.
+/// A surface through the points of a table: a C-loft of the curves through its rows of points.
 ///
 /// Consecutive rows with equal numbers of points; u runs along a row, v across the rows. Empty
 /// lines between the rows, or the header of a Plot3D file with one grid, give their number.
@@ -71,10 +71,10 @@ pub struct TabSurf<T: Real> {
     /// The file, relative to the program that declares the surface.
     #[field(default = "")]
     file: Arc<str>,
-    /// The number of rows, two or more; 0 where the file shows it.
+    /// Number of rows, two or more; 0 if the file determines it.
     #[field(default = 0)]
     rows: usize,
-    /// 3 for cubic splines, 1 for lines between the points.
+    /// 3 for cubic splines, 1 for polylines.
     #[field(default = 3, min = 1, max = 3)]
     degree: usize,
     /// The points, where there is no file.

@@ -123,7 +123,7 @@ pub struct ViewerCache {
 }
 
 impl ViewerCache {
-    /// Adds a header entry that differs from the one last sent.
+    /// Adds a header entry, if it differs from the one sent last.
     pub fn fact(&mut self, frame: &mut ReplyFrame, key: &'static str, value: Value) {
         let text = value.to_string();
         if self.facts.get(key) != Some(&text) {
@@ -132,7 +132,7 @@ impl ViewerCache {
         }
     }
 
-    /// Adds a header entry whose stamp differs from the one last sent.
+    /// Adds a header entry, if its stamp differs from the one sent last.
     pub fn stamped(
         &mut self,
         frame: &mut ReplyFrame,
@@ -145,7 +145,7 @@ impl ViewerCache {
         }
     }
 
-    /// Adds the differences from the scene of the viewer.
+    /// Adds the differences from the viewer's scene.
     pub fn scene(&mut self, frame: &mut ReplyFrame, items: &[SceneItem]) {
         let mut now = FxHashMap::with_capacity_and_hasher(items.len(), Default::default());
         for item in items {

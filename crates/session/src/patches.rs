@@ -290,7 +290,7 @@ mod tests {
         let mut patch = PreparedPatch::new(&cube, &cube.patches()[0]);
         let points = patch.points(&cube);
         let drawn = patch.drawn(&points);
-        // What has not changed is the same.
+        // Unchanged entries are identical.
         assert!(Arc::ptr_eq(&patch.drawn(&points).connections, &drawn.connections));
         // Every corner turns by more than 40 degrees from each of its faces.
         assert_eq!(drawn.points.len(), 8 + 24);

@@ -10,7 +10,7 @@ pub struct Request {
     /// Id, repeated in the reply.
     #[serde(default)]
     pub id: u64,
-    /// The viewer that sends it; replies contain only changes since the last one to this viewer.
+    /// The viewer that sends it; replies contain the changes since the last reply to it.
     #[serde(default)]
     pub tab: u64,
     /// The version of the text that offsets refer to; repeated in the reply.
@@ -51,14 +51,14 @@ pub enum Ask {
         /// The text.
         text: String,
     },
-    /// Replaces the text that counts in place of a file beside the document.
+    /// Replaces the text of a file beside the document.
     TextBeside {
-        /// The file's name, as the fact `reads` has it.
+        /// The file's name, as in the fact `reads`.
         name: String,
-        /// The text; none gives the file back.
+        /// The text; without one the file counts again.
         text: Option<String>,
     },
-    /// The files that the text and those files read.
+    /// The files that the text reads, directly or through other files.
     Reads,
     /// Applies one or several change sets to the text.
     Splice {
@@ -70,12 +70,12 @@ pub enum Ask {
         /// Values by name.
         values: BTreeMap<String, f64>,
     },
-    /// Adjusts numbers by the least change so that expressions have given values, without writing
-    /// them to the text.
+    /// Adjusts numbers by the least change that gives expressions the stated values, without
+    /// writing them to the text.
     SolveFor {
         /// Target values by expression.
         targets: BTreeMap<String, f64>,
-        /// The numbers that may change, by name.
+        /// Names of the numbers that may change.
         by: BTreeMap<String, Adjusted>,
     },
     /// Writes the set values to the text; the reply has the edits.
@@ -100,12 +100,13 @@ pub enum Ask {
     DragTo {
         /// The target position.
         target: [f64; 3],
-        /// Orthonormal vectors; only the distance along these counts.
+        /// Orthonormal vectors; only distances along these are minimised.
         basis: Vec<[f64; 3]>,
-        /// Numbers to adjust besides those of the object; by default those that the motion needs.
+        /// Numbers to adjust in addition to the object's own; by default those that the motion
+        /// requires.
         #[serde(default)]
         names: Vec<String>,
-        /// Length to which numbers are rounded, such as the size of a pixel.
+        /// Rounding unit of numbers, as a length, such as the size of a pixel.
         #[serde(default)]
         grain: f64,
     },
@@ -186,7 +187,7 @@ pub enum Ask {
     },
     /// Distances of the overlays from the surfaces.
     Deviation,
-    /// Curve of immersed section areas along x.
+    /// The curve of immersed section areas along x.
     SectionAreas {
         /// Number of sections.
         count: usize,
@@ -265,12 +266,12 @@ pub enum Ask {
     Format,
     /// The words of the language, for highlighting.
     Words,
-    /// Does nothing; the reply shows that the engine responds.
+    /// Does nothing; the reply shows that the engine is running.
     Ping,
 }
 
 impl Ask {
-    /// True when the scene may change.
+    /// True when the request may change the scene.
     pub fn changes(&self) -> bool {
         matches!(
             self,

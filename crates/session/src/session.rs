@@ -424,7 +424,7 @@ impl Session {
 
     fn format(&mut self, frame: &mut ReplyFrame) -> Answer {
         let formatted = moldloft_syntax::sdl::format(&self.text)
-            .map_err(|_| "the text has errors and is left as it is".to_string())?;
+            .map_err(|_| "the text has errors and is unchanged".to_string())?;
         self.put_edits(frame, &formatted);
         Ok(())
     }

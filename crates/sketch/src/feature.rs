@@ -58,15 +58,15 @@ impl std::fmt::Display for FaceChoice {
 /// Selection of edges that is stable under a change of dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EdgeChoice {
-    /// All that are not smooth.
+    /// All except smooth edges.
     All,
     /// Edge of a line of the drawing.
     Line(LineId),
-    /// The straight ones parallel to an axis.
+    /// The straight edges parallel to an axis.
     Along(CoordinateAxis),
     /// Edges of faces.
     Of(FaceChoice),
-    /// Those between two faces.
+    /// Edges between two faces.
     Between(FaceChoice, FaceChoice),
 }
 
@@ -85,25 +85,26 @@ impl std::fmt::Display for EdgeChoice {
 /// Treatment of edges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EdgeBlend {
-    /// A plane or cone through lines at these distances from the edge, in its first face and its second.
+    /// A plane or cone through lines at these distances from the edge, on its first and its second
+    /// face.
     Chamfer([DimensionExpr; 2]),
-    /// A part of the ball of this radius that rolls along the edge.
+    /// A part of a ball of this radius that rolls along the edge.
     Fillet(DimensionExpr),
 }
 
-/// The wider mouth of a hole.
+/// The wider part of a hole at its mouth.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HoleHead {
     /// A cylinder for a screw's head.
     Counterbore {
         /// Its diameter.
         diameter: DimensionExpr,
-        /// Its depth below the face that is drilled.
+        /// Its depth below the drilled face.
         depth: DimensionExpr,
     },
     /// A cone for a screw's head.
     Countersink {
-        /// Its diameter in the face that is drilled.
+        /// Its diameter in the drilled face.
         diameter: DimensionExpr,
         /// The angle of the cone in degrees.
         angle: DimensionExpr,
@@ -121,11 +122,11 @@ pub struct Hole {
     pub at: [DimensionExpr; 2],
     /// Its diameter.
     pub diameter: DimensionExpr,
-    /// Its depth below the outermost plane face of that side; none for a hole through everything.
+    /// Its depth below the outermost plane face of that side; `None` for a through hole.
     pub depth: Option<DimensionExpr>,
     /// Its mouth.
     pub head: Option<HoleHead>,
-    /// Steps and numbers of copies; two of them make a grid.
+    /// Steps and numbers of copies; two entries make a grid.
     pub copies: Vec<(Placement, DimensionExpr)>,
 }
 
@@ -161,11 +162,12 @@ pub enum FeatureKind {
         /// The angle.
         angle: DimensionExpr,
     },
-    /// One body at another position.
+    /// A body at another position.
     Place(Placement),
-    /// The first body moved along an axis until its origin is on a plane face of the second, square to that axis.
+    /// The first body, moved along an axis until its origin is on a plane face of the second,
+    /// perpendicular to that axis.
     OnFace(FaceChoice),
-    /// Copies, each placed as the next from the last, united.
+    /// The union of copies, each placed relative to the previous one.
     Pattern {
         /// Placement of a copy relative to the one before.
         step: Placement,
@@ -179,18 +181,18 @@ pub enum FeatureKind {
         /// Treated edges.
         edges: Vec<EdgeChoice>,
     },
-    /// A body hollowed to a wall.
+    /// A body hollowed out, leaving a wall.
     Shell {
-        /// Its thickness; negative for a wall outside of the body's faces.
+        /// Thickness of the wall; negative for a wall outside the body's faces.
         thickness: DimensionExpr,
         /// The faces without a wall.
         open: Vec<FaceChoice>,
     },
     /// Drilled holes.
     Hole(Box<Hole>),
-    /// Plane faces inclined about where they meet a plane square to an axis.
+    /// Plane faces inclined about their intersection with a plane perpendicular to an axis.
     Draft {
-        /// The angle in degrees; positive where the body becomes narrower along the axis.
+        /// The angle in degrees; positive if the body narrows along the axis.
         angle: DimensionExpr,
         /// The axis.
         axis: CoordinateAxis,
@@ -213,7 +215,7 @@ impl Placement {
 }
 
 impl FeatureKind {
-    /// The expressions that it reads, to change them.
+    /// The expressions of the feature, mutable.
     pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
         match self {
             FeatureKind::Boolean(_) | FeatureKind::OnFace(_) => vec![],
@@ -234,37 +236,37 @@ impl FeatureKind {
         }
     }
 
-    /// The expressions that it reads.
+    /// The expressions of the feature.
     pub fn numbers(&self) -> Vec<DimensionExpr> {
         self.clone().numbers_mut().into_iter().map(|e| e.clone()).collect()
     }
 }
 
-/// An object that a feature is made of.
+/// An operand of a feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureOperand {
     /// The object.
     pub object: Arc<SketchObject>,
     /// Prefix of its names in the feature.
     pub prefix: String,
-    /// True if it is another object of the session, whose changes it takes over; false for a part that the feature
-    /// alone has.
+    /// True for another object of the session, whose changes affect the feature; false for a part
+    /// that belongs to the feature alone.
     pub follows: bool,
 }
 
 impl FeatureOperand {
-    /// A part that a feature alone has, whose names stay as they are.
+    /// A part that belongs to a feature alone, with its original names.
     pub fn part(object: impl Into<Arc<SketchObject>>) -> FeatureOperand {
         FeatureOperand { object: object.into(), prefix: String::new(), follows: false }
     }
 
-    /// The name of an object that is followed.
+    /// The name of the object, if it is another object of the session.
     pub fn followed(&self) -> Option<&str> {
         self.follows.then_some(self.object.name.as_str())
     }
 
-    /// What comes before the names of its numbers, in lower case: of an object that is followed, its name, as in
-    /// expressions.
+    /// Prefix of the names of its numbers, in lower case: for another object of the session its
+    /// name, as in expressions.
     pub fn path(&self) -> String {
         match self.follows {
             true => format!("{}.", identifier(&self.object.name).to_ascii_lowercase()),

@@ -38,12 +38,12 @@ impl SketchFace {
     }
 }
 
-/// The point whose coordinates are given outright.
+/// The point with given coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// The point.
     pub point: PointId,
-    /// Coordinates.
+    /// A point with numbers as coordinates.
     pub at: [DimensionExpr; 3],
 }
 
@@ -67,7 +67,7 @@ pub struct SketchObject {
     pub units: Option<String>,
     /// The picture; shared, so that derived data are computed once.
     pub drawing: Arc<Drawing>,
-    /// The reference point; the first point at the origin when `None`.
+    /// The reference point; `None` for the first point at the origin.
     pub reference: Option<Reference>,
     /// Dimensions by folded name, in order of entry.
     pub dimensions: IndexMap<String, Dimension>,
@@ -81,14 +81,14 @@ pub struct SketchObject {
     pub feature: Option<Arc<Feature>>,
 }
 
-/// For each of several objects, true if it is a result: no other one follows it, or it is kept.
+/// For each of several objects, true if it is a result: no other object follows it, or it is kept.
 pub fn results(objects: &[&SketchObject]) -> Vec<bool> {
     let used: BTreeSet<String> = objects.iter().flat_map(|o| o.followed()).collect();
     objects.iter().map(|o| o.keep || !used.contains(&o.name.to_lowercase())).collect()
 }
 
 impl SketchObject {
-    /// An empty object of a name; a cross section perpendicular to `section` if given.
+    /// An empty object of that name; a cross section perpendicular to `section` if given.
     pub fn new(name: &str, section: Option<CoordinateAxis>) -> SketchObject {
         let drawing = Drawing {
             section,
@@ -103,7 +103,7 @@ impl SketchObject {
         }
     }
 
-    /// The folded names of the objects that it is made of and follows.
+    /// The folded names of the objects that it follows.
     pub fn followed(&self) -> BTreeSet<String> {
         let operands = self.feature.iter().flat_map(|f| &f.operands);
         let names = operands.flat_map(|operand| match operand.followed() {
@@ -122,8 +122,7 @@ impl SketchObject {
         variables.chain(dimensions)
     }
 
-    /// The numbers of the objects that it is made of and follows, each with the object's name and a dot before it:
-    /// name, value and range.
+    /// The numbers of the objects that it follows, as `object.number`: name, value and range.
     pub fn followed_numbers(&self) -> Vec<(String, DimensionExpr, Option<[f64; 2]>)> {
         let mut out: Vec<(String, DimensionExpr, Option<[f64; 2]>)> = Vec::new();
         for operand in self.feature.iter().flat_map(|f| &f.operands) {
@@ -144,7 +143,7 @@ impl SketchObject {
         out
     }
 
-    /// The number of an object that this one follows, if one of its own variables only stands for it.
+    /// The number of another object that one of its variables merely repeats.
     pub fn alias(&self, name: &str) -> Option<&str> {
         let variable = self.variables.get(&name.to_ascii_lowercase())?;
         let (of, number) = variable.value.text().split_once('.')?;
@@ -163,8 +162,8 @@ impl SketchObject {
         operands.any(stands).then_some(variable.value.text())
     }
 
-    /// The folded name of a number, or of the one of another object that it stands for, with that object's name and a
-    /// dot before it.
+    /// The folded name of a number, or `object.number` for the number of another object that it
+    /// repeats.
     pub fn source(&self, name: &str) -> String {
         let mut key = name.to_ascii_lowercase();
         let mut at = self.alias(&key).map(str::to_owned).or_else(|| self.alias_of(&key));
@@ -175,7 +174,7 @@ impl SketchObject {
         key
     }
 
-    /// What a number of an object that this one follows stands for there.
+    /// The number of another object that a number stands for.
     fn alias_of(&self, path: &str) -> Option<String> {
         let (of, number) = path.split_once('.')?;
         for operand in self.feature.iter().flat_map(|f| &f.operands) {
@@ -191,12 +190,12 @@ impl SketchObject {
         None
     }
 
-    /// The drawing, to change it.
+    /// The drawing, mutable.
     pub fn draw(&mut self) -> &mut Drawing {
         Arc::make_mut(&mut self.drawing)
     }
 
-    /// The reference point and where it is.
+    /// The reference point and its coordinates.
     pub fn reference(&self) -> Option<Reference> {
         let first = self.drawing.points.keys().next();
         (self.reference.clone())

@@ -5,7 +5,7 @@ use moldloft_num::{Curve, CurveJet, Jet, Order, Pace, Rational, Real, Vec3, curv
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-/// Why three points give no arc.
+/// Reason why three points determine no arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcError {
     /// The three points are on a line and do not determine the plane of a semicircle or circle.
@@ -110,7 +110,7 @@ impl<T: Real> CircularArc<T> {
         Ok(Self::bulging(start, end, tangent, tangent.dot(end - start)))
     }
 
-    /// Type 4: from `start` to `end`, tangent there to the line that comes from `from`.
+    /// Type 4: from `start` to `end`, tangent there to the line from `from`.
     ///
     /// # Errors
     /// [`ArcError::NotFinite`].
@@ -130,7 +130,7 @@ impl<T: Real> CircularArc<T> {
         Self::quarters(centre, p1, p3, 2.0)
     }
 
-    /// Type 6: the full circle from `p1` about `centre`, setting out toward the side of `p3`.
+    /// Type 6: the full circle from `p1` about `centre`, starting toward the side of `p3`.
     ///
     /// # Errors
     /// [`ArcError::Collinear`], [`ArcError::NotFinite`].

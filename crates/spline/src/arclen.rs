@@ -4,12 +4,12 @@ use moldloft_num::period::{breaks_between, corner_rate};
 use moldloft_num::{Curve, Order, Real, integrate};
 use std::fmt;
 
-/// A length beyond the ends of the curve.
+/// A length that extends beyond an end of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondEnd {
     /// The given length.
     pub asked: f64,
-    /// The length from the starting point to the end of the curve on that side.
+    /// The available length from the starting point to that end of the curve.
     pub available: f64,
 }
 
@@ -41,8 +41,9 @@ fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
     all
 }
 
-/// The length of the curve from `a` to `b`, negative when `b < a`, to about `accuracy` (a hope,
-/// kept by smooth pieces; the integrals between breaks are refined until two levels agree).
+/// The length of the curve from `a` to `b`, negative when `b < a`, to about `accuracy` (an
+/// estimate, reached on smooth pieces; the integrals between breaks are refined until two levels
+/// agree).
 ///
 /// Derivatives in `T` are those of the length, by the same integration.
 ///
@@ -83,8 +84,8 @@ fn speed<T: Real>(curve: &dyn Curve<T>, t: T) -> T {
 /// Maximum number of turns of a length around a closed curve.
 const MOST_TURNS: f64 = 1e3;
 
-/// The parameter at the signed length `s` along the curve from `a`, to `accuracy` of length: in [0, 1] unless
-/// the curve is closed, which is followed over its seam.
+/// The parameter at the signed length `s` along the curve from `a`, to `accuracy` of length: in [0,
+/// 1] unless the curve is closed; a closed curve continues across its seam.
 ///
 /// The root is found in plain numbers, by Newton's method between brackets; one more step in `T`
 /// gives its derivatives (implicit function theorem).

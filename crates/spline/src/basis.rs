@@ -7,11 +7,10 @@ use smallvec::{SmallVec, smallvec};
 /// One number per basis function of a span; on the stack up to degree 7.
 type Row<S> = SmallVec<[S; 8]>;
 
-/// The `degree + 1` basis functions that do not vanish on a span, at one parameter, with their
-/// derivatives.
+/// The `degree + 1` nonzero basis functions on a span at one parameter, with their derivatives.
 #[derive(Clone, Debug)]
 pub struct Basis<S> {
-    /// Index of the first of them, which is that of the first control point in play.
+    /// Index of the first of them and of its control point.
     pub first: usize,
     /// Values, first and second derivatives; rows above the requested order are empty.
     pub rows: [Row<S>; 3],
@@ -28,7 +27,7 @@ impl KnotVector {
         self.basis_in(self.find_span(t.re()), t, order)
     }
 
-    /// The same with the polynomials of a given non-empty `span`.
+    /// As `basis`, with the polynomials of a given non-empty `span`.
     pub fn basis_in<S: Real>(&self, span: usize, t: S, order: Order) -> Basis<S> {
         let (p, knots) = (self.degree(), self.as_slice());
         let mut values: Row<S> = smallvec![S::one()];

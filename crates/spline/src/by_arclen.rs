@@ -4,8 +4,8 @@ use crate::PiecewiseCubic;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, integrate};
 use std::iter::once;
 
-/// A curve of piecewise cubics with constant speed: the point at `t` is that at the fraction `t` of
-/// the total length.
+/// A piecewise cubic curve with constant speed: the point at `t` is at the fraction `t` of the
+/// total length.
 ///
 /// The parts are joined end to end; where two of them meet, derivatives may jump. Lengths are
 /// integrals of |C'| to about 1e-13 of the whole, so stations are true positions on the curve, not
@@ -38,7 +38,7 @@ pub struct ByArclen<T: Real> {
 const SHARE: f64 = 1e-14;
 
 impl<T: Real> ByArclen<T> {
-    /// The curve of these parts, one after the other; `None` when it has no length.
+    /// The curve composed of these parts; `None` if it has no length.
     pub fn of(parts: Vec<PiecewiseCubic<T>>) -> Option<Self> {
         let (mut spans, mut widths) = (Vec::new(), Vec::new());
         let mut end = Vec3::zero();

@@ -11,8 +11,8 @@ const SHARP: f64 = 6.0;
 /// Minimum jump, relative to the curvatures on its two sides.
 const LEAST: f64 = 0.25;
 
-/// The indices, from 0, of the points at which the curvature of a smooth curve through `points`
-/// jumps, or its tangent does: where an arc meets a line, or two lines a corner.
+/// The indices, from 0, of the points at which the curvature or the tangent of a smooth curve
+/// through `points` jumps: where an arc meets a line, or two lines meet in a corner.
 ///
 /// The curvature at a point is that of the circle through it and its neighbours, as a vector. A
 /// corner is a point with more than six times the curvature of both its neighbours. A jump is where

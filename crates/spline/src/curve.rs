@@ -4,7 +4,7 @@ use crate::{Basis, KnotError, KnotVector, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Vec3};
 use std::fmt;
 
-/// Why there is no such spline.
+/// Reason why there is no such spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SplineError {
     /// The knots are at fault.
@@ -152,7 +152,7 @@ impl<T: Real> BSplineCurve<T> {
         self.weights.as_deref()
     }
 
-    /// The same curve as polynomials between its knots, which are quicker to evaluate; `None` for
+    /// The same curve as polynomials between its knots, which are faster to evaluate; `None` for
     /// degrees above 3, weights or multiple interior knots.
     pub fn power_form(&self) -> Option<PiecewiseCubic<T>> {
         let knots = &self.knots.as_slice()[self.degree()..=self.knots.points()];

@@ -9,29 +9,29 @@ use moldloft_num::{Dual, Real, find_root};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
-/// Why there is no such distribution.
+/// Reason why there is no such distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DistributionError {
     /// Too few numbers.
     TooFew {
-        /// The fewest for this law.
+        /// The minimum for this law.
         expected: usize,
         /// The given number.
         actual: usize,
     },
-    /// A limit or spacing is NaN or infinite, or the limits coincide with a spacing given.
+    /// A limit or spacing is NaN or infinite, or the limits coincide although a spacing is given.
     Limits {
         /// The start.
         start: f64,
         /// The end.
         end: f64,
     },
-    /// A spacing is negative, zero where the law needs one, or NaN.
+    /// A spacing is negative, NaN, or zero where the law needs a positive one.
     Spacing {
         /// The spacing.
         spacing: f64,
     },
-    /// A one-sided law was given spacings for both ends.
+    /// Spacings at both ends were given to a one-sided law.
     TwoSided {
         /// The spacings.
         spacings: [f64; 2],
@@ -103,7 +103,7 @@ pub fn cosine<T: Real>(start: T, end: T, n: usize) -> Result<T> {
     Ok(fill(start, end, n, |i, j| (share(i), share(j))))
 }
 
-/// Cells that grow by a constant ratio, the first being `first`.
+/// Cells that grow by a constant ratio, starting with `first`.
 ///
 /// # Errors
 /// As [`uniform`]; [`DistributionError::Unreachable`] unless `first` is less than the distance.
@@ -130,8 +130,8 @@ pub fn geometric<T: Real>(start: T, end: T, first: T, n: usize) -> Result<T> {
 }
 
 /// Cells that grow by one constant ratio from both ends inward, `first` and `last` being the end
-/// cells. The inner cell at which the two progressions meet is chosen so that they meet as evenly
-/// as whole numbers of cells allow; that choice follows the real parts.
+/// cells. The cell at which the two progressions meet is chosen for the smallest jump between them;
+/// the choice follows the real parts.
 ///
 /// # Errors
 /// As [`geometric`]; at least three numbers, and `first + last` less than the distance if there are
@@ -195,8 +195,8 @@ pub fn geometric2<T: Real>(start: T, end: T, first: T, last: T, n: usize) -> Res
 }
 
 /// One-sided hyperbolic sine law (Thompson, Warsi and Mastin 1985, ch. VIII): the slope is
-/// `start_spacing` or `end_spacing` per step at that end; the other must be 0. Both 0: uniform.
-/// A sine takes over where the spacing is wider than uniform.
+/// `start_spacing` or `end_spacing` per step at that end; the other must be 0. Both 0: uniform. A
+/// sine is used if the spacing is wider than uniform.
 ///
 /// # Errors
 /// As [`uniform`]; [`DistributionError::TwoSided`], [`DistributionError::Unreachable`] for a
@@ -231,7 +231,7 @@ pub fn d_sinh<T: Real>(start: T, end: T, start_spacing: T, end_spacing: T, n: us
 }
 
 /// Hyperbolic tangent law of Vinokur (J. Comput. Phys. 50, 1983, p. 215): the slopes at the ends
-/// are `start_spacing` and `end_spacing` per step, 0 leaving that end free (both: uniform).
+/// are `start_spacing` and `end_spacing` per step, with 0 for a free end (both free: uniform).
 ///
 /// The spacings are slopes, so the first and last cells differ from them by the curvature of the
 /// law; [`d_tanhx`] has exact cells. Tangent and hyperbolic tangent are one entire function here,
@@ -257,7 +257,7 @@ pub fn d_tanh<T: Real>(start: T, end: T, start_spacing: T, end_spacing: T, n: us
 }
 
 /// The law of [`d_tanh`] with slopes such that the first and last *cells* are `first` and `last`,
-/// 0 leaving that end free.
+/// with 0 for a free end.
 ///
 /// # Errors
 /// As [`d_tanh`]; at least four numbers, and [`DistributionError::Unreachable`] unless the law can
@@ -309,7 +309,8 @@ pub fn redist<T: Real>(given: &[T], n: usize) -> Result<T> {
     Ok((0..n).map(at).collect())
 }
 
-/// The largest ratio of neighbouring cells, whichever of the two is larger; 1 for fewer than two.
+/// The largest ratio of neighbouring cells, the larger over the smaller; 1 for fewer than two
+/// cells.
 ///
 /// # Example
 /// ```
@@ -336,9 +337,9 @@ pub fn first_for<T: Real>(length: T, growth: T, n: usize) -> T {
     length / growth_sum(growth.ln(), n - 1)
 }
 
-/// The fewest numbers, `most_numbers` at most, with which the law of [`d_tanhx`] over `length` has
-/// these end cells (0: free) and grows by at most `growth` from cell to cell; `None` when no number
-/// does.
+/// The fewest numbers, at most `most_numbers`, with which the law of [`d_tanhx`] over `length` has
+/// these end cells (0: free) and grows by at most `growth` from cell to cell; `None` if there is no
+/// such number.
 ///
 /// # Errors
 /// [`DistributionError`] for a length or spacings that are no lengths.

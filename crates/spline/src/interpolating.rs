@@ -5,17 +5,18 @@ use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::{SmallVec, smallvec};
 use std::fmt;
 
-/// Why no spline passes through these points.
+/// Reason why there is no spline through these points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InterpolationError {
     /// Too few points.
     TooFew {
-        /// The fewest for this kind of spline.
+        /// The minimum for this kind of spline.
         expected: usize,
         /// The number given.
         actual: usize,
     },
-    /// Two neighbours coincide (or their knots do), which leaves no parameter range between them.
+    /// Two neighbouring points or their knots coincide, so there is no parameter range between
+    /// them.
     Coincident {
         /// Index of the first of the two, from 0.
         first: usize,
@@ -92,7 +93,7 @@ pub enum End<T> {
 pub enum Ends<T> {
     /// Conditions at the start and at the end.
     Open(End<T>, End<T>),
-    /// The last point is the first again, with the same slope and curvature.
+    /// The last point equals the first, with the same slope and curvature.
     Periodic,
 }
 
@@ -145,7 +146,8 @@ impl<T: Real> InterpolatingSpline<T> {
     }
 
     /// The spline of a C-curve's type: 1 the polyline, 3 the cubic with not-a-knot ends. A type
-    /// above the number of points less one is lowered to it, so 2 serves three points.
+    /// larger than the number of points less one is reduced to it, so that 2 is allowed for three
+    /// points.
     ///
     /// # Errors
     /// [`InterpolationError::Type`] for another type, and as [`InterpolatingSpline::through`].
@@ -173,7 +175,7 @@ impl<T: Real> InterpolatingSpline<T> {
         Ok(Self { curve, breaks })
     }
 
-    /// The cubic spline with ascending `knots` of the caller's choice.
+    /// The cubic spline with given ascending `knots`.
     ///
     /// # Errors
     /// As [`InterpolatingSpline::with_ends`]; [`InterpolationError::Knots`] when there are not as

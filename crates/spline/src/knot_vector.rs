@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-/// The highest polynomial degree of a spline.
+/// Maximum polynomial degree of a spline.
 pub const MAX_DEGREE: usize = 25;
 
-/// Why a list of numbers is not a knot vector.
+/// Reason why a list of numbers is not a knot vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KnotError {
     /// The degree is not in 1..=[`MAX_DEGREE`].
@@ -15,7 +15,7 @@ pub enum KnotError {
     },
     /// A clamped spline needs at least `2 (degree + 1)` knots.
     TooFew {
-        /// The fewest knots for this degree.
+        /// The minimum number of knots for this degree.
         expected: usize,
         /// The number given.
         actual: usize,
@@ -151,7 +151,7 @@ impl KnotVector {
         self.degree
     }
 
-    /// The number of control points it serves.
+    /// The number of control points.
     pub fn points(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
@@ -166,7 +166,7 @@ impl KnotVector {
         (self.knots[self.degree], self.knots[self.points()])
     }
 
-    /// The same knots moved and scaled to the domain [0, 1]; the ends are exact.
+    /// The same knots, moved and scaled to the domain [0, 1], with exact ends.
     pub fn normalized(&self) -> Self {
         let (start, end) = self.domain();
         if (start, end) == (0.0, 1.0) {
@@ -176,7 +176,7 @@ impl KnotVector {
         Self { degree: self.degree, knots: self.knots.iter().copied().map(scale).collect() }
     }
 
-    /// The knots of the curve run backwards on the same domain.
+    /// The knots of the reversed curve on the same domain.
     pub fn reversed(&self) -> Self {
         let (start, end) = self.domain();
         let flip = |k: f64| {
@@ -242,7 +242,7 @@ impl KnotVector {
     }
 
     /// The knots of the same splines in the next higher degree: the multiplicity of each distinct
-    /// knot is one more.
+    /// knot is increased by one.
     ///
     /// # Errors
     /// [`KnotError::Degree`] above [`MAX_DEGREE`].

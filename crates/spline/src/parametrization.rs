@@ -9,7 +9,8 @@ pub enum Parametrization {
     /// In proportion to the chords.
     #[default]
     Chord,
-    /// In proportion to the square roots of the chords (Lee 1989): calmer where chords differ much.
+    /// In proportion to the square roots of the chords (Lee 1989): smoother if chords differ
+    /// widely.
     Centripetal,
     /// Evenly, whatever the points.
     Index,
@@ -47,7 +48,7 @@ impl Parametrization {
 
     /// The common knots of the lines of a grid, (i, j) at `i * n + j`, along i (`axis` 0) or j (1):
     /// the means of the knots of all lines that have a length. A line with coincident neighbours
-    /// counts with a step of nothing there.
+    /// contributes a step of zero there.
     ///
     /// # Errors
     /// As [`Self::knots`]; coincident when no line has a step between two neighbours.

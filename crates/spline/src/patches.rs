@@ -49,7 +49,7 @@ impl Spans {
     /// The index of the span in charge at `t` and the distance from its middle.
     #[inline(always)]
     fn locate(&self, t: f64) -> (usize, f64) {
-        // The cast saturates: negative and NaN go to bucket 0.
+        // The cast saturates: negative values and NaN are in bucket 0.
         let bucket = (t * self.buckets.len() as f64) as usize;
         let mut k = self.buckets[bucket.min(self.buckets.len() - 1)] as usize;
         // Rounding of the product may name the bucket after the right one.
@@ -201,8 +201,8 @@ fn xyz<T: Real, const LANES: usize>(a: [T; LANES]) -> Vec3<T> {
 }
 
 impl<T: Real> BSplineSurface<T> {
-    /// The positions at the parameter pairs `uv`, in any order. The patches are brought to local
-    /// powers at the first call, which costs about as much as some thousand points.
+    /// The positions at the parameter pairs `uv`, in any order. The first call converts the patches
+    /// to local powers, at the cost of about a thousand points.
     ///
     /// # Panics
     /// When `out` is shorter than `uv`.

@@ -3,8 +3,7 @@
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::SmallVec;
 
-/// A curve of cubic polynomials between knots that may themselves move (they are scalars, not
-/// plain numbers).
+/// A curve of cubic polynomials between knots that may carry derivatives.
 ///
 /// Piece `k` holds the coefficients of 1, s, s^2, s^3 with `s = t - knots[k]`. There is one piece per
 /// knot: the last continues the one before from its far end, so the value at each knot, the last
@@ -16,8 +15,8 @@ pub struct PiecewiseCubic<T: Real> {
 }
 
 impl<T: Real> PiecewiseCubic<T> {
-    /// The cubic Hermite curve through `points` at ascending `knots` with the given `slopes`; all
-    /// three lists are equally long, at least two.
+    /// The cubic Hermite curve through `points` at ascending `knots` with the given `slopes`; the
+    /// three lists have the same length, at least two.
     pub fn hermite(knots: &[T], points: &[Vec3<T>], slopes: &[Vec3<T>]) -> Self {
         let mut coefficients = SmallVec::with_capacity(knots.len());
         for k in 0..knots.len() - 1 {
@@ -31,8 +30,8 @@ impl<T: Real> PiecewiseCubic<T> {
         Self::closed_off(knots, coefficients, points[points.len() - 1])
     }
 
-    /// The curve of these polynomials, one per knot but the last, where it passes through `end`; see
-    /// the type. Nothing makes them meet at the knots.
+    /// The curve of these polynomials, one per knot except the last, where it passes through `end`;
+    /// see the type. Continuity at the knots is not enforced.
     pub fn of_pieces(knots: &[T], coefficients: &[[Vec3<T>; 4]], end: Vec3<T>) -> Self {
         Self::closed_off(knots, SmallVec::from_slice(coefficients), end)
     }

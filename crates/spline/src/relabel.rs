@@ -7,10 +7,10 @@ use moldloft_num::{Jet, Order, Real, Reparametrization, ReparametrizationJet};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-/// Why a law is not a relabelling.
+/// Reason why a law is not a relabelling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RelabelError {
-    /// The values do not begin with 0 and end with 1.
+    /// The values do not start with 0 and end with 1.
     Ends {
         /// The first value.
         first: f64,
@@ -36,7 +36,7 @@ pub enum RelabelError {
         /// The index of the later one.
         index: usize,
     },
-    /// The numbers of parameters and values differ, or are fewer than two.
+    /// The numbers of parameters and values differ, or are less than two.
     Lengths {
         /// Parameters.
         parameters: usize,
@@ -88,7 +88,7 @@ impl fmt::Display for RelabelError {
 
 impl std::error::Error for RelabelError {}
 
-/// Ends at which a spacing law is dense.
+/// Dense ends of a spacing law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dense {
     /// At 0 and 1.
@@ -153,9 +153,9 @@ impl<T: Real> ReparametrizationForm<T> {
         matches!(self.law, Formula::Identity)
     }
 
-    /// The clamped uniform B-spline function with these coefficients, as B-sub-curves use it. They
-    /// must ascend, which is enough (and for degrees 1 and 2 necessary) for R to be monotone. The
-    /// first and the last are fixed: their derivatives are dropped.
+    /// The clamped uniform B-spline function with these coefficients, as in B-sub-curves. They must
+    /// ascend, which makes R monotone (and is necessary for degrees 1 and 2). The first and the
+    /// last are constants without derivatives.
     ///
     /// # Errors
     /// [`RelabelError`] if the values decrease, do not extend from 0 to 1, are too few, or if
@@ -171,8 +171,8 @@ impl<T: Real> ReparametrizationForm<T> {
         Self::partial(degree, values)
     }
 
-    /// The same with any first and last value: a law that leaves parts of a curve out, or extends
-    /// it beyond its ends.
+    /// As [`Self::spline`], with any first and last value: a law that omits parts of a curve or
+    /// extends it beyond its ends.
     ///
     /// # Errors
     /// As for [`Self::spline`], but for the ends.
@@ -204,7 +204,7 @@ impl<T: Real> ReparametrizationForm<T> {
     }
 
     /// The monotone piecewise cubic through (parameter, value) pairs (Fritsch and Carlson 1980):
-    /// slopes of the parabolas through three neighbours, drawn into the circle of radius 3 where
+    /// slopes of the parabolas through three neighbours, limited to the circle of radius 3 where
     /// the cubic would overshoot. The first and the last pair are fixed at (0, 0) and (1, 1).
     ///
     /// # Errors

@@ -5,8 +5,8 @@ use crate::{KnotError, KnotVector, MAX_DEGREE};
 use moldloft_num::{Banded, CurveFormula, Jet, Order, Rational, Real, Vec3};
 use smallvec::{SmallVec, smallvec};
 
-/// A rational B-spline curve whose knots are scalars, so that derivatives by them are known; on
-/// [0, 1]. Outside, the polynomial of the first or last span continues.
+/// A rational B-spline curve on [0, 1] whose knots may carry derivatives. Outside, the polynomial
+/// of the first or last span continues.
 ///
 /// [`crate::BSplineCurve`] is quicker where the knots are plain numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +75,7 @@ impl<T: Real> SplineWithKnotDerivatives<T> {
         self.points.iter().map(|(p, _)| *p)
     }
 
-    /// True where the curve begins and ends at its first and last control point.
+    /// True if the curve starts at its first control point and ends at its last.
     pub fn clamped_ends(&self) -> [bool; 2] {
         let (p, n) = (self.degree, self.points.len());
         let all = |from: usize, to: usize| {
@@ -84,9 +84,9 @@ impl<T: Real> SplineWithKnotDerivatives<T> {
         [all(0, p), all(n, n + p)]
     }
 
-    /// The polynomial curve with these control points in number that comes nearest to the samples
-    /// (parameter, position) by least squares, and begins and ends at the first and the last of
-    /// them; knots as for [`SplineWithKnotDerivatives::new`], which must be clamped.
+    /// The polynomial curve with a given number of control points that fits samples (parameter,
+    /// position) by least squares, and starts and ends at the first and the last sample; knots as
+    /// for [`SplineWithKnotDerivatives::new`], which must be clamped.
     ///
     /// # Errors
     /// [`SplineError`] for knots that do not fit, [`SplineError::Count`] when the samples leave a

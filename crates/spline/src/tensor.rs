@@ -54,7 +54,7 @@ impl<T: Real> GridSpline<T> {
         Self::bicubic_with(u, v, points, [ends, ends])
     }
 
-    /// The same with end conditions for each direction: of the lines along u, and along v.
+    /// As `bicubic`, with end conditions for each direction: of the lines along u, and along v.
     ///
     /// # Errors
     /// As [`Self::bicubic`].

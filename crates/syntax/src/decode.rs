@@ -3,11 +3,11 @@
 use moldloft_diag::{Diagnostic, FileId, Span};
 use std::borrow::Cow;
 
-/// The longest text that is read: spans are 32 bits wide, and a model of this size is a mistake.
+/// Maximum length of a text: spans are 32 bits wide, and a model of this size is a mistake.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// The bytes as text. In a file whose lines end with carriage returns alone, these become line
-/// feeds, so positions do not change.
+/// The bytes as text. In a file whose lines end with carriage returns only, these become line
+/// feeds, so that positions do not change.
 ///
 /// # Errors
 /// `binary-file` for NUL bytes or invalid UTF-8, with the position of the first one; `file-too-large` beyond

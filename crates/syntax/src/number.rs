@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-/// The shortest text that reads back as the same double, spelled as a float of the language.
+/// The shortest text that reads back as the same double, written as a float of the language.
 ///
 /// Rules: a float always shows that it is one (`1.0`, `2.5e-7`, never `1`); exponents are used below 1e-5 and from
 /// 1e16 on; minus zero prints as `0.0`. Infinities and NaN have no spelling in any of our texts and must not come here;
@@ -20,7 +20,8 @@ pub fn float(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// The shortest text that reads back as the same double, without regard to float or integer: `1`, `0.1`, `2.5e-7`.
+/// The shortest text that reads back as the same double, written as integer or float: `1`, `0.1`,
+/// `2.5e-7`.
 ///
 /// ```
 /// use moldloft_syntax::number::plain;
@@ -34,8 +35,8 @@ pub fn plain(value: f64) -> String {
     text
 }
 
-/// True if the value can be spelled with digits only and read back without loss: a whole number
-/// below 1e15.
+/// True if the value can be written with digits only and read back without loss: an integer below
+/// 1e15.
 pub fn is_whole(value: f64) -> bool {
     value.abs() < 1e15 && value == value.trunc()
 }

@@ -44,7 +44,7 @@ _TRIES = 24
 
 
 def read(path: Path, metres: float) -> Imported:
-    """The faces and curves of a STEP or IGES file; ``metres`` is the size of its unit.
+    """The faces and curves of a STEP or IGES file; ``metres`` is the length of its unit.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def read(path: Path, metres: float) -> Imported:
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
     if not sys.executable:
-        # A program that has Python inside: there is none to start.
+        # A program that embeds Python: there is no interpreter to start.
         return of_part(path, metres, None)
     spending = _Spending(path)
     answer = _asked(path, metres, None, spending)
@@ -147,7 +147,7 @@ class _Worker:
         self._process: ChildProcess | None = None
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any] | str:
-        """Its answer, or the cause of its end."""
+        """The answer, or the reason why the process ended."""
         with self._lock:
             while True:
                 process = self._process

@@ -71,7 +71,7 @@ class Face:
 
     @property
     def natural(self) -> bool:
-        """True if its loops are the whole edges of its surface's parameters."""
+        """True if the face covers the whole parameter range of its surface."""
         if self.surface is None:
             return False
         sides = [side for cycle in self.loops for side in cycle]

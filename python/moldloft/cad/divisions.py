@@ -32,7 +32,7 @@ _KINK = 0.5
 
 
 def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
-    """The divisions along u and v of the faces that are whole surfaces, by name.
+    """The divisions along u and v, by name, of the faces that cover a whole surface.
 
     Divisions along a common edge of two faces are equal.
 

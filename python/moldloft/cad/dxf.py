@@ -25,7 +25,7 @@ _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
 def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
     """The bytes of a DXF file, R2018.
 
-    Edges are on the layer of the first face that has them; each edge is there once.
+    Edges are on the layer of the first face that has them; each edge is written once.
 
     Parameters
     ----------

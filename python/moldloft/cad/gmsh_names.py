@@ -17,10 +17,10 @@ _NEAR = 1e-5
 
 
 def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:
-    """Names of the faces in a Gmsh model of our STEP file, by tag.
+    """Names of the faces in a Gmsh model of an exported STEP file, by tag.
 
-    Faces are compared by their corners, in the order of the file: a face of Gmsh that has no
-    counterpart gets no name.
+    Faces are matched by their corners, in the order of the file; an unmatched face of Gmsh has no
+    name.
 
     Parameters
     ----------

@@ -814,7 +814,7 @@ def border(trace: Nurbs) -> str:
 
 
 def is_whole(trace: Nurbs) -> bool:
-    """True if a curve along an edge of the parameters covers all of it.
+    """True if a curve along an edge of the parameter square covers the whole edge.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _MOST = 1e-4
 
 
 def map_of(shape: Any, kind: Any) -> Any:
-    """The parts of a shape of a kind, each once."""
+    """The parts of a shape with a given type, each once."""
     from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
     from OCP.TopExp import TopExp
 
@@ -24,7 +24,7 @@ def map_of(shape: Any, kind: Any) -> Any:
 
 
 def faces_of(shape: Any, kind: Any) -> list[Any]:
-    """The same as a list."""
+    """The parts of a shape with a given type as a list, each once."""
     shapes = map_of(shape, kind)
     return [shapes.FindKey(k) for k in range(1, shapes.Extent() + 1)]
 
@@ -91,7 +91,7 @@ class Sewn:
         return map_of(self.body, TopAbs_FACE)
 
     def face(self, original: Any) -> Any:
-        """A face of the shape as it is in the whole."""
+        """A face of the shape, as part of the sewn whole."""
         if not self.passes:
             return original
         made = original

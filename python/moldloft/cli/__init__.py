@@ -229,7 +229,7 @@ def _run(arguments: list[str]) -> int:
     return status
 
 
-#: The options of all commands, and how many values each takes: they may stand before the command.
+#: Options of all commands, with their numbers of values; they are accepted before the command.
 _COMMON = {"--color": 1, "--limit": 1, "--traceback": 0}
 
 
@@ -269,18 +269,26 @@ def _parsed(arguments: list[str]) -> Namespace:
 
 def whole_parser(loaded: Sequence[str]) -> Parser:
     """The parser of all commands, with the arguments of those that are ``loaded``."""
+    import shutil
+    from textwrap import wrap
+
     from moldloft.cli.parser import Parser
 
+    width = max(min(shutil.get_terminal_size().columns, 100) - 14, 20)
     lines = []
     for title, group in GROUPS.items():
-        lines += [f"{title}:", *(f"  {name:<12}{line}" for name, line in group.items()), ""]
+        lines.append(f"{title}:")
+        for name, line in group.items():
+            first, *more = wrap(line, width)
+            lines += [f"  {name:<12}{first}", *(" " * 14 + text for text in more)]
+        lines.append("")
     parser = Parser(
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
         description="Describe a shape, relate its parts, panel it, measure it.\n\nTo start: "
         "`moldloft new hull.sdl`, then `moldloft view hull.sdl`.",
-        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples. "
-        "--color, --limit and --traceback may stand before it.",
+        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples.\n"
+        "--color, --limit and --traceback can precede the command.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(

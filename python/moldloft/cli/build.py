@@ -31,7 +31,7 @@ from moldloft.errors import Error, ModelError
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
 from moldloft.models import Model
-from moldloft.text_table import table
+from moldloft.text_table import table, terminal_width
 
 __all__ = ["add", "facts", "run", "summary", "worst_panels"]
 
@@ -154,7 +154,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             sources = _build_watched(options)
         except Error as error:
-            # What was read before is still what the model is made of.
+            # The model still depends on the files read before.
             print(error.rendered, file=sys.stderr)
         watch.end(sources)
         print(f"watching {', '.join(sources)}", file=sys.stderr)
@@ -390,7 +390,7 @@ def summary(
         volume = total["volume"] if total["closed"] else None
         whole += [_number(volume), _yes(total["closed"])]
         rows.append(["whole", "", *whole, "", "", ""])
-        lines += ["", table(header, rows, left=2)]
+        lines += ["", table(header, rows, left=2, width=terminal_width())]
         lines += _openings(mesh, data)
     if floating is not None and (verbose or _floats(floating)):
         lines += ["", _floating(floating) if verbose else _main_figures(floating)]
@@ -485,7 +485,8 @@ def worst_panels(mesh: Mesh) -> str:
             where = f"({place[0]}, {place[1]})" if place else f"#{measure['panel']}"
             row.append(f"{measure[end]:.3g} at {where}")
         rows.append([*row, str(patch.quality.get("without_area", 0))])
-    return "worst panels, by (i, j) along u and v\n" + table(header, rows, left=1)
+    text = table(header, rows, width=terminal_width())
+    return f"worst panels, by (i, j) along u and v\n{text}"
 
 
 def _floating(floating: Hydrostatics) -> str:

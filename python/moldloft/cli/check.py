@@ -46,7 +46,7 @@ def _check(options: argparse.Namespace) -> tuple[int, Any]:
         mesh = None
         cells: list[Diagnostic] = []
         if not any(d.is_error for d in model.diagnostics):
-            # What contradicts itself in the joins is known when panels and cells are divided.
+            # Contradictions of joins are known after the division of panels and cells.
             progress.stage("dividing")
             model.partial = True
             mesh = model.mesh()

@@ -73,7 +73,7 @@ _moldloft() {{
     COMPREPLY=($(compgen -W '{listed} --help --version' -- "$current"))
     return
   fi
-  # A list such as `--to gdf stl` goes on until the next option.
+  # A list such as `--to gdf stl` continues until the next option.
   for ((k = COMP_CWORD - 1; k > 1; k--)); do
     case ${{COMP_WORDS[k]}} in --to|--tag) previous=${{COMP_WORDS[k]}}; break ;; -*) break ;; esac
   done

@@ -43,7 +43,7 @@ __all__ = [
 
 
 def assignment(text: str) -> tuple[str, float]:
-    """The name and the number of ``name=number``."""
+    """Name and number from a text ``name=number``."""
     name, equals, value = text.partition("=")
     try:
         number = float(value)
@@ -62,10 +62,10 @@ def add_model(
     values: bool = True,
     refined: bool = True,
 ) -> None:
-    """Arguments of every command that runs a model, or ``several``.
+    """Add the arguments of a command that runs one model, or ``several``.
 
-    Without ``piped`` it takes files only, without ``values`` no ``--set``, without ``refined`` no
-    ``--refine``.
+    Without ``piped`` only files are accepted; without ``values`` there is no ``--set``, without
+    ``refined`` no ``--refine``.
     """
     parser.add_argument(
         "models" if several else "model",
@@ -125,7 +125,7 @@ def say(options: argparse.Namespace, text: str) -> None:
 
 
 def expanded(words: list[str]) -> list[str]:
-    """File names of words: quoted patterns become the files that they match, in order.
+    """Expand words to file names: a pattern stands for the files that match it, in order.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def each_model(
 ) -> int:
     """Runs a command for each of its models; the worst status, and with ``--json`` their data.
 
-    The data of one model is an object, that of several a list of them.
+    The data are an object for one model, a list of objects for several.
     """
     from moldloft.cli.colour import painted
     from moldloft.errors import Error
@@ -216,9 +216,9 @@ def stem_of(options: argparse.Namespace) -> str:
 
 
 def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | None:
-    """Writes a file atomically; ``-`` is standard output, without a returned path.
+    """Writes a file atomically; ``-`` is standard output and returns no path.
 
-    One of the sources is not overwritten.
+    Sources are never overwritten.
     """
     from moldloft.files import Output, commit
     from moldloft.permissions import check_not_source
@@ -311,7 +311,7 @@ def open_model(options: argparse.Namespace) -> Model:
         try:
             model.set(dict(options.set))
         except Error:
-            # What is wrong with the text may be why a name is unknown.
+            # Errors of the text may be the reason why a name is unknown.
             report([d for d in model.diagnostics if d.severity == "error"])
             raise
     return model
@@ -326,7 +326,7 @@ def report(diagnostics: list[Diagnostic]) -> None:
 
 
 def block_problems(model: Model) -> list[Diagnostic]:
-    """Faults of the cells of the model's solids, if it has any: folded cells, and joins."""
+    """Faults of the cells of the model's solids, if any: folded cells and mismatched joins."""
     from moldloft.errors import ModelError
 
     facts = (model.facts(name) for name in model.objects)
@@ -355,7 +355,7 @@ def _finite(data: Any) -> Any:
 
 
 class Progress:
-    """A line about the current stage of work that takes longer than a second, on terminals.
+    """Progress line for work that takes longer than a second, on terminals only.
 
     It shows the seconds of the stage or, if the fraction done is known, percent and time left.
     Nothing is printed into pipes and files.
@@ -413,7 +413,7 @@ class Progress:
 
 
 def progress_line(words: str, detail: str, done: float | None, seconds: float) -> str:
-    """The line of a stage after a number of seconds.
+    """The progress line of a stage after a number of seconds.
 
     >>> progress_line("dividing", "", None, 12.3)
     'dividing … 12 s; Ctrl-C ends it'
@@ -440,7 +440,7 @@ def format_argument(name: str) -> str:
 
 
 def water(text: str) -> float | str:
-    """A water by name, or its density."""
+    """A density, as a number or as the name of a water."""
     from moldloft.units import WATERS
 
     if text in WATERS:

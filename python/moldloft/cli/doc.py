@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from textwrap import fill
+from textwrap import fill, wrap
 from typing import Any
 
 from moldloft.cli.console import print_json
@@ -11,7 +11,7 @@ from moldloft.cli.reference_page import example_lines, markdown, signature, syno
 from moldloft.errors import UnknownNameError
 from moldloft.library import picture, pictured, routines
 from moldloft.spelling import nearest
-from moldloft.text_table import table
+from moldloft.text_table import table, terminal_width
 
 __all__ = ["add", "has_picture", "run"]
 
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
             print_json({"name": options.name, "diagnostic": True, "doc": text})
         else:
             page = f"{SITE}/diagnostics/{options.name}.html"
-            print(f"{options.name}: a diagnostic\n\n{fill(text, 96)}\n\nExample: {page}")
+            print(f"{options.name}: a diagnostic\n\n{fill(text, _columns())}\n\nExample: {page}")
         return 0
     shared = next((field for field in attributes() if field["name"] == options.name), None)
     if shared and not options.pictures:
@@ -133,7 +133,9 @@ _ATTRIBUTES = {
 
 def _statement_page(row: dict[str, Any]) -> str:
     width = max(len(name) for name, _ in row["arguments"]) + 2
-    arguments = [f"  {name:<{width}}{text}" for name, text in row["arguments"]]
+    arguments = [
+        line for name, text in row["arguments"] for line in _beside(f"  {name:<{width}}", text)
+    ]
     example = [f"  {line}" for line in row["example"].splitlines()]
     return "\n".join([row["signature"], "", row["doc"], "", *arguments, "", "Example:", *example])
 
@@ -184,11 +186,12 @@ _MOST_FOUND = 15
 def _list(rows: list[dict[str, Any]], *, summary: bool = False) -> str:
     if summary:
         cells = [[row["name"], row["class"], _first_line(row["summary"])] for row in rows]
-        return table(["name", "class", "what"], cells, left=3)
+        return table(["name", "class", "what"], cells, left=3, width=terminal_width())
     return table(
         ["name", "class", "arguments"],
         [[row["name"], row["class"], ", ".join(f["name"] for f in row["fields"])] for row in rows],
         left=3,
+        width=terminal_width(),
     )
 
 
@@ -197,17 +200,31 @@ def _first_line(text: str) -> str:
     return line if len(line) <= 76 else line[:75].rsplit(" ", 1)[0] + " …"
 
 
+def _columns() -> int:
+    return min(terminal_width() or 96, 96)
+
+
+def _beside(head: str, text: str) -> list[str]:
+    """A head with a text beside it, which is wrapped in a terminal."""
+    width = terminal_width()
+    if width is None:
+        return [head + text]
+    lines = wrap(text, max(width - len(head), 20)) or [""]
+    return [head + lines[0], *(" " * len(head) + line for line in lines[1:])]
+
+
 def _page(row: dict[str, Any]) -> str:
     lines = [signature(row), "", str(row["doc"]).partition("\n\nCalled as ")[0], ""]
     if "library" in row:
-        lines[2] = fill(lines[2], 96)
+        lines[2] = fill(lines[2], _columns())
         lines[3:] = ["", f'A routine of a library: load "{row["library"]}";', ""]
     rows = [
         [f"  {f['name']}", f"{f['class']}{' list' if f['many'] else ''}"] for f in row["fields"]
     ]
     width = max((len(cell) for cells in rows for cell in cells), default=0) + 2
     for cells, field in zip(rows, row["fields"], strict=True):
-        lines.append("".join(cell.ljust(width) for cell in cells) + field["help"])
+        head = "".join(cell.ljust(width) for cell in cells)
+        lines += _beside(head, str(field["help"]))
     words = synonyms(row)
     if words:
         lines += ["", f"Also found as: {', '.join(words)}."]

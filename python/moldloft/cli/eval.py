@@ -66,9 +66,7 @@ def as_data(value: Any) -> Any:
 
 
 def as_text(value: Any) -> str:
-    """The value as text for a reader.
-
-    Numbers with all digits; each row of a surface on a line of its own.
+    """The value as text, with all digits, and a line for each row of a surface.
 
     >>> as_text(2.0), as_text([1.0, 2.5]), as_text(1 / 3)
     ('2', '{1, 2.5}', '0.3333333333333333')

@@ -302,7 +302,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def refuse_curves_only(options: argparse.Namespace) -> None:
-    """Options of single curves; an error where they would be ignored."""
+    """Options of single curves; an error if they would be ignored."""
     for name, given in (
         ("--bends", options.bends),
         ("--at", options.at),
@@ -327,8 +327,8 @@ def run(options: argparse.Namespace) -> int:
         options.tol = _numbers(options.tol)
     if options.tol is None and not options.json:
         print(
-            "warning: without a tolerance nothing keeps the result near the data: steps without "
-            "end lead to a single polynomial",
+            "warning: without a tolerance the result may be far from the data: the steps converge "
+            "to a single polynomial",
             file=sys.stderr,
         )
     if options.passes is not None and options.mode is None:
@@ -415,13 +415,13 @@ def _ends(options: argparse.Namespace) -> Any:
 
 
 class Source(abc.ABC):
-    """Data to fair: its source, and how the result is written."""
+    """Data to fair, with their source and the writer of the result."""
 
     title = ""
 
     @abc.abstractmethod
     def fair(self, options: argparse.Namespace) -> Result:
-        """The result by these options."""
+        """The result with these options."""
 
     def facts(self) -> dict[str, Any]:
         """Data of the report in addition to those of the result."""
@@ -478,7 +478,7 @@ def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
 
 
 def curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
-    """The options of a curve by their names in Python."""
+    """The options of a curve, by their Python names."""
     for name, given in (
         ("--rims", options.rims != "corners"),
         ("--normal", options.normal),
@@ -547,7 +547,7 @@ def _original(options: argparse.Namespace, count: int) -> Any:
 
 
 def commit_file(path: Path, data: bytes) -> Path:
-    """Writes a file, all of it or nothing."""
+    """Write a file atomically."""
     from moldloft.files import Output, commit
 
     return commit(path.parent, [Output(path.name, data)])[0]
@@ -696,7 +696,9 @@ class _Points(Source):
         if path.suffix.lower() in SPLINES:
             curves = result.curves if hasattr(result, "lists") else [result.spline]
             if self.unit is None and path.suffix.lower() in MILLIMETRES:
-                self.said.append(f"{path} says millimetres: no unit is stated; name it by --units")
+                self.said.append(
+                    f"{path} states millimetres, as no unit is known; give it by --units"
+                )
             return commit_file(path, encoded(curves, path, self.unit, getattr(result, "names", ())))
         if hasattr(result, "lists"):
             like: PointFile = self.file

@@ -69,12 +69,12 @@ class FileLines:
 
     @property
     def limits(self) -> NDArray[np.float64]:
-        """The tolerance of each different point; infinite without one."""
+        """The tolerance of each distinct point; infinite without a tolerance."""
         tolerances = np.inf if self.tolerances is None else self.tolerances
         return np.broadcast_to(np.asarray(tolerances, np.float64), len(self.rows))
 
     def fair(self, options: argparse.Namespace) -> NetworkFairing:
-        """The network faired; an error has the row of its point."""
+        """The faired network; errors state the row of the point."""
         from moldloft.fairing import network
 
         file, rows = self.file, self.rows
@@ -133,7 +133,7 @@ class FileLines:
         return out
 
     def axes_of(self, options: argparse.Namespace, said: list[str]) -> Any:
-        """The motion of the network, or the axes of each point of a table that has several."""
+        """The motion of the network, or the axes of each point if a table has several."""
         file, motion = self.file, words.motion(options)
         if motion != "ball" or not file.offsets:
             return motion
@@ -151,7 +151,7 @@ class FileLines:
         return [file.motions[file.places[k]] for k in self.rows]
 
     def tolerances_of(self, options: argparse.Namespace) -> Any:
-        """One tolerance, or that of each different point."""
+        """One tolerance, or the tolerance of each distinct point."""
         if not isinstance(options.tol, list):
             return options.tol
         found, rows, count = len(options.tol), self.rows, len(self.file.points)

@@ -63,7 +63,7 @@ class ObjectSource(Source):
             return []
         count = " x ".join(str(n) for n in self.made.points.shape[:-1])
         return [
-            f"{count} points of the object were fitted; between them it is {self.error:.2e} off"
+            f"{count} points of the object were fitted; the error between them is {self.error:.2e}"
         ]
 
     def write(self, result: Any, path: Path) -> Path:

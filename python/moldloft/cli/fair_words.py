@@ -97,7 +97,7 @@ def vector(text: str) -> list[float]:
 
 
 def condition(text: str) -> tuple[list[float], list[float]]:
-    """Parameters and the vector there."""
+    """Parameters with a vector at each."""
     place, equals, given = text.partition("=")
     try:
         at = [float(t) for t in place.split(",")]
@@ -119,7 +119,7 @@ def degrees(text: str) -> int | tuple[int, int]:
 
 
 def places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
-    """Numbers from 1 as indices."""
+    """Indices from 0 for numbers from 1."""
     out = []
     for word in filter(None, (w.strip() for w in text.split(","))):
         if not word.isdigit() or int(word) < 1 or (count is not None and int(word) > count):

@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
         elif options.write and file != "-":
             if new != old:
                 recover(path.resolve().parent)
-                # Who saved it meanwhile keeps what was saved.
+                # A file saved meanwhile by another program is kept.
                 put(path, new, expected=digest(old))
         else:
             put_text(new.decode())

@@ -6,7 +6,7 @@ import argparse
 from dataclasses import asdict
 
 from moldloft.cli.console import print_json
-from moldloft.text_table import table
+from moldloft.text_table import table, terminal_width
 
 __all__ = ["add", "run"]
 
@@ -27,5 +27,5 @@ def run(options: argparse.Namespace) -> int:
         return 0
     header = ["name", "file", "holds", "what"]
     cells = [[r.name, f".{r.suffix or r.name}", r.holds, r.about] for r in rows]
-    print(table(header, cells, left=4))
+    print(table(header, cells, left=4, width=terminal_width()))
     return 0

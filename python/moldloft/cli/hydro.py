@@ -19,7 +19,7 @@ from moldloft.cli.console import (
 )
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
-from moldloft.text_table import table
+from moldloft.text_table import table, terminal_width
 from moldloft.units import header, shown
 
 __all__ = ["add", "run"]
@@ -435,7 +435,7 @@ def _sections(model: Any, options: argparse.Namespace) -> int:
     if options.json:
         print_json({"stations": options.sections, "levels": levels, "areas": areas.tolist()})
     elif not (options.csv or options.plot):
-        print(table(head, body, left=0))
+        print(table(head, body, left=0, width=terminal_width()))
     return 0
 
 
@@ -449,7 +449,7 @@ def _warn(rows: list[Hydrostatics]) -> None:
         print(text + "enters: no figures of a body", file=sys.stderr)
     lost = sum(row.status == "not-converged" for row in rows)
     if lost:
-        print(f"warning: {lost} of {len(rows)} attitudes did not come to rest", file=sys.stderr)
+        print(f"warning: no equilibrium found for {lost} of {len(rows)} attitudes", file=sys.stderr)
     if any(row.stable is False for row in rows):
         print("warning: unstable: small turns are not righted in this attitude", file=sys.stderr)
     if any(row.lolls for row in rows):
@@ -480,7 +480,8 @@ def _table(rows: HydrostaticTable | RightingCurve) -> str:
     if isinstance(rows, HydrostaticTable):
         names = [n for n in _TABLE if any(getattr(row, n) is not None for row in rows)]
         body = [[_number(getattr(row, name)) for name in names] for row in rows]
-        return table([header(name, rows.units) for name in names], body, left=0)
+        heads = [header(name, rows.units) for name in names]
+        return table(heads, body, left=0, width=terminal_width())
     names = ["heel", "gz", "righting_moment", "trim", "draft_mid", "freeboard"]
     names = [header(name, rows.units) for name in names] + ["status"]
     body = []
@@ -488,7 +489,7 @@ def _table(rows: HydrostaticTable | RightingCurve) -> str:
         cells = [f"{math.degrees(row.heel):.4g}", _number(row.gz), _number(row.righting_moment)]
         cells += [f"{math.degrees(row.trim):.4g}", _number(row.draft_mid), _number(row.freeboard)]
         body.append([*cells, row.status])
-    text = table(names, body, left=0)
+    text = table(names, body, left=0, width=terminal_width())
     heel, arm = rows.largest
     text += f"\nlargest arm {arm:.6g} at {math.degrees(heel):.4g} degrees"
     if rows.vanishing is not None:

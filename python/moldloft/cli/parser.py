@@ -22,7 +22,7 @@ _NEGATIVE = re.compile(r"-(\d|\.\d)[\d.,eE+:-]*$")
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """The hint about an unknown word.
+    """The hint for an unknown word.
 
     >>> meant("bulid", ["build", "check"])
     '; did you mean `build`?'
@@ -60,7 +60,7 @@ class Parser(argparse.ArgumentParser):
         self._words: list[str] = []
 
     def minus_is_a_value(self) -> None:
-        """Words with one minus are values: the parser has no options of one letter but ``-h``."""
+        """Treat words with one minus as values: the only one-letter option is ``-h``."""
         self._negative_number_matcher = re.compile(r"-(?!h$|-)")
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -82,7 +82,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Prints a one-line error."""
         if message.startswith("the following arguments are required"):
-            # What is missing may be there under a misspelt name.
+            # The missing argument may be present under a misspelt name.
             for word in (word.partition("=")[0] for word in self._words):
                 if word.startswith("--") and word not in {*self._option_string_actions, "--"}:
                     hint = meant(word, self._option_string_actions)

@@ -115,7 +115,7 @@ def signature(row: Row) -> str:
 
 
 def example_lines(text: str, width: int = 96) -> list[str]:
-    """An example in lines of a width, broken between statements.
+    """An example broken into lines of a width, between statements.
 
     >>> example_lines("AbsPoint A(0, 0, 0); Line l(A, B);", 20)
     ['AbsPoint A(0, 0, 0);', 'Line l(A, B);']
@@ -137,7 +137,7 @@ def example_lines(text: str, width: int = 96) -> list[str]:
 
 
 def groups(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Title, a line about it, and rows; each row is in one group."""
+    """A group of rows, with a title and a summary; each row is in one group."""
     found: list[tuple[str, str, list[Row]]] = []
     for title, about, classes in KINDS:
         chosen = [row for row in rows if row["is_kind"] and row["class"] in classes]
@@ -158,7 +158,7 @@ def groups(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 
 
 def synonyms(row: Row) -> list[str]:
-    """Words that users may search for.
+    """Synonyms of an entry for searches.
 
     >>> synonyms({"name": "CLoftSurf"})
     ['loft', 'skin']
@@ -176,7 +176,7 @@ def synonyms(row: Row) -> list[str]:
 
 
 def related(row: Row, rows: list[Row]) -> list[str]:
-    """Entries of the same family, and those that its text names."""
+    """Entries of the same family, and entries named in its text."""
     names = {r["name"] for r in rows}
     found = [n for n in re.findall(r"`([A-Za-z_]\w*)`", str(row["doc"])) if n in names]
     if row["is_kind"] and _SUFFIX.search(row["name"]):
@@ -187,7 +187,10 @@ def related(row: Row, rows: list[Row]) -> list[str]:
 
 
 def anchor(row: Row, rows: list[Row]) -> str:
-    """Name of an entry's page: of names that differ by case only, kinds first, libraries last."""
+    """Name of an entry's page.
+
+    Names that differ only by case are numbered, kinds first, libraries last.
+    """
     name = str(row["name"]).lower()
     alike = [r for r in rows if r["name"].lower() == name]
     before = sorted(alike, key=lambda r: not r["is_kind"]).index(row)
@@ -256,7 +259,7 @@ def entry_page(row: Row, rows: list[Row], pictured: bool, group: str, beside: li
 
 
 def found_as(row: Row) -> list[str]:
-    """Terms of the fields that the entry explains.
+    """Terms of the field explained by the entry.
 
     >>> found_as({"name": "GeoSnake"})
     ['geodesic', 'shortest path on a surface']

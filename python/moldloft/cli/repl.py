@@ -50,7 +50,7 @@ class Session:
         self._before: list[str] = []
 
     def run(self, entry: str) -> list[str]:
-        """The lines that an entry shows.
+        """The output lines of an entry.
 
         Raises
         ------

@@ -30,7 +30,7 @@ def _picture(found: re.Match[str]) -> str:
 
 
 class OwnText(str):
-    """Text of this program that is written unchanged, including colours and cursor movements."""
+    """Text of this program, written unchanged with its colours and cursor movements."""
 
     __slots__ = ()
 

@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 class Host:
-    """Services for a session: shows replies, writes files, records changes."""
+    """The host of a session: shows replies, writes files, records changes."""
 
     def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
         self.sketch = sketch
@@ -314,7 +314,7 @@ class Host:
                       file=sys.stderr)  # fmt: skip
             for command in commands:
                 self.run_line(command)
-            # What was refused then was not recorded; now only a file that is gone can be.
+            # Refused commands were not recorded; only a missing file can be refused now.
             self.refused = before
             text = f"restored: {len(commands)} commands of {taken.when}"
             print(text, file=sys.stderr)

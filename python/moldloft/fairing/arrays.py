@@ -85,9 +85,9 @@ def direction(motion: Any) -> tuple[str, tuple[float, float, float]]:
 def motions_of(
     motion: Any, count: int
 ) -> tuple[Any, list[tuple[int, tuple[float, float, float]]], list[bool]]:
-    """The motion of all points, the points held across an axis, and which of them stay.
+    """The motion of all points, the points restricted to an axis, and the fixed points.
 
-    Axes for each point, such as ``["y", "z", "yz", ""]``, become the motion that has them all.
+    Axes for each point, such as ``["y", "z", "yz", ""]``, become the motion along all of them.
     """
     if not isinstance(motion, list) or not all(isinstance(axes, str) for axes in motion):
         return motion, [], [False] * count
@@ -121,7 +121,7 @@ def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
         return ()
     return (
         f"the tolerance, {most:.3e}, is {100 * most / extent:.0f} % of the extent of the data: "
-        "is its unit theirs?",
+        "check its unit",
     )
 
 

@@ -23,25 +23,25 @@ def only_data(goal: Any) -> None:
 
 
 EXACT = (
-    "the points are on lines, conics, plane cubics or helices and stay as they are: the goal "
+    "the points are on lines, conics, plane cubics or helices and are unchanged: the goal "
     "`fairest` moves them"
 )
-"""Note for exact points that stay although the goal moves others."""
+"""Note for exact points, which the goal does not move."""
 
 EXACT_NEAREST = (
-    "the points are on lines, conics, plane cubics or helices: of the splines with these knots the "
-    "one nearest to them is taken; the goal `fairest` moves it"
+    "the points are on lines, conics, plane cubics or helices: the result is the nearest spline "
+    "with these knots; the goal `fairest` moves it"
 )
-"""The same of splines that need not pass through them."""
+"""The same note for splines that need not pass through the points."""
 
 
 def stays_near(goal: Any, free: bool) -> bool:
-    """True if exact points stay where they are: goal ``"near"`` without conditions."""
+    """True if exact points do not move: goal ``"near"`` without conditions."""
     return free and goal_of(goal)[0] == "near"
 
 
 def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:
-    """The word of a spacing, or "along" and its direction."""
+    """The word for a spacing, or "along" with its direction."""
     if isinstance(given, str):
         return given, (0.0, 0.0, 0.0)
     return "along", direction(given)[1]

@@ -53,7 +53,7 @@ class Cells:
         return self.text[start:end]
 
     def written(self, texts: Sequence[str | None]) -> str:
-        """The text with other numbers in its cells; columns separated by blanks keep their width.
+        """The text with new numbers in its cells; columns separated by blanks keep their width.
 
         Parameters
         ----------
@@ -77,7 +77,9 @@ class Cells:
 
 
 def lines_at(text: str) -> tuple[list[str], list[int]]:
-    r"""The lines of a text without their ends, and where each begins; a byte order mark is skipped.
+    r"""The lines of a text without line ends, with the offset of each.
+
+    A byte order mark is skipped.
 
     Parameters
     ----------
@@ -128,8 +130,8 @@ def _decimals(cell: str) -> int:
 def step_of(cells: Sequence[str], tolerance: float) -> float:
     """The step of written offsets: the digit of the table, or finer for small tolerances.
 
-    Of feet, inches and eighths it is a sixteenth of an inch. Of decimals it is the last digit of
-    the cell with the most; a fifth of the tolerance or less, so that fairing is not lost again.
+    For feet, inches and eighths, a sixteenth of an inch. For decimals, the last digit of the cell
+    with the most, but at most a fifth of the tolerance, which preserves the fairing.
 
     Parameters
     ----------
@@ -154,8 +156,8 @@ def step_of(cells: Sequence[str], tolerance: float) -> float:
 def rounded(value: float, given: float, step: float, tolerance: float) -> float:
     """A faired number rounded to a step, within the tolerance of the original.
 
-    The nearest; where that is beyond the tolerance the next one towards the number read, and that
-    number itself where there is none between.
+    This is the nearest multiple; if it is beyond the tolerance, the next one towards the original;
+    if there is none in between, the original.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Own:
         return self.knots is not None or self.weights is not None
 
     def control(self, data: Floats, degree: int, closed: bool) -> Spline:
-        """The spline with these control points."""
+        """The same spline with these control points."""
         return Spline(
             data,
             degree=degree,
@@ -50,7 +50,7 @@ class Own:
 
 @dataclass
 class Prepared:
-    """The spline to fair, with its origin."""
+    """The spline to fair, with its source."""
 
     spline: Spline
     data: Floats

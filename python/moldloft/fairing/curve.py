@@ -132,8 +132,8 @@ def fair_curve(
         in the xy plane), ``"volume"`` (of revolution about the x axis), ``"centroid"`` (of the
         control points).
     joins
-        Open splines that begin or end where the curve does: an optimum runs on from them with the
-        same tangent direction and curvature. They stay as they are.
+        Open splines that begin or end where the curve does: an optimum continues them with the
+        same tangent direction and curvature. They are unchanged.
     spacing
         Parameters of the points: ``"chord"``, ``"centripetal"``, a coordinate (``"x"``, ``"y"``,
         ``"z"``) or a direction along which the points run, ``"index"``, or ``"curvature"``, lengths
@@ -180,7 +180,7 @@ def fair_curve(
         Number of control points of a least-squares fit, instead of a curve through all points.
     knots, weights, period
         Knots and weights of your own, of control points or of a fit; see :class:`Spline` and
-        :meth:`Spline.fit`. Weights stay as they are.
+        :meth:`Spline.fit`. Weights are fixed.
     steps
         Local steps (by default one per point), sweeps (10) or cycles of levels (2).
     least_move, least_drop, stop_gap, stop_pieces
@@ -319,7 +319,7 @@ def fair_curve(
         raise FairingError("only the optimum keeps conditions; take mode `optimum`")
     core, reported = spline._core.fair(chosen)
     if stay and tol is not None:
-        # Which curve is the fairest was not asked.
+        # The fairest curve was not computed.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
         own_knots = made.role == "fit" and (own.given or count is not None)
         reported["notes"] = [*reported["notes"], EXACT_NEAREST if own_knots else EXACT]

@@ -131,19 +131,20 @@ def fair_data(asked: Data, started: float) -> Fairing:
     if reported["thin"]:
         count = len(original.control_points)
         notes.append(
-            f"{n} points on a spline of {count} control points, as many as they show to be needed; "
-            "before is its curve of least squares; a spacing such as `chord` puts a knot at each"
+            f"{n} points are fitted by a spline of {count} control points, a number derived from "
+            "the data; `before` is the least-squares spline; a spacing such as `chord` gives a "
+            "knot at each point"
         )
     arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
     rows = faired(reported["at"])
     axis = np.asarray(way)
     if word == "along":
-        # What stays does so to the bit.
+        # Fixed points are unchanged to the bit.
         rows = data + np.outer((rows - data) @ axis, axis) / (axis @ axis)
     elif word == "across" and np.count_nonzero(axis) == 1:
         rows[:, axis != 0] = data[:, axis != 0]
-    # What the curve passes through to rounding has not moved by a bit.
+    # Points on the curve to rounding are unchanged to the bit.
     still = reported["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
     rows[still] = data[still]
     far, certificate = reported["deviation"], reported["certificate"]

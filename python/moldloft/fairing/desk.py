@@ -157,7 +157,7 @@ class Desk:
 
     @property
     def text(self) -> str:
-        """The whole session as text (JSON): what was opened, the first tolerance, the log."""
+        """The whole session as text (JSON): source, initial tolerance and log."""
         whole = {"source": self.source.as_dict(), "tolerance": self._begin, "log": self._log}
         return json.dumps(whole)
 
@@ -315,7 +315,7 @@ class Desk:
 
     @property
     def cut(self) -> Fairing | None:
-        """The faired section line, before it is put back."""
+        """The faired section line, not yet merged into the network."""
         draft = self.state.draft
         return None if draft is None else fair_line(draft_task(self.source, self.state, draft))
 
@@ -344,7 +344,7 @@ class Desk:
 
     @property
     def suggested(self) -> float:
-        """A tolerance of the size of the points' scatter about their neighbours, two digits."""
+        """A suggested tolerance: the scatter of points about their neighbours, two digits."""
         found = [_scatter(np.array(self.source.points)[list(o.points)]) for o in self.source.lines]
         most = float(np.median([x for x in found if x > 0] or [0.0]))
         extent = float(np.ptp(np.array(self.source.points), axis=0).max())

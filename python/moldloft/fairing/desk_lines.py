@@ -30,8 +30,9 @@ KEPT = 256
 """Fairings that are remembered: undo and the line before last cost nothing."""
 
 _STANDS_OUT = 3.0
-"""Errors of its prediction from which a reading of a network is listed: of 144 clean tables none
-has more than 2.7, and of as many planted errors of ten tolerances and more 93 % have."""
+"""Deviation, in errors of the prediction, above which a reading of a network is listed. The largest
+in 144 clean tables is 2.7; 93 % of 144 planted errors of ten tolerances or more exceed it.
+"""
 
 ON_PLANE = 1e-9
 """Maximum distance of a point on a plane, relative to the extent."""
@@ -141,7 +142,7 @@ class DeskCurve:
 
 @dataclass(frozen=True)
 class DeskSuspect:
-    """A point that noise does not explain."""
+    """A point whose deviation noise does not explain."""
 
     point: int
     """The point, from 0."""
@@ -174,7 +175,9 @@ class DeskResult:
 
 
 Progress = Callable[[int, int, str], object]
-"""Is given how many lines are done, of how many, and the next one's name; false ends the work."""
+"""Callback with the number of finished lines, their total, and the name of the next; false ends the
+work.
+"""
 
 
 def faired(
@@ -346,7 +349,7 @@ def _reading(at: Place, off: Place, motion: str | Place) -> Place:
     if not isinstance(motion, str):
         way = np.array(motion) / np.linalg.norm(motion)
         across = float(error @ way)
-        # Where the curve runs along the direction its points do not say how far.
+        # A curve along the direction has no definite distance in it.
         if abs(across) > STEEP * float(np.linalg.norm(error)):
             error = way * (float(error @ error) / across)
     return place(np.array(at) - error)
@@ -376,7 +379,7 @@ def _jumps(spline: Spline) -> Floats:
 
 
 def corners(lines: Sequence[tuple[int, ...]], closed: Sequence[bool], count: int) -> list[int]:
-    """Points at which every line that has them ends."""
+    """Points that are ends of all lines through them."""
     uses, ends = np.zeros(count, int), np.zeros(count, int)
     for own, around in zip(lines, closed, strict=True):
         uses[list(own)] += 1
@@ -632,7 +635,7 @@ def _roots(spline: Spline, t: Floats, off: Floats, n: Floats, at: float) -> list
 
 
 def draft_task(source: DeskSource, state: DeskState, draft: DeskDraft) -> Task:
-    """A section line, faired separately in its plane; points of the network stay."""
+    """A section line, faired separately in its plane; points of the network do not move."""
     motion: str | Place | tuple[str, Place] = ("across", draft.normal)
     if not isinstance(source.motion, str):
         along = sum(a * b for a, b in zip(source.motion, draft.normal, strict=True))

@@ -52,7 +52,7 @@ _SPAN = re.compile(r"(\d+)\s*-\s*(\d+)")
 
 @dataclass(frozen=True)
 class DeskDraft:
-    """A line cut from a network, before it is put back."""
+    """A section line of a network, not yet merged into it."""
 
     name: str
     """Such as ``z = 1.5``."""
@@ -61,8 +61,9 @@ class DeskDraft:
     points: tuple[Place, ...]
     """Intersections of the plane with the lines."""
     on: tuple[tuple[tuple[int, int], ...], ...]
-    """Of each point the lines that pass there, each with the number of its points before it; empty
-    where it is a point of the network."""
+    """For each point, the lines through it, each with its number of points before; empty for a
+    point of the network.
+    """
     known: tuple[int, ...]
     """Index of each point in the network, -1 for a new one."""
 
@@ -74,17 +75,17 @@ class DeskState:
     tolerance: float
     """Maximum distance of curves from points."""
     points: tuple[Place, ...]
-    """The points, moved ones where they were dragged to."""
+    """The points, with moved ones at their new positions."""
     lines: tuple[DeskLine, ...]
-    """The lines, with those that were put back."""
+    """The lines, including merged section lines."""
     goal: str = "near"
     """``"near"`` or ``"fairest"``."""
     line_tolerances: Mapping[int, float] = field(default_factory=dict)
-    """Tolerances of lines of their own."""
+    """Individual tolerances of lines."""
     point_tolerances: Mapping[int, float] = field(default_factory=dict)
-    """Tolerances of points of their own."""
+    """Individual tolerances of points."""
     weights: Mapping[int, float] = field(default_factory=dict)
-    """By which tolerances of points are divided."""
+    """Weights of points, which divide their tolerances."""
     knuckles: frozenset[int] = frozenset()
     """Intended breaks."""
     fixed: frozenset[int] = frozenset()
@@ -92,13 +93,13 @@ class DeskState:
     released: frozenset[int] = frozenset()
     """Wrong readings."""
     shapes: tuple[tuple[int, str], ...] = ()
-    """Lines and the shapes they have, whose points count along the line from 1."""
+    """Shape conditions of lines; their points are numbered along the line from 1."""
     span: tuple[int, int, int] | None = None
     """A line, with the first and last index along it of the faired range."""
     locked: Mapping[int, DeskState] = field(default_factory=dict)
-    """Lines that stay, each with the state in which it was locked."""
+    """Locked lines, each with the state at its locking."""
     held: Mapping[int, Place] = field(default_factory=dict)
-    """Points of locked lines of a network, where these pass."""
+    """Positions of points of locked lines of a network."""
     draft: DeskDraft | None = None
     """A line that was cut."""
 
@@ -376,7 +377,7 @@ def _accepted(source: DeskSource, state: DeskState, point: int, eyes: Eyes) -> D
         points[point], points[after] = points[after], points[point]
         return replace(state, points=tuple(points))
     if source.kind != "curves":
-        # Where lines share points the reading that was meant takes the place of the other.
+        # If lines share points, the probable reading replaces the other.
         if reading is None:
             raise FairingError(f"accept {point + 1}: nothing is suspected of this point")
         points[point] = along(source.motion, points[point], reading)
@@ -411,9 +412,10 @@ def _locked(source: DeskSource, state: DeskState, line: int, on: bool, eyes: Eye
 
 
 def put_back(state: DeskState, draft: DeskDraft, faired: tuple[Place, ...]) -> DeskState:
-    """The state with a line that was cut among its lines, and its points in those that it crosses.
+    """The state with a section line merged into the network.
 
-    Its points are pinned where it was faired to: they are no readings.
+    Its points are inserted in the lines that it crosses. These points are fixed at their faired
+    positions, since they are not readings.
     """
     points, fixed = list(state.points), set(state.fixed)
     lists = [list(line.points) for line in state.lines]

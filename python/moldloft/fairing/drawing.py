@@ -66,7 +66,7 @@ def exaggeration(moves: Floats, extent: float) -> float:
 
 
 def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
-    """Samples distributed by length and turning, so that a nose has enough comb teeth.
+    """Samples distributed by length and turning, so that sharp turns have enough comb teeth.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def by_length(samples: Samples) -> Floats:
 
 
 def teeth(samples: Samples, ij: list[int], cut: float, scale: float) -> tuple[Floats, Floats]:
-    """Feet and tips of a comb; teeth of more than `cut` are cut there.
+    """Feet and tips of a comb; longer teeth than `cut` are truncated.
 
     Parameters
     ----------

@@ -52,14 +52,15 @@ class Fairing:
     """A faired curve, with its report."""
 
     points: Floats
-    """The faired points, as many and with as many columns as were given: the control points, the
-    points, or where the faired curve has the parameters of the points."""
+    """The faired points, in the number and with the columns of the input: control points, points,
+    or the faired curve at the parameters of the points.
+    """
     spline: Spline
     """The faired curve."""
     original: Spline
     """The curve before."""
     data: Floats
-    """The points that were given, in three columns."""
+    """The given points, in three columns."""
     tol: float | None
     """The largest tolerance; ``None`` for no limit."""
     as_: str
@@ -75,7 +76,7 @@ class Fairing:
     after: Numbers
     """The faired curve."""
     deviation_certified: float
-    """No point of the curve is farther from its original than this: proved, not sampled. For
+    """Proved bound on the distance of the curve from its original. For
     ``as_="points"`` the largest move of a point."""
     deviation_sampled: float
     """The largest distance found by sampling."""
@@ -84,9 +85,9 @@ class Fairing:
     length: float
     """The length of the original curve."""
     value: float
-    """The measure of the result, as the certificate has it."""
+    """The measure of the result, from the certificate."""
     gap: float
-    """No curve within the tolerance and with the conditions measures less than ``value - gap``."""
+    """No curve within the tolerance and with the conditions has a measure below ``value - gap``."""
     steps: int
     """Newton steps, local steps or sweeps."""
     stopped: str | None
@@ -118,11 +119,13 @@ class Fairing:
     thin: bool = False
     """True if the spline has fewer knots than there are points: their feet are their parameters."""
     fairer: float = 0.0
-    """How far the curve went from the goal's own (0) towards the fairest (1; 2 with lengths for
-    parameters), so that it bends no more often than that one."""
+    """Position of the curve between the goal's own (0) and the fairest (1; 2 with chord lengths as
+    parameters), chosen to avoid additional inflections.
+    """
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
-    """Local steps in order, when asked for: which point went where. Replayed on the original they
-    give the result's bits."""
+    """Local steps in order, if requested: point and new position. Replayed on the original they
+    give the result to the bit.
+    """
 
     @property
     def deviation_data(self) -> float:
@@ -159,7 +162,7 @@ class Fairing:
 
     @property
     def gap_relative(self) -> float:
-        """The gap relative to the measure (of at least a trillionth of the original one)."""
+        """The gap relative to the measure, or to a trillionth of the original one if larger."""
         size = max(self.value, 1e-12 * self.before.measure)
         return self.gap / size if size > 0 else 0.0
 

@@ -80,7 +80,7 @@ class PointFile:
     """The coordinate that a table of offsets gives: 1, half-breadths at stations and waterlines, or
     2, heights at stations and buttocks."""
     table: Floats | None = None
-    """The rows of a table of offsets as they were."""
+    """The original rows of a table of offsets."""
     places: list[int] = field(default_factory=list)
     """Row in the table of each row of the curves."""
     cells: Cells | None = None
@@ -112,7 +112,7 @@ def read_points(path: str | os.PathLike[str], data: bytes | None = None) -> Poin
     CSV with or without names of columns, blanks or tabs, aerofoils with a title (in one run, or in
     two halves with their counts) and prose after the points, decimal commas, lengths in feet,
     inches and eighths (``4-5-1``). Columns named x, y and z, or station, half-breadth and height,
-    are taken by name; the rows of the latter are a table of offsets. ``#`` begins a comment, blank
+    are taken by name; rows with the latter form a table of offsets. ``#`` begins a comment, blank
     lines separate curves. Of ``data``, the bytes of a file, the path is only its name.
 
     Raises
@@ -507,8 +507,8 @@ class GridFile:
     def write(self, path: str | os.PathLike[str], grids: Sequence[Floats]) -> Path:
         """Write other coordinates in the same variant, in double precision.
 
-        A third coordinate is added where the file has two and the points need it; blanking is kept
-        where the blocks have as many points as those read.
+        A third coordinate is added if the points need it; blanking is kept if the number of points
+        is unchanged.
         """
         path = Path(path)
         commit(path.parent, [Output(path.name, self._encoded(grids))], make=False)

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 #: Ratio of steps to distances between nearest points from which a list counts as shuffled.
 _SHUFFLED = 3.0
 
-#: Share of its points at which a shuffled list turns back.
+#: Fraction of its points at which a shuffled list turns back.
 _TURNS_BACK = 0.25
 
 #: Another order is proposed where the way through the points is shorter by a tenth or more.
 _SHORTER = 0.9
 
-#: A jump is a step of at least this multiple of the median step, and of this share of the extent.
+#: A jump is a step of at least this multiple of the median step, and this fraction of the extent.
 _JUMP = 4.0
 _WIDE = 0.25
 
@@ -147,8 +147,8 @@ def along_lines(
 ) -> tuple[tuple[int, Finding], ...]:
     """Findings along lines through numbered points: line and finding.
 
-    A line is its points and whether it is closed. A wrong digit shows in all lines that judge its
-    point, a knuckle in one.
+    A line is given by its points and true if closed. A wrong digit is found if all lines agree on
+    it, a knuckle on one line.
     """
     rows = _core.line_findings(points, [(list(own), closed) for own, closed in lines], [*marked])
     return tuple((k, Finding.of(row)) for k, row in rows)

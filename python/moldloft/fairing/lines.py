@@ -35,7 +35,7 @@ class NetworkLines:
 
     @staticmethod
     def of(curves: Sequence[Sequence[int]], count: int, names: Sequence[str]) -> NetworkLines:
-        """The curves as they are given: a closed one ends with its first point."""
+        """The curves in the form of input: a closed one ends with its first point."""
         given = [str(name) for name in names]
         if given and len(given) != len(curves):
             raise FairingError(f"expected {len(curves)} names of curves, found {len(given)}")
@@ -56,11 +56,11 @@ class NetworkLines:
         return lines
 
     def name(self, k: int) -> str:
-        """What curve ``k`` is called."""
+        """Name of curve ``k``, or its number."""
         return self.names[k] if self.names else f"curve {k + 1}"
 
     def find(self, given: Any) -> int:
-        """The number of a curve, from 0, by that number or its name."""
+        """The number of a curve, from 0, given by number or name."""
         if isinstance(given, str):
             known = self.names or [self.name(k) for k in range(len(self.lists))]
             if given in known:
@@ -82,7 +82,7 @@ class NetworkLines:
                 )
 
     def where_hull(self, hull: NDArray[np.bool_], degree: int) -> tuple[NetworkLines, list[str]]:
-        """The curves where there is a hull: parts between cells without one; what is left out."""
+        """The curves divided at cells outside the hull, and the omitted parts."""
         if hull.all():
             return self, []
         out = NetworkLines([], [])
@@ -115,9 +115,10 @@ class NetworkLines:
         return out, said
 
     def tolerances(self, tol: Any, count: int) -> list[float]:
-        """The tolerance of each point: one, one for each point, or the least of its curves'.
+        """The tolerance of each point, from one for all, one for each, or one for each curve.
 
-        Of curves by name (or number, from 0), ``""`` for all others.
+        Curves are given by name (or number, from 0), ``""`` being all others; a point has the least
+        of its curves.
         """
         if not isinstance(tol, Mapping):
             return radii(tol, count)
@@ -137,11 +138,11 @@ class NetworkLines:
         return [float(x) for x in out]
 
     def marks(self, breaks: Sequence[Any] | str, points: Floats) -> list[list[int]]:
-        """The places of each curve that are breaks of it.
+        """The breaks of each curve, as indices along it.
 
-        A number is a point and breaks all curves through it; a name is a curve along which all
-        curves that cross it break; ``"auto"`` are the knuckles found, shared by all curves that
-        cross them.
+        A number is a point and breaks all curves through it; a name is a curve at which all
+        crossing curves break; ``"auto"`` are the knuckles found, breaks of all curves that cross
+        them.
         """
         out: list[set[int]] = [set() for _ in self.lists]
         if isinstance(breaks, str) and breaks == "auto":
@@ -169,10 +170,10 @@ class NetworkLines:
     def motions(
         self, motion: Any, count: int
     ) -> tuple[str, Vector, list[tuple[int, Vector]], list[bool]]:
-        """The motion of all points, directions in which single ones are held, and which stay.
+        """The motion of all points, the fixed directions of single points, and the fixed points.
 
-        A list has the axes of each point; a mapping has motions by curves, of names (or numbers,
-        from 0), ``""`` for all others; the last curve of the mapping that has a point decides.
+        A list has the axes of each point; a mapping has the motions of curves by name (or
+        number, from 0), ``""`` being all others; for a point on several, the last decides.
         """
         if not isinstance(motion, Mapping):
             whole, axes, steady = motions_of(motion, count)

@@ -94,7 +94,7 @@ class Look:
         return self._core.highlight(vector_of(point), vector_of(along))
 
     def reflection(self, view: ArrayLike, point: ArrayLike, along: ArrayLike) -> Floats:
-        """Zero where a distant eye in direction ``view`` sees the reflected line.
+        """Zero where a distant observer in direction ``view`` sees the reflected line.
 
         Parameters
         ----------

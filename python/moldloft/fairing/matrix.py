@@ -20,7 +20,7 @@ _BUTTOCK = re.compile(r"\bbuttocks?\b")
 
 @dataclass
 class OffsetTable:
-    """A table of offsets as it was read."""
+    """A table of offsets, as read."""
 
     points: list[tuple[float, float, float]]
     """Station, half-breadth and height of each offset."""
@@ -156,8 +156,8 @@ def decimal_commas(text: str) -> bool:
 def matrix(text: str) -> OffsetTable | None:
     r"""The offsets of a table with a row for each waterline or station, if the text is one.
 
-    The first cell of the head line says what the rows are: ``waterline``, ``buttock`` (its cells
-    are heights) or ``station``; cells ``x``, ``-`` or nothing are missing.
+    The first cell of the head line states the type of the rows: ``waterline``, ``buttock`` (its
+    cells are heights) or ``station``; cells ``x``, ``-`` and empty cells are missing values.
 
     Raises
     ------

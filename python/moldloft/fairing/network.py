@@ -41,7 +41,7 @@ class NetworkFairing:
     originals: tuple[Spline, ...]
     """The curves before."""
     data: Floats
-    """The points that were given, in three columns."""
+    """The given points, in three columns."""
     lists: tuple[tuple[int, ...], ...]
     """Points of each curve, from 0; a closed one repeats the first at the end."""
     tol: float | None
@@ -68,9 +68,9 @@ class NetworkFairing:
     deviation_curves_certified: float
     """No curve is farther from its original than this anywhere."""
     value: float
-    """The measure of the result, as the certificate has it."""
+    """The measure of the result, from the certificate."""
     gap: float
-    """No network within the tolerance measures less than ``value - gap``."""
+    """No network within the tolerance has a measure below ``value - gap``."""
     seconds: float
     """Time of the fairing."""
     goal: str = "fairest"
@@ -78,7 +78,7 @@ class NetworkFairing:
     used: float | None = None
     """The mean of the squared moves over tolerances; 1 is noise that fills these evenly."""
     findings: tuple[tuple[int, Finding], ...] = ()
-    """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding,
+    """Wrong digits and knuckles along curves: the curve, from 0, and the finding,
     whose index is the point's."""
     notes: tuple[str, ...] = ()
     """Warnings and notes for the user."""
@@ -87,17 +87,18 @@ class NetworkFairing:
     point_names: tuple[str, ...] = ()
     """Names of the points; by default their numbers."""
     released: tuple[int, ...] = ()
-    """Released points, which count in no distance."""
+    """Released points, which are excluded from all distances."""
     axes: tuple[str, ...] = ()
-    """The axes along which each point may move, such as ``"y"``; of a slanted direction all in
-    which it has a component."""
+    """The axes along which each point may move, such as ``"y"``; for an inclined direction, all
+    axes of its components.
+    """
 
     def suspects(
         self, most: int = 10, *, readings: dict[tuple[int, int], str] | None = None
     ) -> tuple[Suspect, ...]:
-        """The points that their neighbours contradict on all their curves, the clearest first.
+        """The points that contradict their neighbours on all their curves, the clearest first.
 
-        Points that do not move are no suspects. See :func:`~moldloft.fairing.suspects`.
+        Fixed points are excluded. See :func:`~moldloft.fairing.suspects`.
 
         Parameters
         ----------
@@ -144,7 +145,7 @@ class NetworkFairing:
         return self.point_names[point] if self.point_names else f"point {point + 1}"
 
     def text(self, finding: Finding) -> str:
-        """The sentence about a finding, with the name of its point.
+        """A finding in words, with the name of its point.
 
         Parameters
         ----------
@@ -455,7 +456,7 @@ def network(
         }
     )
     if stay:
-        # Which network is the fairest was not asked.
+        # The fairest network was not computed.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
     seconds = time.perf_counter() - started
     moved = np.linalg.norm(faired - data, axis=1)

@@ -35,7 +35,7 @@ class PatchesFairing:
     """Faired surfaces, with their report."""
 
     grids: tuple[Floats, ...]
-    """The faired grids: control points, or where the surfaces have the parameters of the points."""
+    """The faired grids: control points, or the surfaces at the parameters of the points."""
     surfaces: tuple[SplineSurface, ...]
     """The faired surfaces."""
     originals: tuple[SplineSurface, ...]
@@ -63,9 +63,11 @@ class PatchesFairing:
     deviation_sampled: float
     """The largest distance found by sampling."""
     value: float
-    """The measure of the result, as the certificate has it."""
+    """The measure of the result, from the certificate."""
     gap: float
-    """No surfaces within the tolerance, running on alike, measure less than ``value - gap``."""
+    """No surfaces within the tolerance and with the same continuity have a measure below ``value -
+    gap``.
+    """
     seconds: float
     """Time of the fairing."""
 
@@ -139,9 +141,8 @@ def patches(
 ) -> PatchesFairing:
     """Fair surfaces that share edges together, with continuity across the edges.
 
-    Where an edge of one surface has the same control points as an edge of another (or of itself),
-    in either direction, there is a seam: its points move for both. Degree and knots along it must
-    agree.
+    Edges of two surfaces (or of one) with the same control points, in either direction, are a seam,
+    whose points move for both. Degree and knots along it must agree.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class Finding:
 
     @staticmethod
     def of(row: tuple[str, int, Any, str]) -> Finding:
-        """Converts the record of the extension.
+        """Convert the report of the extension module.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ def lines_of(rows: list[tuple[str, str, str]], tail: list[tuple[str, str]]) -> s
 
 
 def claims_optimum(gap: float, relative: float) -> bool:
-    """True if the gap proves anything beyond a measure of at least 0."""
+    """True if the gap gives a better lower bound than 0."""
     return math.isfinite(gap) and (gap <= 0 or relative < 1)
 
 
@@ -88,8 +88,8 @@ def certificate_of(value: float, gap: float, relative: float, *, moved: bool) ->
     if not math.isfinite(gap):
         said = "without a tolerance there is no optimality bound"
     elif not claims_optimum(gap, relative):
-        why = "what is proved of the gap exceeds the measure"
-        said = f"no optimum is claimed: {why if moved else 'the points stay as they are'}"
+        why = "the proved gap exceeds the measure"
+        said = f"no optimum is claimed: {why if moved else 'the points are unchanged'}"
     elif not moved and gap > 0:
-        said += ": the points stay as they are"
+        said += ": the points are unchanged"
     return f"{value:.9e}, {said}"

@@ -465,7 +465,7 @@ def _strips(lines: _Lines) -> list[_Part]:
         _Heading("Curvature and deviation, curve by curve"),
         _Text(
             "Left: curvature along the curve, before orange, after blue. Right: the move of each "
-            "point as a share of its limit; the upper line is the limit, dark bars are at it."
+            "point as a fraction of its limit; the upper line is the limit, dark bars are at it."
         ),
     ]
     wide, tall = _WIDE / 3 - 2, 34.0
@@ -483,7 +483,7 @@ def _strip(drawing: _Drawing, lines: _Lines, k: int, left: float, wide: float, t
     box = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
     foot, height = 5.0, tall - 9.0
     half = 0.5 * wide - 3
-    # What is swamped by steep ends is cut: both ends of a waterline may be round.
+    # Values dominated by steep ends are cut off: both ends of a waterline may be round.
     low, high = np.percentile(after.curvature, [1, 99])
     room = 0.35 * (high - low) or max(abs(high), 1e-300)
     low, high = min(low - room, 0.0), max(high + room, 0.0)
@@ -562,9 +562,9 @@ def _parts(result: Fairing | NetworkFairing, details: SheetDetails) -> list[_Par
         parts += [_Heading("Suspects"), _suspects(details.suspects)]
         parts.append(
             _Text(
-                "Offsets that their neighbours contradict, the clearest first, with the reading "
-                "that one slip of the pen explains. None was changed for that. The gain is the "
-                "share of the unfairness beside the offset that the other reading takes away."
+                "Offsets that contradict their neighbours, the clearest first, with the reading "
+                "that a single slip of the pen explains. No offset was changed for it. The gain is "
+                "the fraction of the local unfairness that the other reading removes."
             )
         )
     if details.table is not None:

@@ -58,7 +58,7 @@ class Samples:
 
 
 class Spline:
-    """A spline curve: any degree, any knots, open or closed, with weights or without.
+    """A spline curve of any degree and knots, open or closed, with or without weights.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ class Spline:
         count
             The number of control points, where there are no knots.
         weights
-            Positive weights, one per control point, that stay as they are: a rational curve.
+            Positive weights, one per control point, constant: a rational curve.
         spacing
             Parametrisation of the points.
         at
@@ -321,7 +321,7 @@ class Spline:
     def open_form(self) -> tuple[Floats, Floats, list[float] | None]:
         """Knots over [0, 1], control points and weights of the curve as an open spline.
 
-        Others draw a closed curve from these too.
+        A closed curve is converted to this form for other programs.
 
         Returns
         -------
@@ -347,7 +347,7 @@ class Spline:
         return Samples(**self._core.at(flat))
 
     def samples(self, per_span: int = PER_SPAN) -> Samples:
-        """The same, ``per_span + 1`` times on each span; knots are evaluated from both sides.
+        """As :meth:`at`, ``per_span + 1`` times on each span, with both sides of each knot.
 
         Parameters
         ----------
@@ -428,8 +428,8 @@ class Spline:
     def jumps(self) -> tuple[Floats, Floats]:
         """Jumps of the highest derivative: parameters ``(k,)`` and jump vectors ``(k, 3)``.
 
-        Free of the parameter's unit: on uniform cubics the fourth difference of the control
-        points.
+        Independent of the parameter's unit: for uniform cubics, the fourth difference of the
+        control points.
 
         Returns
         -------
@@ -461,7 +461,7 @@ class Spline:
         Parameters
         ----------
         share
-            Share of the range of values below which a reversal is ignored.
+            Fraction of the range of values below which a reversal is ignored.
         per_span
             Samples on each span of the curve.
 
@@ -483,7 +483,7 @@ class Spline:
         Returns
         -------
         int
-            Reversals below the share that reports ignore do not count.
+            Reversals below the fraction that reports ignore do not count.
         """
         return self._core.inflections(per_span)
 
@@ -508,7 +508,7 @@ class Spline:
     def orthotomic(self, p: ArrayLike, k: float = 2.0, per_span: int = PER_SPAN) -> Floats:
         """The k-orthotomic for a point p, ``(m, 3)``.
 
-        It has cusps exactly at inflections, if p is on no tangent.
+        It has cusps exactly at inflections, unless p is on a tangent.
 
         Parameters
         ----------
@@ -552,7 +552,7 @@ def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
     values
         The list, ``(n,)``.
     share
-        Share of the range of values below which a reversal is ignored.
+        Fraction of the range of values below which a reversal is ignored.
 
     Returns
     -------

@@ -37,9 +37,9 @@ def encoded(
 ) -> bytes:
     """The curves in the format of the extension of ``path``.
 
-    ``unit`` is that of the coordinates: m, cm, mm, ft or in. Of none IGES, STEP and 3DM say
-    millimetres, as they have no word for that; DXF and JSON say nothing. ``names`` are those of the
-    curves, which STEP and 3DM have. 3DM needs rhino3dm.
+    ``unit`` is that of the coordinates: m, cm, mm, ft or in. Without a unit, IGES, STEP and 3DM
+    files state millimetres, since they require one; DXF and JSON state none. ``names`` are those of
+    the curves, which STEP and 3DM have. 3DM needs rhino3dm.
 
     Raises
     ------

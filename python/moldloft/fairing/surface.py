@@ -99,7 +99,7 @@ class SplineSurface:
             Knots of your own, of open directions. Fewer of them than interpolation needs give the
             nearest surface in the sum of squares instead.
         weights
-            Positive weights of the control points that stay as they are: a rational surface.
+            Positive weights of the control points, constant: a rational surface.
         breaks
             Rows of points along u and along v, from 0, at which it may have edges, in open
             directions without knots of their own.
@@ -176,7 +176,7 @@ class SplineSurface:
         return self._core.knots()
 
     def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
-        """Points of the surface at a grid of parameters in [0, 1], or at numbers of even ones.
+        """Points of the surface at a grid of parameters, or at numbers of equally spaced ones.
 
         Parameters
         ----------
@@ -337,8 +337,7 @@ class SurfaceFairing:
     """A faired surface, with its report."""
 
     points: Floats
-    """The faired grid, ``(m, n, 3)``: the net, or where the surface has the parameters of the
-    points."""
+    """The faired grid, ``(m, n, 3)``: the net, or the surface at the parameters of the points."""
     surface: SplineSurface
     """The faired surface."""
     original: SplineSurface
@@ -370,9 +369,9 @@ class SurfaceFairing:
     extent: float
     """The diagonal of the box round the data."""
     value: float
-    """The measure of the result, as the certificate has it."""
+    """The measure of the result, from the certificate."""
     gap: float
-    """No surface within the tolerance measures less than ``value - gap``."""
+    """No surface within the tolerance has a measure below ``value - gap``."""
     passes: int | None
     """Passes of the faithful mode."""
     seconds: float
@@ -397,7 +396,7 @@ class SurfaceFairing:
     def findings(self) -> tuple[Finding, ...]:
         """Wrong digits and knuckles found along the lines of a grid of data.
 
-        Their index is that of the point, row by row, from 0; nothing moves for them.
+        Their index is that of the point, row by row, from 0; they do not affect the result.
         """
         if self.as_ != "fit":
             return ()
@@ -626,7 +625,7 @@ def _fair_data(
     faired, original = SplineSurface._of(core), SplineSurface._of(before)
     moved = faired.grid(np.asarray(at[0]), np.asarray(at[1]))
     residuals = reported["residuals"].reshape(m, n)
-    # What the surface passes through to rounding has not moved by a bit.
+    # Points on the surface to rounding are unchanged to the bit.
     still = residuals <= 64 * np.finfo(float).eps * np.abs(data).max()
     moved[still] = data[still]
     jumps_before, jumps_after = original.measure("jumps"), faired.measure("jumps")
@@ -838,7 +837,7 @@ def fair_surface(
         chosen["tolerance"] = [0.0] * (m * n)
     core, reported = surface._core.fair(chosen)
     if stay:
-        # Which surface is the fairest was not asked.
+        # The fairest surface was not computed.
         reported["certificate"]["gap"] = reported["certificate"]["value"]
     faired = SplineSurface._of(core)
     seconds = time.perf_counter() - started

@@ -32,7 +32,7 @@ __all__ = ["Suspect", "suspects"]
 #: Neighbours on either side that predict, at most and at least.
 _SIDE, _LEAST = 3, 2
 
-#: Share of an error along the held axis that counts, through the slope, in a prediction.
+#: Fraction of an error along the fixed axis that enters a prediction, through the slope.
 _SLOPE = 0.5
 
 #: A point whose sides both predict it to this share of what both together miss is a knuckle.
@@ -83,7 +83,7 @@ class Suspect:
     score: float
     """The deviation as a multiple of its error; the rank is by this times the deviation."""
     meant: float | None
-    """The reading that was probably meant; ``None`` where no slip of the pen explains it."""
+    """The probable reading; ``None`` if no slip of the pen explains the deviation."""
     reading: str
     """The coordinate as it is written in the table."""
     meant_reading: str
@@ -91,8 +91,9 @@ class Suspect:
     slip: str
     """The kind of slip, such as ``an inch`` or ``a digit``; empty if unknown."""
     gain: float
-    """Share of the squared third differences beside it, on all its lines, that is gone with the
-    reading meant, or with the expected one."""
+    """Relative reduction of the squared third differences near the point, on all its lines, by the
+    probable reading, or else the predicted one.
+    """
     lines: tuple[str, ...]
     """The names of its lines."""
 
@@ -249,7 +250,7 @@ class _Search:
             self.found[k] = self._line(k)
 
     def ranked(self, most: int) -> list[tuple[int, int, float, float]]:
-        """Point, axis, deviation and its error, the clearest first."""
+        """Point, axis, deviation and its error, in descending order of certainty."""
         out: list[tuple[int, int, float, float]] = []
         while len(out) < most:
             each: dict[tuple[int, int], list[_Prediction]] = {}
@@ -275,7 +276,7 @@ class _Search:
         return out
 
     def neighbours(self, index: int, axis: int) -> list[int]:
-        """The adjacent points on lines along which the coordinate changes."""
+        """Neighbours of a point on the lines along which the coordinate varies."""
         out = []
         for line in self.lines:
             if index in line and np.ptp(self.data[line, axis]) > 0:

@@ -85,9 +85,10 @@ def eighths(text: str) -> Fraction | None:
 
 
 def length(text: str) -> float | None:
-    r"""A length as people write it: a number, feet-inches-eighths or feet and inches in inches.
+    """A length in handwritten notation; feet and inches are converted to inches.
 
-    Numbers may have fractions, as stations do: ``8½``, ``8 1/2``.
+    Accepted are numbers, feet-inches-eighths, and feet and inches. Numbers may have fractions:
+    ``8½``, ``8 1/2``.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ class Plain:
 
     text: str
     head: list[str] | None = None
-    """The lines before the first row as they were."""
+    """The original lines before the first row."""
     notes: list[str] = field(default_factory=list)
     inches: bool = False
     """True if lengths were in feet, inches and eighths."""
@@ -162,7 +163,7 @@ def spans(line: str) -> list[tuple[int, int]]:
         start = at + (len(cell) - len(cell.lstrip())) if bare else at
         out.append((start, start + len(bare)))
         at += len(cell) + len(sign)
-    # What a last separator leaves is no cell.
+    # The empty text after a last separator is not a cell.
     while len(out) > 1 and out[-1][0] == out[-1][1]:
         out.pop()
     return out
@@ -182,7 +183,7 @@ def _numbers(cells: list[str]) -> bool:
 
 
 def plain(text: str) -> Plain:
-    """Plain text of a table. Other content is kept, for the reader to report with its line.
+    """Plain text of a table. Other content is kept, so that the reader can report its line.
 
     Parameters
     ----------
@@ -324,7 +325,7 @@ _UNIT_WORDS = {
 
 
 def unit_named(word: str) -> str | None:
-    """The unit of length that a word means: m, cm, mm, ft or in.
+    """The unit of length for a word: m, cm, mm, ft or in.
 
     Parameters
     ----------

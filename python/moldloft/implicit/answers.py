@@ -21,7 +21,7 @@ __all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "
 
 
 def warn_of(remark: str, frames: int = 1) -> None:
-    """Warns the caller of a method, ``frames`` up, about a number that misses its accuracy."""
+    """Warn the caller of a method, ``frames`` up, about a number that misses its accuracy."""
     warnings.warn(remark, stacklevel=2 + frames)
 
 
@@ -60,14 +60,14 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Mass:
-    """Mass properties for density 1: best values, and brackets that are proved."""
+    """Mass properties for density 1: best values and proved brackets."""
 
     volume: float
     """Volume."""
     volume_bracket: tuple[float, float]
     """Its bounds."""
     uncertain: float
-    """Proved: the right volume is no further from ``volume``."""
+    """Proved bound on the error of ``volume``."""
     estimate: float
     """Difference between two levels of facets, 0 if they agree: an estimate of the error, not a
     bound.

@@ -30,7 +30,7 @@ FILLS = {"solid": "#b9c4cf", "air": "none", "surface": "#f2d7a0"}
 
 @dataclass(frozen=True)
 class DivisionBox:
-    """A box of a division, with the set as it is inside of it."""
+    """A box of a division, with the set restricted to it."""
 
     low: Floats
     """The low corner, ``(3,)``."""
@@ -157,8 +157,8 @@ class Division:
     def section_svg(self, axis: str = "z", at: float | None = None) -> str:
         """The boxes that a plane across an axis cuts, as an SVG drawing.
 
-        Solid boxes are grey, those that may contain the surface yellow; the number of primitives
-        that are left is in the title of each.
+        Solid boxes are grey, those that may contain the surface yellow; the title of each states
+        its number of primitives.
 
         Parameters
         ----------

@@ -25,10 +25,10 @@ class Edged:
         raise NotImplementedError
 
     def offset(self, distance: float) -> Self:
-        """The body grown by a distance, or shrunk by a negative one; edges that open stay sharp.
+        """The body grown by a distance, or shrunk by a negative one; opening edges stay sharp.
 
-        Faces of the formula on which the body does not end, such as those between parts face to
-        face, do not count. :func:`minkowski_sum` with a ball grows it with round edges.
+        Internal faces of the formula, such as those between parts in contact, are ignored.
+        :func:`minkowski_sum` with a ball grows it with round edges.
 
         Parameters
         ----------

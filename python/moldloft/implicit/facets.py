@@ -58,7 +58,7 @@ class Unresolved:
     solid.
     """
     missed: bool
-    """True when there is some for sure: a wall or a gap thinner than the cell."""
+    """True if the feature certainly exists: a wall or a gap thinner than the cell."""
 
 
 @dataclass(frozen=True)
@@ -196,10 +196,9 @@ class Facets:
         return float(self.summary["best_volume"])
 
     def simplified(self, accuracy: float) -> Facets:
-        """The same surface with fewer triangles, middles and sides within ``accuracy`` of it.
+        """The same surface with fewer triangles, which are within ``accuracy`` of it.
 
-        Vertices that stay are on their surfaces as before. Flat and singly curved faces shrink
-        most, with triangles that are long where the surface is straight.
+        Remaining vertices do not move. The reduction is largest on flat and singly curved faces.
 
         Parameters
         ----------
@@ -230,9 +229,9 @@ class Facets:
 
     @cached_property
     def undecided(self) -> list[tuple[list[float], list[float]]]:
-        """Boxes whose triangles cut others: low and high corners.
+        """Boxes with intersecting triangles: low and high corners.
 
-        Elsewhere no two triangles meet except where they join.
+        Elsewhere triangles meet only at common edges and vertices.
         """
         return self._core.undecided()
 
@@ -249,9 +248,10 @@ class Facets:
 
     @cached_property
     def blunt(self) -> list[tuple[list[float], list[float]]]:
-        """Boxes with an edge or corner that is cut off, or triangles that fold back: low and high.
+        """Boxes with a cut-off edge or corner or with folded triangles: low and high corners.
 
-        It is thinner than a cell there, or its vertices would have made triangles cut each other.
+        The feature is thinner than a cell there, or its vertices would have made triangles
+        intersect.
         """
         return self._core.blunt()
 

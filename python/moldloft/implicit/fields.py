@@ -146,8 +146,8 @@ class Field(Moving):
     def degree(self) -> int:
         """Degree as a polynomial.
 
-        Numbers 0, planes 1, sums the larger, products the sum, functions one more, functions from
-        outside 100.
+        Numbers 0, planes 1, sums the maximum, products the sum, functions one more, external
+        functions 100.
         """
         return self._core.degree
 

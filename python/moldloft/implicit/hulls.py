@@ -15,7 +15,7 @@ def _set(of: Set | Field) -> _core.Set:
 
 
 def union(*sets: Set | Field) -> Set:
-    """The union of any number of sets, in a balanced tree: the quickest for thousands.
+    """The union of any number of sets, in a balanced tree: the fastest form for thousands of sets.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def corners_of(low: Triple | None, high: Triple | None) -> tuple[list[float], li
 
 
 def turn(point: Triple, direction: Triple, angle: float) -> tuple[Floats, list[float]]:
-    """The map of a turn (Rodrigues' formula)."""
+    """The map of a rotation (Rodrigues' formula)."""
     angle = float(angle)
     d = np.array(triple(direction, "direction"))
     size = float(np.linalg.norm(d))

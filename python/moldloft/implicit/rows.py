@@ -42,7 +42,7 @@ def _is_function(row: dict[str, Any]) -> bool:
 
 
 def line_names(row: dict[str, Any], name: str) -> tuple[str, str]:
-    """The names of a line's point and direction: with that of the line where others have them."""
+    """The names of a line's point and direction, prefixed by the name of the line if ambiguous."""
     names = [field["name"] for field in row["fields"]]
     lines = [field for field in row["fields"] if field["class"] == "line"]
     if len(lines) > 1 or {"point", "direction"} & set(names):

@@ -15,7 +15,7 @@ def cone(
     direction: Triple,
     angle: float,
 ) -> Field:
-    """The double cone whose apex is the start of a line.
+    """The double cone with its apex at the start of a line.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def cyclide(
     minor
         Mean radius of the tube. At least 0.
     change
-        Variation of the tube's radius: thinner there, thicker opposite; below the major radius.
+        Variation of the tube's radius, less than the major radius.
 
     Returns
     -------
@@ -233,11 +233,11 @@ def liming(
     l2
         The other body.
     l3
-        The rail, or one of the two others.
+        The rail, or the first of the two other bodies.
     l4
         The other of them.
     lambda_
-        Shape: near 0 the blend hugs the rail, near 1 the bodies. Default 0.5.
+        Shape between 0 (near the rail) and 1 (near the bodies). Default 0.5.
     contact
         Order of contact on a rail. 1 to 100, default 1.
     low
@@ -428,9 +428,10 @@ def smooth_difference(
 ) -> Field:
     """The difference of two bodies with the edge between them rounded.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -462,9 +463,10 @@ def smooth_intersection(
 ) -> Field:
     """The intersection of two bodies with the edge between them rounded.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -496,9 +498,10 @@ def smooth_union(
 ) -> Field:
     """The union of two bodies with the edge between them filled smoothly.
 
-    The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-    its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-    are arcs between planes at right angles.
+    The blend extends over the points where the functions differ by less than the width, a
+    length for distances. A set is taken as its function. Quadratic blends have common
+    tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+    planes at right angles.
 
     Parameters
     ----------
@@ -630,7 +633,7 @@ def transition(
     l2
         The body that it ends on.
     l3
-        The rail on the first body: its solid side keeps the body.
+        The rail on the first body; the body is kept on its solid side.
     l4
         The rail on the second.
     lambda_
@@ -663,8 +666,8 @@ def zhang(
     low: Triple | None = ...,
     high: Triple | None = ...,
 ) -> Field:
-    """The transition from one body, which it touches at its rail, to another, which it touches at its own:
-    (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
+    """The transition from one body, tangent to it at its rail, to another, tangent at its own rail: (1
+    - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 
     After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; over a box `low`, `high` this is
     proved, or the point at which it fails is reported.
@@ -672,15 +675,16 @@ def zhang(
     Parameters
     ----------
     l1
-        The body that it begins on.
+        The body at the first rail.
     l2
-        The body that it ends on.
+        The body at the second rail.
     l3
         The rail on the first body.
     l4
         The rail on the second.
     lambda_
-        Shape: which body it follows longer. Default 0.5.
+        Shape between 0 (longer along the first body) and 1 (longer along the second). Default
+        0.5.
     contact
         Order of contact. 1 to 100, default 1.
     low

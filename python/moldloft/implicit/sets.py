@@ -640,9 +640,9 @@ class Set(Moving, Edged, Pictured):
         *,
         accuracy: float | None = None,
     ) -> Nearest | None:
-        """The point of the surface, in a box, that is nearest to ``point``; None without a surface.
+        """The point of the surface in a box nearest to ``point``; None without a surface.
 
-        Another point may be nearer by at most ``accuracy``, by default 1e-6 of the box.
+        The distance exceeds the minimum by at most ``accuracy``, by default 1e-6 of the box.
 
         Parameters
         ----------
@@ -688,7 +688,7 @@ class Set(Moving, Edged, Pictured):
     ) -> Distance | None:
         """The distance of another set from this one in a box; None if one of them is empty there.
 
-        They may be nearer by at most ``accuracy``, by default 1e-5 of the box.
+        The distance exceeds the minimum by at most ``accuracy``, by default 1e-5 of the box.
 
         Parameters
         ----------

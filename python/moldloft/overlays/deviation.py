@@ -170,7 +170,7 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
             found.surfaces[nearer] = name
             found.parameters[nearer] = parameters
             found.beside[nearer] = np.abs(cosine) < np.sqrt(1 - _ALONG**2)
-    # What is on the surface but for rounding has no side.
+    # A point on the surface to rounding has no side.
     size = float(np.ptp(at, axis=0).max()) + float(np.abs(found.feet).max())
     found.beside[best <= 1e-12 * size] = False
     return found

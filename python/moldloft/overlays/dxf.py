@@ -37,10 +37,10 @@ _MOST_ANGLE = 1e6
 
 
 def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
-    """The model space of a DXF file, and its unit in metres where it states one.
+    """The model space of a DXF file, and its unit in metres, if stated.
 
     Lines, arcs, circles, ellipses, splines and polylines are curves, points are points, faces are
-    faces; blocks are read where they are inserted. Other entities are counted in the remarks.
+    faces; blocks are expanded. Other entities are counted in the remarks.
 
     Parameters
     ----------

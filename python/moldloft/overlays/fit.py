@@ -28,15 +28,15 @@ class Fit:
     """Result of a fit."""
 
     values: dict[str, float]
-    """The parameters; the model has them."""
+    """The parameters, which are also set in the model."""
     deviation: Deviation
-    """The distances that are left."""
+    """The remaining distances."""
     before: float
     """The rms of the distances at the start."""
     steps: int
     """Steps taken."""
     converged: bool
-    """True if the last step was small: no nearby values are better."""
+    """True if converged: the last step was small."""
 
     def __repr__(self) -> str:
         how = "" if self.converged else ", not converged"
@@ -57,8 +57,8 @@ def fit(
     """Sets parameters of a model to minimise the distance of its surfaces from points.
 
     The sum of the squares of the distances is minimised (Gauss and Newton's method, damped as by
-    Levenberg and Marquardt): the derivative of a distance by a parameter is that of the surface's
-    point at fixed (u, v), along the normal, and is exact.
+    Levenberg and Marquardt): the derivative of a distance with respect to a parameter is exact:
+    that of the surface's point at fixed (u, v), along the normal.
 
     Parameters
     ----------

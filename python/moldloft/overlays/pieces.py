@@ -32,7 +32,7 @@ def line(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def arc(centre: ArrayLike, a: ArrayLike, b: ArrayLike, start: float, end: float) -> list[Floats]:
-    """Pieces of centre + a cos t + b sin t from ``start`` to ``end``, a quarter turn at most each.
+    """Pieces of centre + a cos t + b sin t from ``start`` to ``end``, each at most a quarter turn.
 
     They are rational quadratics: points multiplied by weights, and weights, ``(3, 4)``.
     """
@@ -53,9 +53,9 @@ def arc(centre: ArrayLike, a: ArrayLike, b: ArrayLike, start: float, end: float)
 
 
 def joined(pieces: Sequence[Floats]) -> Nurbs:
-    """One NURBS of pieces that follow each other, of the highest degree among them.
+    """The NURBS of consecutive pieces, with the highest degree among them.
 
-    Joints are knots as many times as the degree, so that corners stay corners.
+    The multiplicity of knots at joints equals the degree, which preserves corners.
     """
     degree = max(len(piece) - 1 for piece in pieces)
     raised = [_raised(piece, degree) for piece in pieces]

@@ -47,10 +47,10 @@ def _number(text: str) -> float:
 
 
 def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
-    """The shapes of an SVG file, and its unit in metres where its size states one.
+    """The shapes of an SVG file, and its unit in metres, if its size states one.
 
-    A path of several parts is a curve for each. Strokes, fills, texts and images are left out; y is
-    turned to run up.
+    Each part of a path is a curve. Strokes, fills, texts and images are omitted; y is reversed to
+    point up.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def make_folders(folder: Path) -> list[Path]:
             with contextlib.suppress(FileExistsError):
                 system.make_folder(new)
                 made.insert(0, new)
-            # What is written in it is lost with its name.
+            # Its content is lost with its name.
             system.folder_synced(new.parent)
         if not folder.is_dir():
             raise FileError(f"cannot make the folder `{folder}`: a file has that name")

@@ -44,7 +44,7 @@ def state_folder() -> Path:
 
 
 def ended(journal: Path) -> bool:
-    """True if its session ended without a save, by its name."""
+    """True if its session ended without saving, according to its name."""
     return journal.name.startswith(_ENDED)
 
 
@@ -103,7 +103,7 @@ def read(path: Path, present: str | None = None) -> Left | None:
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(path.stat().st_mtime))
     except OSError:
         return None
-    # What follows the last line break was cut short.
+    # The text after the last line break was cut short.
     head, *lines = text.split("\n")[:-1] or [""]
     if not head.startswith(HEAD):
         return None
@@ -136,7 +136,7 @@ def left_behind(
 ) -> list[Left]:
     """Journals with commands but without a running owner, the newest first.
 
-    ``present`` is as for :func:`read`; ``held`` is the lock of the only one, when that is held.
+    ``present`` is as for :func:`read`; ``held`` is the lock on the only journal, if it is held.
     """
     found: list[tuple[float, Left]] = []
     for path in paths:
@@ -238,7 +238,7 @@ class Journal:
                 self._open()
             count, data = self._count, self._lines(commands).encode()
             try:
-                # What a failed write has left would spoil the next line.
+                # The remainder of a failed write would corrupt the next line.
                 os.ftruncate(self._file, self._length)
                 system.write_all(self._file, data)
                 system.synced(self._file)

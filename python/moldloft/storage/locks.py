@@ -27,7 +27,10 @@ _FLAGS = os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
 
 @dataclass(frozen=True)
 class Owner:
-    """Owner of a lock, for messages only: process numbers recur, so no decision depends on them."""
+    """Owner of a lock, for messages only.
+
+    Process numbers are reused, so no decision depends on them.
+    """
 
     pid: int
     host: str
@@ -52,7 +55,7 @@ class Owner:
 
 
 class BusyError(FileError):
-    """Somebody else has the file.
+    """Another process has the file.
 
     Attributes
     ----------
@@ -168,7 +171,7 @@ class Lock:
 
 
 def folder_lock(folder: Path, wait: float = 60.0) -> Lock:
-    """The lock of a folder; it is held for moments only."""
+    """The lock of a folder; it is held only briefly."""
     return Lock(folder / LOCK, str(folder), wait=wait)
 
 

@@ -87,8 +87,8 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
 def utf8_path(path: str | os.PathLike[str]) -> str:
     r"""The path as UTF-8 text, as required by models, sketches and the workbench.
 
-    A name from elsewhere may hold other bytes: such a file is read by what takes it as points,
-    drawing or table, and refused as a model.
+    A file whose name has other bytes is accepted as points, drawing or table, but refused as a
+    model.
 
     Raises
     ------

@@ -116,7 +116,7 @@ class Draft:
             raise
 
     def place(self) -> None:
-        """Give it the file's name."""
+        """Rename the draft to the file's name."""
         if os.name == "nt":
             # An open file cannot be renamed there.
             self._close()

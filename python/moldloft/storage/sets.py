@@ -194,7 +194,7 @@ def _undo(folder: Path, token: str, entries: Sequence[_Entry]) -> None:
                 system.remove(draft)
                 system.remove(old)
             elif entry.existed and old.exists():
-                # What somebody else has written since is neither old nor new, and stays.
+                # A file written by another program since is neither old nor new, and is kept.
                 if digest_of(target) in (entry.digest, None):
                     system.replace(old, target)
                 else:
@@ -235,9 +235,9 @@ _sweeping = threading.Lock()
 
 
 def recover(folder: Path) -> None:
-    """Put back and remove what killed processes left in a folder.
+    """Undo and remove the unfinished writes of killed processes in a folder.
 
-    A half-written set is undone at once. Each process looks for drafts once. Files of living
+    A half-written set is undone immediately; drafts are searched once per process. Files of running
     processes are not touched.
     """
     try:
@@ -249,7 +249,7 @@ def recover(folder: Path) -> None:
         fresh = (status.st_dev, status.st_ino) not in _swept
         _swept.add((status.st_dev, status.st_ino))
     if pending or (fresh and any(_abandoned(folder))):
-        # Who cannot write here cannot put anything back either.
+        # Without permission to write here, nothing can be restored.
         with (
             contextlib.suppress(BusyError, OSError),
             folder_lock(folder, _WAIT if pending else 0.0),

@@ -47,14 +47,14 @@ def open_new(path: Path, mode: int) -> int:
 
 
 def write_all(file: int, data: bytes) -> None:
-    """Write all of it; a short write is continued at its end."""
+    """Write all bytes; a short write is continued."""
     rest = memoryview(data)
     while rest:
         rest = rest[os.write(file, rest[: 1 << 24]) :]
 
 
 def synced(file: int) -> None:
-    """The file is on the disk when this returns."""
+    """Sync a file: it is on disk when this returns."""
     if sys.platform == "darwin":
         import fcntl
 
@@ -66,7 +66,7 @@ def synced(file: int) -> None:
 
 
 def folder_synced(folder: Path) -> None:
-    """The names of a folder are on the disk when this returns, where folders can be synced."""
+    """Sync a folder: its names are on disk when this returns, if the system supports it."""
     if os.name == "nt":
         return
     file = os.open(folder, os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | _SAFE)
@@ -101,12 +101,12 @@ def replace(old: Path, new: Path) -> None:
 
 
 def link(old: Path, new: Path) -> None:
-    """A second name of a file."""
+    """Make a second name (hard link) of a file."""
     os.link(old, new, follow_symlinks=False)
 
 
 def remove(path: Path, *, there: bool = False) -> None:
-    """Remove a name; a missing one is an error only if ``there`` is true."""
+    """Remove a file name; a missing one is an error only if ``there`` is true."""
     try:
         os.unlink(path)
     except FileNotFoundError:

@@ -17,7 +17,7 @@ __all__ = ["jax_function", "torch_function"]
 
 
 def jax_function(function: Function) -> Callable[[Any], Any]:
-    """The function as one of JAX, with its gradient in reverse mode.
+    """A JAX function with its gradient in reverse mode.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def jax_function(function: Function) -> Callable[[Any], Any]:
 
 
 def torch_function(function: Function) -> Callable[[Any], Any]:
-    """The function as one of PyTorch, with its gradient in reverse mode.
+    """A PyTorch function with its gradient in reverse mode.
 
     Parameters
     ----------

@@ -92,7 +92,7 @@ def executor_of(client: Any) -> ClusterExecutor:
 
 
 class ConnectedCluster:
-    """A cluster for the time of a run.
+    """A cluster that exists for the duration of a run.
 
     Parameters
     ----------

@@ -129,7 +129,7 @@ class Pattern:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """The keys that state where the number is; one is right."""
+        """The keys for the position of the number, of which exactly one is needed."""
         named = ("pattern", "column", "key", "dataset", "python")
         return tuple(name for name in named if getattr(self, name))
 
@@ -151,7 +151,9 @@ class Analysis:
     environment: Mapping[str, str] = field(default_factory=dict)
     """Variables of the environment of the commands, beside those of the study."""
     formats: Mapping[str, str] = field(default_factory=dict)
-    """Formats that the model is written as before, with their files; ``""``: named like it."""
+    """Formats in which the model is written before the commands run, with file names; ``""``: the
+    name of the model.
+    """
     options: Mapping[str, Any] = field(default_factory=dict)
     """Options of :meth:`moldloft.Model.write` for these, such as ``immersed``."""
     prepare: str = ""
@@ -173,7 +175,7 @@ class Analysis:
     seconds: float = DEFAULT_SECONDS
     """Time limit of all commands together."""
     keep: str = "failed"
-    """Which folders stay: ``"failed"``, ``"all"`` or ``"none"``."""
+    """Folders that are kept: ``"failed"``, ``"all"`` or ``"none"``."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -217,7 +219,7 @@ class Goal:
     """Objectives and the optimiser, of :data:`OPTIMISERS`."""
 
     objectives: tuple[Objective, ...]
-    """One; several for ``nsga2`` and ``tpe``."""
+    """Objectives: one, or several for ``nsga2`` and ``tpe``."""
     method: str = "slsqp"
     evaluations: int = 200
     """The greatest number of points."""
@@ -359,7 +361,7 @@ def _parsed(place: Path) -> dict[str, Any]:
 
 
 class Table:
-    """A table of TOML whose keys are taken one by one; those left over are unknown."""
+    """A TOML table whose keys are read one by one; remaining keys are unknown."""
 
     def __init__(self, data: object, where: str) -> None:
         if not isinstance(data, dict):
@@ -381,13 +383,13 @@ class Table:
         return _checked(value, kind, self.at(key))
 
     def need(self, key: str, kind: str) -> Any:
-        """The value of a key that must be there."""
+        """The value of a required key."""
         if key not in self.data:
             raise StudyError(f"`{self.at(key)}` is missing")
         return self.take(key, kind)
 
     def table(self, key: str) -> Table:
-        """A table within, empty when it is not there."""
+        """A nested table; empty if missing."""
         self._known.append(key)
         return Table(self.data.pop(key, {}), self.at(key))
 
@@ -618,7 +620,7 @@ def _commands(table: Table) -> tuple[tuple[str, ...], ...]:
         return ()
     commands = tuple(_checked(row, "texts", where) for row in rows)
     if not all(commands):
-        raise StudyError(f"`{where}` has no word: a command is a list of texts")
+        raise StudyError(f"`{where}` is empty: a command is a list of texts")
     return commands
 
 

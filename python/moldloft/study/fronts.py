@@ -15,7 +15,7 @@ __all__ = ["front"]
 
 
 def front(objectives: Floats) -> NDArray[np.int64]:
-    """The rows of the Pareto front of objectives that are all to be small.
+    """The rows of the Pareto front, with all objectives minimised.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ _HESSIAN_STEP = 1e-5
 def jacobian(
     model: Model, expressions: Sequence[str], sizes: Sequence[int], inputs: Sequence[str]
 ) -> Floats:
-    """The exact derivatives of expressions by inputs, where the model is.
+    """The exact derivatives of expressions with respect to inputs, at the model's state.
 
     Parameters
     ----------
@@ -102,20 +102,20 @@ class Function:
             raise Error("an input is named twice")
         self.sizes = {name: self._value(name).size for name in self.outputs}
         """The number of values of each output."""
-        # What cannot be differentiated or set is an error now, not in the midst of a study.
+        # An input that cannot be differentiated or set is an error now, not during a study.
         start = self.start
         self.model.set(dict(zip(self.inputs, start.tolist(), strict=True)))
         self._pulled(np.ones((1, sum(self.sizes.values()))))
 
     @property
     def start(self) -> Floats:
-        """The inputs as they are in the model."""
+        """The current inputs of the model."""
         found: Floats = np.array([float(self.model.eval(name)) for name in self.inputs])
         return found
 
     @property
     def bounds(self) -> list[tuple[float | None, float | None]]:
-        """The ranges that the model states for the inputs, None where there is no bound."""
+        """The ranges of the inputs in the model; None without a bound."""
         known = self.model.params
         return [
             (known[name].low, known[name].high) if name in known else (None, None)
@@ -170,7 +170,7 @@ class Function:
         return _pulled(self.model, expressions, sizes, self.inputs, weights)
 
     def vjp(self, x: ArrayLike, weights: ArrayLike) -> Floats:
-        """The exact derivatives of a weighted sum of the outputs by all inputs at once.
+        """The exact derivatives of a weighted sum of the outputs with respect to all inputs.
 
         Parameters
         ----------
@@ -199,7 +199,7 @@ class Function:
         return rows[0] if w.ndim == 1 else rows
 
     def jvp(self, x: ArrayLike, rates: ArrayLike) -> Floats:
-        """The change of the outputs when the inputs change at these rates.
+        """The rates of change of the outputs for given rates of the inputs.
 
         Parameters
         ----------
@@ -228,7 +228,7 @@ class Function:
         )
 
     def hvp(self, x: ArrayLike, weights: ArrayLike, direction: ArrayLike) -> Floats:
-        """The change of the gradient of a weighted sum of the outputs in a direction.
+        """The derivative, in a direction, of the gradient of a weighted sum of the outputs.
 
         Parameters
         ----------
@@ -270,7 +270,7 @@ class Function:
         return found
 
     def value_and_jacobian(self, x: ArrayLike) -> tuple[Floats, Floats]:
-        """Outputs and derivatives at these inputs.
+        """Outputs and derivatives at the given inputs.
 
         Parameters
         ----------

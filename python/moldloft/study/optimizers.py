@@ -142,7 +142,7 @@ def _ipopt(goal: Goal, search: Search, cyipopt: Any) -> tuple[str, bool]:
     size, rows = len(search.points.most), len(search.bounds)
 
     class Problem:
-        """Callbacks by the names that cyipopt looks for."""
+        """Callbacks with the names that cyipopt requires."""
 
         def objective(self, unit: Floats) -> float:
             return search.objective(unit)

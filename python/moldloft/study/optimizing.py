@@ -49,12 +49,13 @@ class Optimum:
     evaluations: int
     """The number of points evaluated, derivatives included."""
     front: tuple[Outcome, ...] = field(default=(), repr=False)
-    """The feasible points that no other one betters in all objectives, in the order of the first
-    objective; for several objectives."""
+    """The Pareto front of several objectives: feasible points that no other point dominates, in the
+    order of the first objective.
+    """
 
 
 class NoNumbersError(Exception):
-    """A point at which the model has no numbers."""
+    """A point at which the model cannot be evaluated."""
 
 
 class LimitError(Exception):
@@ -62,7 +63,7 @@ class LimitError(Exception):
 
 
 class Points:
-    """The one source of an optimiser's numbers: values and derivatives from one evaluation.
+    """Values and derivatives for an optimiser, from one evaluation.
 
     Points are given in the unit cube of the ranges.
     """
@@ -85,7 +86,7 @@ class Points:
         self._whole = np.array([n in known and known[n].whole for n in cases.names])
 
     def unit(self, point: Floats) -> Floats:
-        """A point of the ranges in the unit cube."""
+        """A point in the coordinates of the unit cube."""
         found: Floats = np.clip((point - self.low) / self.scale, 0.0, self.most)
         return found
 
@@ -96,7 +97,10 @@ class Points:
         return found
 
     def batch(self, units: Floats) -> list[Outcome]:
-        """The outcomes at points, ``(points, inputs)``, in their order; new ones in parallel."""
+        """The outcomes at points, ``(points, inputs)``, in order.
+
+        New points are evaluated in parallel.
+        """
         points = [self._point(unit) for unit in units]
         keys = [self.cases.key(point) for point in points]
         new = {k: p for k, p in zip(keys, points, strict=True) if k not in self._known}
@@ -136,7 +140,7 @@ class Points:
         return found
 
     def has_numbers(self, unit: Floats) -> bool:
-        """True if the model has numbers at a point."""
+        """True if the model can be evaluated at a point."""
         try:
             self.at(unit)
         except NoNumbersError:
@@ -242,7 +246,7 @@ def optimize(
 
 
 class Search:
-    """Objectives and constraints in units of their sizes, and the best point so far."""
+    """Objectives and constraints scaled by their initial magnitudes, and the best point so far."""
 
     def __init__(
         self,
@@ -259,9 +263,9 @@ class Search:
         self.names = [o.output for o in self.goal.objectives]
         self.signs = np.array([-1.0 if o.maximise else 1.0 for o in self.goal.objectives])
         self.scales = np.ones(len(self.names))
-        """The sizes of the objectives at the start."""
+        """Magnitudes of the objectives at the start."""
         self.sizes = np.ones(len(bounds))
-        """The sizes of the constraints."""
+        """Magnitudes of the constraints at the start."""
         self.starts: list[Floats] = []
         self.low = self.high = np.empty(0)
         self.best: tuple[float, float, Outcome] | None = None
@@ -269,7 +273,7 @@ class Search:
 
     @property
     def senses(self) -> dict[str, float]:
-        """1 for an objective that is to be small, -1 for a great one, by name."""
+        """Sign of each objective, by name: 1 to minimise, -1 to maximise."""
         return dict(zip(self.names, self.signs.tolist(), strict=True))
 
     @property
@@ -278,7 +282,7 @@ class Search:
         return list(self._feasible)
 
     def stored(self, store: Store) -> list[Floats]:
-        """The best points of the store within the ranges, as many as a population has."""
+        """The best points of the store within the ranges, at most one population."""
         names = self.points.cases.names
         used = {*self.names, *(b.name for b in self.bounds)}
         rows = []
@@ -297,7 +301,7 @@ class Search:
 
     @property
     def population(self) -> int:
-        """The points of a generation."""
+        """The points of one generation."""
         several = len(self.names) > 1
         default = 40 if several else max(15 * len(self.points.low), 20)
         return min(self.goal.population or default, self.goal.evaluations)
@@ -320,7 +324,7 @@ class Search:
         )
 
     def start(self, units: Sequence[Floats]) -> None:
-        """Evaluates the start, whose values are the sizes of objectives and constraints."""
+        """Evaluate the start; its values scale objectives and constraints."""
         self.starts = list(units)
         try:
             first = self.points.at(units[0])
@@ -349,11 +353,11 @@ class Search:
     # -- one objective, one point ----------------------------------------------------------
 
     def objective(self, unit: Floats) -> float:
-        """The first objective in its size."""
+        """The first objective, scaled."""
         return float(self.values(np.asarray(unit)[None])[0][0, 0])
 
     def gradient(self, unit: Floats) -> Floats:
-        """The derivatives of the first objective."""
+        """The derivatives of the first objective, scaled."""
         try:
             slope = self.points.slope(self.names[0], unit)
         except NoNumbersError:
@@ -362,7 +366,7 @@ class Search:
         return found
 
     def constraints(self, unit: Floats) -> Floats:
-        """All constraints in their sizes, ``(constraints,)``."""
+        """All constraints, scaled, ``(constraints,)``."""
         found: Floats = self.values(np.asarray(unit)[None])[1][0]
         return found
 
@@ -377,9 +381,9 @@ class Search:
     # -- several of both -------------------------------------------------------------------
 
     def values(self, units: Floats) -> tuple[Floats, Floats]:
-        """Objectives, all to be small, and constraints: ``(points, ...)`` each.
+        """Objectives to minimise and constraints, each ``(points, ...)``.
 
-        All are 1e10 where the model fails.
+        1e10 where the model fails.
         """
         objectives = np.full((len(units), len(self.names)), FAILED)
         constraints = np.full((len(units), len(self.bounds)), FAILED)
@@ -392,7 +396,7 @@ class Search:
         return objectives, constraints
 
     def violations(self, constraints: Floats) -> Floats:
-        """Excess of constraints over their limits, ``(points, constraints)``; else 0."""
+        """Excess of constraints over their limits, ``(points, constraints)``, or 0."""
         found: Floats = np.maximum(np.maximum(self.low - constraints, constraints - self.high), 0)
         return found
 

@@ -23,7 +23,7 @@ WIDTH, HEIGHT = 360, 240
 
 
 def variants(results: Results) -> dict[int, str]:
-    """The rows that are drawn, with the reason.
+    """The rows to draw, each with the reason.
 
     Parameters
     ----------

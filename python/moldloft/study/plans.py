@@ -29,7 +29,7 @@ MAX_CASES = 100_000_000
 
 
 def ranges(study: Study, model: Model) -> Floats:
-    """The ranges of the inputs, ``(inputs, 2)``: the study's, or those that the model states.
+    """The ranges of the inputs, ``(inputs, 2)``: from the study, or from the model.
 
     Parameters
     ----------

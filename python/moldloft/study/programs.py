@@ -42,7 +42,7 @@ Functions = Callable[[str, str], Any]
 
 
 class SolverError(Error):
-    """An analysis failed: it ended with an error, ran too long or wrote no number."""
+    """An analysis failed: error, time limit, or missing number."""
 
 
 def finite(value: float, name: str, source: str) -> float:
@@ -72,7 +72,7 @@ def run_program(
     found: Mapping[str, float],
     function: Functions,
 ) -> dict[str, float]:
-    """Writes the folder of a case, runs the commands in it, and reads the numbers.
+    """Write the folder of a case, run its commands, and read the numbers.
 
     Parameters
     ----------

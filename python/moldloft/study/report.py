@@ -27,7 +27,7 @@ __all__ = ["failures", "html", "sensitivities"]
 #: coordinates show this number, evenly chosen, and the page states the number left out.
 MAX_DRAWN = 2_000
 
-#: Points of all lines of parallel coordinates: many inputs leave room for fewer cases.
+#: Points of all lines of parallel coordinates: many inputs allow fewer cases.
 MAX_LINE_POINTS = 40_000
 
 #: Cells of a plot of more cases, and their shades, each for twice to eight times as many cases.

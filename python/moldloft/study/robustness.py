@@ -31,9 +31,11 @@ class Validity:
     cases: int
     """Cases with a valid or invalid shape, without pending, crashed and timed-out ones."""
     valid: int
-    """Cases that the model does not refuse; those whose solver failed are among them."""
+    """Cases with a valid model, including those with a failed solver."""
     low: float
-    """Least fraction of the space that is valid, at 95 %, for a plan of independent draws."""
+    """Lower 95 % confidence bound of the valid fraction of the space, for a plan of independent
+    draws.
+    """
     high: float
     """Greatest one (Wilson 1927)."""
 

@@ -134,7 +134,7 @@ class Cases:
         return [each.name for each in self.study.inputs]
 
     def key(self, point: Sequence[float] | Floats) -> str:
-        """The digest of everything that decides a case's numbers."""
+        """The digest of everything that determines a case's numbers."""
         inputs = {name: float(v).hex() for name, v in zip(self.names, point, strict=True)}
         text = json.dumps([self.digest, self._fixed, inputs], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:40]
@@ -172,7 +172,7 @@ class Cases:
         return Path(self._snapshot.name) / self._model_at
 
     def close(self) -> None:
-        """Removes the snapshot, and the folder of the cases where none stayed."""
+        """Remove the snapshot, and the folder of the cases if it is empty."""
         with contextlib.suppress(OSError):
             self._place.rmdir()
         if self._snapshot is not None:
@@ -200,7 +200,7 @@ def _plain(data: Any) -> Any:
 
 
 def outcome(request: Mapping[str, Any], answer: Mapping[str, Any]) -> Outcome:
-    """The outcome that a worker's answer states."""
+    """The outcome in a worker's answer."""
     return Outcome(
         request["key"],
         answer["state"],
@@ -226,7 +226,7 @@ def sweep(
     part: tuple[int, int] = (1, 1),
     progress: Callable[[int, int, Mapping[str, int]], None] | None = None,
 ) -> Results:
-    """Evaluate the plan of a study; what the store already has is not evaluated again.
+    """Evaluate the plan of a study; stored cases are not evaluated again.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ FOLDER = "{folder}/"
 
 
 def source_files(study: Study) -> list[Path]:
-    """The files of all analyses: a change in one of them makes new cases.
+    """The files of all analyses; a change in one of them requires new evaluations.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _imported(source: Path, seen: frozenset[Path] = frozenset()) -> Iterator[Pat
 
 
 def check_programs(study: Study) -> None:
-    """Refuses a study whose programs are not on this machine.
+    """Refuse a study with programs that are not installed on this machine.
 
     Parameters
     ----------

@@ -41,10 +41,10 @@ SCHEMA_VERSION = 2
 ROWS_AT_ONCE = 1_024
 
 DONE = "done"
-"""The state of a case whose numbers are there."""
+"""State of a completed case."""
 
 PENDING = "pending"
-"""The state of a case that was not evaluated."""
+"""State of a case not evaluated yet."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Outcome:
 
 
 class RowLayout:
-    """The names of a case's numbers, which are one value of the file: SQLite has 2000 columns.
+    """The names of a case's numbers, stored as one value, since SQLite allows 2000 columns.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ class RowLayout:
 
     @classmethod
     def of(cls, found: Outcome) -> RowLayout:
-        """The layout of an outcome."""
+        """The order of the numbers in an outcome."""
         return cls(tuple(found.inputs), tuple(found.outputs), tuple(found.derivatives))
 
     @property
     def text(self) -> str:
-        """The names as they are stored."""
+        """The names in stored form."""
         return json.dumps([self.inputs, self.outputs, self.derived])
 
     def packed(self, found: Outcome) -> bytes:
@@ -226,7 +226,7 @@ class Store:
             self._db.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
 
     def note(self, facts: Mapping[str, str]) -> None:
-        """Add to the definition what the run found.
+        """Add results of the run to the definition.
 
         Parameters
         ----------
@@ -296,7 +296,7 @@ class Store:
             ).rowcount
 
     def collect(self, other: Store) -> int:
-        """Take the results of another store that are not here.
+        """Copy missing results from another store.
 
         Parameters
         ----------
@@ -527,7 +527,7 @@ class Results:
     seconds: Floats
     """The time that each case took."""
     objectives: dict[str, float] = field(default_factory=dict)
-    """The objectives of an optimisation by name: 1 where small is good, -1 where great is."""
+    """Objectives of an optimisation, by name: 1 to minimise, -1 to maximise."""
     feasible: NDArray[np.bool_] | None = None
     """Mask of the points that satisfy the constraints of an optimisation, ``(cases,)``."""
     front: NDArray[np.bool_] | None = None
@@ -565,7 +565,7 @@ class Results:
         return columns
 
     def csv(self) -> bytes:
-        """The table as CSV; numbers have all their digits, missing ones are empty."""
+        """The table as CSV; numbers with all digits, missing ones empty."""
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\n")
         columns = self.columns()

@@ -61,7 +61,7 @@ def _supervised() -> None:
         if status is None:
             os._exit(1)
         if status == 0:
-            # Nobody asked for a while, or asks any more.
+            # There has been no request for a while, or there will be none.
             os._exit(0)
         send_end(status)
 

@@ -57,7 +57,7 @@ _installed: dict[str, dict[str, str]] = {}
 
 
 def install(digest: str, files: Mapping[str, bytes], model: str) -> None:
-    """Write the files of a model that cases here are to use.
+    """Write the files of a model for cases on this machine.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
                     worker.end()
         if isinstance(answer, dict):
             return answer
-        # One that nobody had asked for a while may have ended by itself just then.
+        # A process without requests for a while may have ended just then.
         if answer.late or not old or (answer.asked and answer.status != 0):
             return _case(answer, seconds)
 

@@ -29,12 +29,12 @@ _MOST = 50
 
 @dataclass(frozen=True)
 class Address:
-    """Where a server is reached, and by whom."""
+    """Port and secrets of a server."""
 
     port: int
     """0 for any free port."""
     secret: str
-    """What the pages of this server have, and nobody else."""
+    """The secret shared by the pages of this server only."""
 
 
 def _file() -> Path:
@@ -57,12 +57,12 @@ def _all() -> dict[str, Address]:
 
 
 def kept_address(model: Path) -> Address:
-    """The address that a model's last server had, or a new one at any port."""
+    """The address of the model's previous server, or a new one at any port."""
     return _all().get(str(model.resolve())) or Address(0, secrets.token_urlsafe(32))
 
 
 def proof(secret: str, port: int, challenge: str) -> str:
-    """The answer of a page that has a secret to the challenge of a server, which is at a port.
+    """A page's answer to the challenge of a server at a port, given its secret.
 
     >>> len(proof("secret", 8000, "challenge"))
     64

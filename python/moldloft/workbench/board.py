@@ -32,7 +32,7 @@ from moldloft.workbench.statements import (
 
 __all__ = ["Board", "serve"]
 
-#: What may stand after a value of DIMENSION and GIVE.
+#: Words that may follow a value of DIMENSION and GIVE.
 _AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECASE)
 
@@ -111,7 +111,7 @@ class Board:
     # -- edits -------------------------------------------------------------------------------
 
     def edit(self, changes: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Carry out what a hand does, as one edit of the text.
+        """Apply an action of the mouse as one edit of the text.
 
         Parameters
         ----------
@@ -371,7 +371,7 @@ class Board:
         return found
 
     def proposals(self) -> list[dict[str, Any]]:
-        """The types that all strokes together suggest, where they are others than now."""
+        """The types suggested by all strokes together, where they differ from the present ones."""
         found: list[dict[str, Any]] = []
 
         def look() -> None:
@@ -431,7 +431,7 @@ class Board:
         return out
 
     def pointer(self, request: dict[str, Any]) -> dict[str, Any]:
-        """Meaning of a pointer position: a snap, and the type of a line that ends there.
+        """Meaning of a pointer position: a snap, and the type of a line to that position.
 
         Parameters
         ----------
@@ -532,6 +532,6 @@ def answered(board: Board, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def serve(memory: int, folder: str | None) -> None:
-    """Answer the parent until its end."""
+    """Serve requests of the parent process until it ends."""
     board = Board(str(Path(folder)) if folder else None)
     answer_frames(memory, board.sync, lambda request: answered(board, request))

@@ -31,7 +31,7 @@ _LONGEST_STEM = 80
 
 
 class Converter:
-    """A model's text, and files that are made of it.
+    """A model's text, and files exported from it.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Converter:
         self._text = ""
 
     def sync(self, text: str) -> None:
-        """Have that text of the model."""
+        """Replace the model's text."""
         self._text = text
 
     def answer(self, request: dict[str, Any]) -> bytes:

@@ -33,12 +33,12 @@ __all__ = ["DeskRoom", "serve"]
 _SAMPLES = 900
 _LEAST, _MOST = 3, 16
 
-#: Sessions that are kept; others begin anew from their logs.
+#: Sessions that are kept; others are replayed from their logs.
 _KEPT = 8
 
 
 class DeskRoom:
-    """Sessions of a page by their sources.
+    """Fairing sessions of a page, by source.
 
     Parameters
     ----------
@@ -328,7 +328,7 @@ def _polyline_in(curve: DeskCurve, axes: tuple[int, int]) -> list[Any]:
 def _certificate(curve: DeskCurve) -> dict[str, Any]:
     """The badge with the proved property of a line."""
     if curve.draft:
-        return {"state": "draft", "words": "draft: bends are counted when the hand rests"}
+        return {"state": "draft", "words": "draft: inflections are counted when the drag ends"}
     if not curve.kept:
         return {"state": "broken", "words": "a tolerance is not kept"}
     if curve.certified:

@@ -91,7 +91,7 @@ class Draft:
         return None
 
     def keep(self, text: str, digest: str) -> None:
-        """Write the text to disk before this returns."""
+        """Write the text to disk, synced."""
         data = {"version": VERSION, "text": text, "digest": digest}
         put(self.path, json.dumps(data).encode(), private=True)
 
@@ -100,7 +100,7 @@ class Draft:
         remove(self.path)
 
     def close(self, keep: bool) -> None:
-        """Release the draft at the end of the server; one without changes is deleted."""
+        """Release the draft when the server ends; it is deleted if there are no changes."""
         if not keep:
             with contextlib.suppress(OSError):
                 self.drop()

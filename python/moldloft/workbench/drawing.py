@@ -29,7 +29,7 @@ class Room:
     title: str
     """Its name in messages."""
     newest: frozenset[str]
-    """Requests of which only the newest of a page counts."""
+    """Requests that a newer one of the same page supersedes."""
     others: frozenset[str]
     """Further requests of a page."""
     last: frozenset[str]
@@ -37,10 +37,10 @@ class Room:
     stop: str = ""
     """The request that cancels the current one."""
     patience: float = 1.0
-    """Its limit of time, in those of a change of the model."""
+    """Its time limit, as a multiple of that of a model change."""
 
     def takes(self, kind: Any) -> bool:
-        """True if a request is for this room."""
+        """True if this subprocess answers a request."""
         return isinstance(kind, str) and kind in self.newest | self.others | {self.stop} - {""}
 
 
@@ -74,7 +74,7 @@ Say = Callable[["str | bytes"], None]
 
 
 class Drawing:
-    """A room of a model's text.
+    """A subprocess of the workbench for a model's text: board, desk or files.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class Drawing:
         self._ending: asyncio.Task[None] | None = None
 
     def ask(self, tab: int, request: dict[str, Any], say: Say) -> None:
-        """Have a request answered, unless the page asks the same of a newer state first."""
+        """Answer a request, unless the page repeats it for a newer state first."""
         kind = request["kind"]
         if kind == self.room.stop:
             self.leave(tab)

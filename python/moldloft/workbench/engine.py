@@ -34,7 +34,7 @@ def _widen(process: asyncio.subprocess.Process) -> None:
 
 
 class EngineLostError(Exception):
-    """The engine process ended, or was ended, before it answered."""
+    """The engine process ended or was killed before it answered."""
 
 
 class Engine:
@@ -73,11 +73,11 @@ class Engine:
 
     @property
     def pid(self) -> int | None:
-        """The process, while there is one."""
+        """The running process, if any."""
         return self._process.pid if self._process else None
 
     async def start(self, text: str) -> None:
-        """A new process with that text; one that was there is ended."""
+        """Start a process with a text; a running one is ended."""
         await self.end()
         self._process = await asyncio.create_subprocess_exec(
             *command(*self._arguments),
@@ -91,7 +91,7 @@ class Engine:
         await self._send(text.encode())
 
     async def end(self) -> None:
-        """Ends the process, if there is one."""
+        """End the process, if one is running."""
         process, self._process = self._process, None
         if process is None:
             return
@@ -120,7 +120,7 @@ class Engine:
 
     def _reading(self) -> asyncio.Task[bytes]:
         reading = asyncio.ensure_future(self._receive())
-        # Who asked may be gone when the engine ends, as with a server that is stopped.
+        # The requester may be gone when the engine ends, as with a stopped server.
         reading.add_done_callback(lambda done: done.cancelled() or done.exception())
         return reading
 

@@ -35,7 +35,7 @@ def exported_page(
     library: Sequence[str] = (),
     living: bool = True,
 ) -> bytes:
-    """The page of a model's file: alive where the package has the engine for pages.
+    """The page of a model's file; interactive if the package contains the engine for pages.
 
     Parameters
     ----------

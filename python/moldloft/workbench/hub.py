@@ -73,12 +73,12 @@ MOST_DROPPED = 4 * MOST_TABS
 
 @dataclass
 class Tab:
-    """A page that is connected."""
+    """A connected page."""
 
     number: int
     outbox: Outbox
     known: dict[str, int]
-    """The versions of the texts that it has, once what waits is sent."""
+    """The versions of texts that the page has once its queue is sent."""
     dropped: str = ""
     """Why its last connection was ended, if the server ended it."""
 
@@ -112,7 +112,7 @@ class Hub:
     beside: Callable[[Path], str] | None = None
     """Opens another model and returns the address of its page."""
     secret: str = ""
-    """Pages prove with it to the next server that they were here."""
+    """Secret with which pages identify themselves to the next server."""
 
     def __post_init__(self) -> None:
         utf8_path(self.path)
@@ -152,7 +152,7 @@ class Hub:
         self._tasks = [asyncio.ensure_future(self._work()), asyncio.ensure_future(self._watch())]
 
     async def stop(self) -> None:
-        """End the engine; drafts stay where something is unsaved."""
+        """End the engine; drafts with unsaved changes are kept."""
         with contextlib.suppress(asyncio.TimeoutError):
             await asyncio.wait_for(asyncio.gather(*(text.publish() for text in self.texts)), 5)
         left = {task for task in (*self._tasks, *self._sending) if not task.done()}
@@ -240,7 +240,7 @@ class Hub:
     # What pages say.
 
     async def hear(self, tab: Tab, message: dict[str, Any]) -> None:
-        """Take a message of a page."""
+        """Handle a message of a page."""
         kind, number = message.get("kind"), message.get("id", 0)
         if kind in OF_TEXTS:
             name = message.get("file", "")
@@ -309,22 +309,22 @@ class Hub:
         self._to(tab, {"kind": "opened", "id": number, "url": url})
 
     def refuse(self, tab: Tab | None, number: Any, error: str) -> None:
-        """Tell a page that a request is not carried out, by the id that it gave."""
+        """Report to a page that a request, given by id, was refused."""
         self._to(tab, {"kind": "refused", "id": number, "error": error})
 
     # Texts.
 
     def readers(self) -> list[Reader]:
-        """All pages, which a text tells of its changes."""
+        """All pages, to be notified of changes of a text."""
         return list(self.tabs.values())
 
     def text_changed(self, text: SharedText) -> None:
-        """The engine is to have a text."""
+        """Send a text to the engine."""
         kind = "text" if text is self.main else "text_beside"
         self._queue(_Job(kind, 0, {"name": text.name}))
 
     def later(self, work: Coroutine[Any, Any, None]) -> None:
-        """Work that nobody waits for."""
+        """Start a background task."""
         task = asyncio.ensure_future(work)
         self._sending.add(task)
         task.add_done_callback(self._sending.discard)
@@ -449,7 +449,7 @@ class Hub:
         version = self.main.version
         if self.engine.pid is None:
             if self._failed[0] == version and self._failed[1] >= 2:
-                raise EngineLostError("this text made the engine fail twice: change it to go on")
+                raise EngineLostError("this text made the engine fail twice: change it to continue")
             await self._begin(job)
         request = job.request
         if job.kind in OWN:
@@ -515,7 +515,7 @@ class Hub:
 
 
 def _stamp(name: str) -> tuple[int, ...]:
-    """What changes with a file on disk; empty while it is not there."""
+    """A stamp that changes with a file on disk; empty if the file is missing."""
     try:
         status = Path(name).stat()
     except OSError:

@@ -31,11 +31,11 @@ class _Message:
 
 
 class Outbox:
-    """Messages to one page, sent one after the other by a task of their own.
+    """Messages to one page, sent in order by a separate task.
 
-    Of messages with the same key only the newest is sent, and it is built when it is sent. A page
-    that takes nothing for :data:`PATIENCE` seconds, or has more than :data:`MOST_BYTES` waiting, is
-    dropped: what waited is forgotten, and the page begins anew when it is back.
+    Among messages with the same key only the newest is sent, built at that time. A page that
+    receives nothing for :data:`PATIENCE` seconds, or has more than :data:`MOST_BYTES` queued, is
+    disconnected: its queue is cleared, and it starts again when it reconnects.
 
     Parameters
     ----------
@@ -70,15 +70,15 @@ class Outbox:
 
     @property
     def behind(self) -> bool:
-        """True while more than :data:`BEHIND` bytes, or :data:`BEHIND_MESSAGES`, are not taken."""
+        """True while more than :data:`BEHIND` bytes, or :data:`BEHIND_MESSAGES`, are queued."""
         return self._bytes + self._under_way > BEHIND or len(self._waiting) > BEHIND_MESSAGES
 
     def put(self, data: str | bytes) -> None:
-        """Sends a message after those before it."""
+        """Queue a message."""
         self._add(_Message(lambda: data, len(data), ""))
 
     def put_newest(self, key: str, make: Callable[[], str]) -> None:
-        """Sends what ``make`` returns once its turn comes; one that waits under that key is it."""
+        """Queue a message that ``make`` builds at sending, unless one is queued under the key."""
         old = self._newest.get(key)
         if old is not None:
             old.make = make
@@ -88,7 +88,7 @@ class Outbox:
         self._add(message)
 
     def close(self) -> None:
-        """Forgets what waits; nothing is sent any more."""
+        """Clear the queue; nothing more is sent."""
         self._closed = True
         self._waiting.clear()
         self._newest.clear()

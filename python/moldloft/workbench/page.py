@@ -13,7 +13,7 @@ _NO_PAGE = (
     "newer), or install a released wheel"
 )
 
-#: What is missing for pages that compute by themselves.
+#: Message if the engine for pages is missing.
 NO_ENGINE = (
     "the engine for pages is not built: run `make engine` in the clone (it needs the target "
     "wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`), or install a released "
@@ -42,9 +42,9 @@ def page_files() -> dict[str, bytes]:
 
 
 def page_parts() -> tuple[str, str, str]:
-    """The page for one file: its frame, its script and its style.
+    """The page for one file: its frame, script and style.
 
-    A file that is opened from the disk loads no other, so that all chunks are in the script.
+    A page opened from disk cannot load other files, so the script contains all chunks.
     """
     index = page_files()["/index.html"].decode()
     root = _FOLDER / "page"

@@ -21,7 +21,7 @@ def _list() -> Path:
 
 
 def recent_models() -> list[Path]:
-    """The models that were opened last and are still there, the newest first."""
+    """The recently opened models that still exist, the newest first."""
     with contextlib.suppress(ValueError, FileError, OSError):
         found = json.loads(read_bytes(_list()))
         if isinstance(found, list):
@@ -31,7 +31,7 @@ def recent_models() -> list[Path]:
 
 
 def note_opened(path: Path) -> None:
-    """Put a model first among those that were opened last.
+    """Put a model first among the recently opened ones.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def answer_frames(
     *,
     files: bool = False,
 ) -> None:
-    """Answer the parent until it goes.
+    """Serve requests of the parent process until it ends.
 
     Parameters
     ----------

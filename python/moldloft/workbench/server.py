@@ -263,7 +263,7 @@ class Server:
         return response
 
     async def _challenged(self, request: Request) -> Response:
-        """What a page of the last server is to prove itself with; nothing to one that is known."""
+        """The challenge for a page of the previous server; empty for a known page."""
         known = self._known(request.cookies)
         return Response(
             "" if known else self._challenge, headers=self._headers(Cache_Control="no-store")

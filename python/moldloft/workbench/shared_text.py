@@ -28,28 +28,28 @@ class Reader(Protocol):
 
     @property
     def outbox(self) -> Outbox:
-        """What it is sent."""
+        """Its queue of messages."""
 
     @property
     def known(self) -> dict[str, int]:
-        """The versions of texts that it has, once what waits is sent; by their names."""
+        """The versions of texts, by name, that the page has once its queue is sent."""
 
 
 class TextOwner(Protocol):
-    """What a text asks of the hub."""
+    """Interface of the hub for a text."""
 
     def readers(self) -> list[Reader]:
         """All pages."""
 
     def text_changed(self, text: SharedText) -> None:
-        """The engine is to know of a change."""
+        """Notify the engine of a change."""
 
     def later(self, work: Coroutine[Any, Any, None]) -> None:
         """Work that nobody waits for."""
 
 
 class SharedText:
-    """A text of the hub: a change counts once it is here, and pages hear so when it is on disk.
+    """A text of the hub: a change is applied on arrival, and confirmed to pages when it is on disk.
 
     Parameters
     ----------
@@ -92,11 +92,11 @@ class SharedText:
         return self.text != self.stored.text
 
     def close(self) -> None:
-        """Releases the draft, which stays when something is unsaved."""
+        """Release the draft; it is kept if there are unsaved changes."""
         self.draft.close(keep=self.dirty)
 
     def state(self, reader: Reader) -> dict[str, Any]:
-        """What a page begins with, and has from then on."""
+        """Send a page the text, and changes from then on."""
         reader.known[self.name] = self.version
         return {
             "text": self.text,
@@ -143,7 +143,7 @@ class SharedText:
     # What pages say.
 
     async def hear(self, reader: Reader, message: dict[str, Any]) -> None:
-        """Takes a message of a page: ``push``, ``pull``, ``save`` or ``revert``."""
+        """Handle a message of a page: ``push``, ``pull``, ``save`` or ``revert``."""
         kind = message["kind"]
         if kind == "push":
             self._push(reader, message)
@@ -196,10 +196,10 @@ class SharedText:
         self._owner.text_changed(self)
 
     async def publish(self) -> None:
-        """Brings the newest text to disk, then to the pages; meanwhile the engine works on.
+        """Write the newest text to disk, then send it to the pages, while the engine continues.
 
-        Changes that come meanwhile go with the next draft. When it cannot be written, the text
-        counts all the same, and the answers of pushes say so.
+        Changes that arrive meanwhile are part of the next draft. If writing fails, the text is
+        still valid, and the answers to pushes report the failure.
         """
         async with self._disk:
             version = self.version
@@ -255,7 +255,7 @@ class SharedText:
         self._tell_saved(but=reader.number)
 
     async def look(self) -> None:
-        """Follows the file on disk, if it has changed."""
+        """Read the file on disk, if it has changed."""
         try:
             status = self.path.stat()
             new = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

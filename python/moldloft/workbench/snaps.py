@@ -42,7 +42,7 @@ class Axes:
 
     @property
     def units(self) -> dict[str, list[float]]:
-        """A unit along each axis, as it is on the page."""
+        """The image of a unit along each axis on the page."""
         found = {}
         for letter, angle, scale in zip(self.letters, self.angles, self.scale, strict=False):
             a = math.radians(angle)
@@ -61,10 +61,10 @@ def snapped(
 ) -> dict[str, Any]:
     """The snap for a pointer position: the nearest of the strongest kind within reach.
 
-    In this order: a point; the crossing of a direction through the start with one through any
-    other point, or of two through woken ones; the middle of a line; a line; a direction through the
-    start or a woken point. Directions are the axes, the lines that end at a woken point, through
-    that point as extensions, and through the start as parallels.
+    In this order: a point; the crossing of a direction through the start with one through another
+    point, or of two through activated points; the middle of a line; a line; a direction through the
+    start or an activated point. Directions are the axes, the lines that end at an activated point,
+    through that point as extensions, and through the start as parallels.
 
     Returns
     -------

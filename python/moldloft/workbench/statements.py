@@ -65,7 +65,7 @@ class Statement:
 
 
 def statements(text: str) -> list[Statement]:
-    """The commands of a text, in order, without those that cannot be read.
+    """The commands of a text, in order, without invalid ones.
 
     >>> [s.verb for s in statements("POI 1 0 0; LINE 1 2 ! LINE 3 4")]
     ['POINT', 'LINE']
@@ -77,7 +77,7 @@ def statements(text: str) -> list[Statement]:
 
 
 def block(every: Sequence[Statement], name: str) -> list[Statement]:
-    """The statements that are run while an object is the active one, its SKETCH among them.
+    """The statements that are run while an object is active, including its SKETCH.
 
     >>> found = statements("SKETCH A; POINT 1 0 0; SKETCH B; POINT 1 2 3; USING A; LINE 1 2")
     >>> [s.word(0) for s in block(found, "a")]
@@ -93,7 +93,10 @@ def block(every: Sequence[Statement], name: str) -> list[Statement]:
 
 
 def place(own: Sequence[Statement]) -> Statement | None:
-    """The statement after which more is drawn: the last one before the object's body is made."""
+    """The statement after which new drawing commands are inserted.
+
+    The last one before the object's body is made.
+    """
     last = None
     for s in own:
         if s.verb in _SOLID:

@@ -59,26 +59,26 @@ class _Run:
 
     process: subprocess.Popen[bytes]
     said: IO[bytes]
-    """What it says of errors."""
+    """Its error output."""
     verb: str
     began: float
     before: int
-    """The cases that the store had."""
+    """Cases in the store at the start."""
     stopped: bool = False
 
     @property
     def running(self) -> bool:
-        """True until it has ended."""
+        """True while the study is running."""
         return self.process.poll() is None
 
     def words(self) -> str:
-        """The end of what it has said."""
+        """The last lines of its output."""
         size = self.said.seek(0, os.SEEK_END)
         self.said.seek(max(size - LONGEST_WORDS, 0))
         return self.said.read().decode("utf-8", "replace").strip()
 
     def end(self) -> None:
-        """End it; what it has evaluated is in the store."""
+        """Stop the study; evaluated cases are in the store."""
         self.stopped = self.stopped or self.running
         self.process.terminate()
         try:
@@ -103,7 +103,7 @@ class Studies:
         self._table: tuple[object, Results] | None = None
 
     async def answer(self, message: Mapping[str, Any], *, dirty: bool) -> dict[str, Any]:
-        """The answer to a page.
+        """The answer to a request of a page.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ class Studies:
         return (self.path.parent / name).with_suffix(".sqlite")
 
     def listed(self) -> list[dict[str, Any]]:
-        """All studies of the model with what they do."""
+        """All studies of the model with their status."""
         from moldloft.study import read
 
         found = []
@@ -261,7 +261,7 @@ class Studies:
             return store.progress()
 
     def state(self, name: str) -> dict[str, Any]:
-        """How far a study is."""
+        """The progress of a study."""
         planned, counts = self._counted(name)
         run = self._runs.get(name)
         running = run is not None and run.running
@@ -362,7 +362,7 @@ def _points(
 
 
 def _summary(study: Study) -> dict[str, Any]:
-    """What a page shows of a definition."""
+    """Summary of a definition for a page."""
     goal = study.goal
     return {
         "inputs": [each.name for each in study.inputs],
@@ -370,7 +370,7 @@ def _summary(study: Study) -> dict[str, Any]:
         "plan": study.plan.method,
         "goal": [o.output for o in goal.objectives] if goal else [],
         "method": goal.method if goal else "",
-        # What runs besides Moldloft is said before it runs.
+        # Other programs that a study runs are stated before it starts.
         "programs": [
             each.python or " ".join(word for command in each.command for word in command)
             for each in study.analyses

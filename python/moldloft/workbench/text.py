@@ -15,7 +15,7 @@ LARGEST = 16 << 20
 
 
 def applied(text: str, changes: Sequence[Any]) -> str:
-    r"""The text after a change set: lengths that are kept, and ``[removed, line, line ...]``.
+    r"""The text after a change set: lengths to keep, and ``[removed, line, line ...]``.
 
     >>> applied("one two", [4, [3, "x", "y"]])
     'one x\ny'
@@ -103,7 +103,7 @@ def decoded(data: bytes) -> Stored:
 
 
 def encoded(text: str, like: Stored) -> bytes:
-    """The bytes of a text in the manner of a file."""
+    """The bytes of a text, with the encoding and line ends of a file."""
     text = text.replace("\n", "\r\n") if like.crlf else text
     try:
         return text.encode(like.encoding)

@@ -153,7 +153,7 @@ impl Document {
         known: &mut Wholes,
     ) -> Result<Value<Dual4>, Vec<Diagnostic>> {
         let Some((group, number)) = self.whole_name(text) else {
-            // What failed with derivatives alone is known here only: the reason goes along.
+            // The reason why derivatives alone failed is known only here, so it is passed on.
             return self.eval_in(evaluation, text).map_err(|mut found| {
                 if found.iter().any(|d| d.id == "blocked") {
                     found.extend(self.failures(evaluation));
@@ -276,7 +276,7 @@ impl Document {
         let seed =
             |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
         self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
-        // What this run did not come to would look like what the model does not have.
+        // Values that this run did not reach would look like missing ones.
         let outcome = match self.budget().poll() {
             Err(spent) => Err(vec![unplaced(&CallError::from(spent))]),
             Ok(()) => each(self, &mut evaluation),

@@ -28,7 +28,7 @@ pub struct WeightedOutput {
     pub weights: Vec<Vec<f64>>,
 }
 
-/// How a gradient is found.
+/// Method of computing a gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GradientMode {
     /// As takes less time.
@@ -43,9 +43,9 @@ pub enum GradientMode {
 /// The gradients of some sums.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradients {
-    /// For each sum its derivatives by the inputs.
+    /// For each sum, its derivatives with respect to the inputs.
     pub rows: Vec<Vec<f64>>,
-    /// The outputs that forward mode was needed for.
+    /// The outputs that required forward mode.
     pub forward: Vec<String>,
 }
 
@@ -135,7 +135,8 @@ impl Document {
         Ok(rows)
     }
 
-    /// The changes of outputs, all numbers of each, when these inputs change at these rates.
+    /// Directional derivatives of outputs (all numbers of each) when the inputs change at these
+    /// rates.
     ///
     /// # Errors
     /// What is wrong with an output or a name.
@@ -178,8 +179,9 @@ impl Document {
         }
     }
 
-    /// The names of the numbers of the text by which the model can be differentiated, in the order of declaration: literals
-    /// in the arguments of objects, without counts and other whole numbers.
+    /// The names of the literals with respect to which the model can be differentiated, in the
+    /// order of declaration: numbers in the arguments of objects, without counts and other
+    /// integers.
     pub fn literals(&self) -> Vec<String> {
         let mut found = Vec::new();
         for object in self.plain.graph.objects() {
@@ -194,7 +196,7 @@ impl Document {
         found
     }
 
-    /// True for a number that stands in the text itself, not in a file that it loads.
+    /// True for a literal of the text itself, not of a file that it loads.
     fn is_own_literal(&self, name: &str) -> bool {
         match self.literal(name, 0.0).map(|edit| edit.place) {
             Ok(LiteralPlace::Program((module, _))) => module == 0,
@@ -203,7 +205,8 @@ impl Document {
         }
     }
 
-    /// A number that is another one when derivatives may be others: after changes of values, parameters or the text.
+    /// A version number that changes whenever derivatives may change: with values, parameters or
+    /// the text.
     pub fn state(&self) -> u64 {
         use std::hash::{DefaultHasher, Hash, Hasher};
         let mut hasher = DefaultHasher::new();
@@ -216,7 +219,7 @@ impl Document {
 }
 
 impl WeightedOutput {
-    /// The weights of an output of so many numbers.
+    /// The weights of an output with `count` numbers.
     ///
     /// # Errors
     /// When there are more or fewer.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct HydrostaticsOptions {
     /// Height z of the water.
     pub level: f64,
-    /// True for a mesh of one side of y = 0 that stands for both.
+    /// True for a mesh of one side of y = 0 that represents both.
     pub mirrored: bool,
     /// Mass per volume of the water.
     pub density: f64,
@@ -50,8 +50,9 @@ impl Document {
         }
     }
 
-    /// Refuses a model whose skin is open below a level, or shows both sides of a mirror plane: no body
-    /// displaces water. Where a part is allowed, an open skin is a warning, the result.
+    /// Refuses a model whose skin is open below a level or includes both sides of a mirror plane,
+    /// since no body displaces water. If partial figures are allowed, returns a warning for an open
+    /// skin.
     ///
     /// # Errors
     /// As [`Document::hydrostatics`].
@@ -94,7 +95,7 @@ impl Document {
         Ok(bodied)
     }
 
-    /// The patches of the skin that are measured on their panels; see [`Skin::on_panels`].
+    /// The patches of the skin measured by their panels; see [`Skin::on_panels`].
     ///
     /// # Errors
     /// If the panels exceed the limit, or a surface is not finite.
@@ -118,8 +119,8 @@ impl Document {
             let message = format!(
                 "`{name}` turns over itself, at {place}: areas count the fold more than once"
             );
-            let advice =
-                "move its sides apart there, run them at other rates, or cut it before the fold";
+            let advice = "move its sides apart there, change their parametrisation, or cut it before the \
+                fold";
             let fault = Diagnostic::warning("folded-surface", message).help(advice).object(name);
             let object = self.graph().find(name).and_then(|key| self.graph().get(key));
             match object.and_then(|o| self.declared_at(&self.plain, o)) {

@@ -109,8 +109,8 @@ impl Document {
         Ok((mesh, others))
     }
 
-    /// Runs the model on the tape of this thread and adds the outputs; the names of those that have no reverse mode, none
-    /// where it is the model that has none.
+    /// Runs the model on the tape of this thread and adds the outputs; returns the names of those
+    /// without reverse mode; empty if the model itself has no reverse mode.
     fn recorded(
         &mut self,
         seeds: &Seeds,
@@ -156,7 +156,7 @@ impl Document {
         let seed =
             |name: &str, x: Rev| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
         self.evaluate(&mut evaluation, &seed, &seeds.objects, false);
-        // What this run did not come to would look like what has no reverse mode.
+        // Outputs that this run did not reach would look like outputs without reverse mode.
         self.budget().poll().map_err(|spent| vec![unplaced(&CallError::from(spent))])?;
         Ok(DerivativeTape::is_sound().then_some(evaluation))
     }

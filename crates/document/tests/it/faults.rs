@@ -225,7 +225,7 @@ fn a_derivative_that_is_refused_says_why() {
     let mut document = open(&text);
     let faults = document.derivatives(&["c(0.3)".into()], &["b".into()]).unwrap_err();
     assert!(faults.iter().any(|d| d.id == "no-derivative"), "{faults:?}");
-    let reason = faults.iter().find(|d| d.message.contains("derivatives of a sum of lengths"));
+    let reason = faults.iter().find(|d| d.message.contains("are available for a sum of lengths"));
     let reason = reason.unwrap_or_else(|| panic!("{faults:?}"));
     assert!(reason.message.starts_with("`c`"), "{reason:?}");
     // The points that change are where it is refused.

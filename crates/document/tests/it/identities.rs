@@ -545,7 +545,7 @@ fn equal_numbers_join_nothing_but_are_reported() {
     assert!(only.is_error() && &*only.id == "edges-not-joined", "{only:?}");
     assert_eq!(
         only.message,
-        "edge v = 0 of `top` and edge v = 1 of `low` lie in one place along 8 panels (4.000000 long, from \
+        "edge v = 0 of `top` and edge v = 1 of `low` coincide along 8 panels (4.000000 long, from \
          (0, 0, 0)) but are not joined"
     );
     // The line that it states joins them.

@@ -269,8 +269,8 @@ fn bad_input_is_told() {
             "out-of-range",
             "between 0 and 1",
         ),
-        ("set s = set(cylinder(axis, 1)); float v = volume(s);", "unbounded-set", "give the box"),
-        ("SetBody b(everything());", "unbounded-set", "give the box"),
+        ("set s = set(cylinder(axis, 1)); float v = volume(s);", "unbounded-set", "give a box"),
+        ("SetBody b(everything());", "unbounded-set", "give a box"),
         ("SetBody b(nothing());", "empty-set", "empty"),
         (
             "float v = volume(set(sphere({0,0,0}, 1)) & set(sphere({9,0,0}, 1)));",

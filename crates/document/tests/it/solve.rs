@@ -157,7 +157,11 @@ fn what_has_no_solution_says_so() {
         ("SolveSet s({x, x}, {x - 2, y});", "not-an-unknown", "an unknown already"),
         ("SolveSet s({x}, {P});", "wrong-class", "expected a number"),
         ("SolveSet s({x}, {x - 2}, steps = 0);", "out-of-range", "`steps`"),
-        ("SolveSet s({x}, {x^3 - 1e3}, steps = 2);", "unsolved", "2 steps do not lead"),
+        (
+            "SolveSet s({x}, {x^3 - 1e3}, steps = 2);",
+            "unsolved",
+            "no solution was found in 2 steps",
+        ),
         ("SolveSet s({x}, {(0 - x)^0.5});", "not-finite", ""),
         ("for (i = 1:2) { SolveSet s({x}, {x - i}); }", "misplaced-param", "file level"),
         ("SolveSet s({x}, {x - 2}); SolveSet t({x}, {x - 3});", "not-an-unknown", "already"),

@@ -522,10 +522,10 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
     let of = if surfaces.is_empty() { format!("`{name}`") } else { format!("`{surfaces}`") };
     let what = match fault.kind {
         FacetFaultKind::NotClosed => "has facets that do not close",
-        FacetFaultKind::Seam => "closes around its axis, and no seam fits on it",
-        FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
-        FacetFaultKind::Vertex => "meet in a corner that is not found",
-        FacetFaultKind::Surface => "is none of the surfaces that formats have",
+        FacetFaultKind::Seam => "closes around its axis, and no seam avoids its vertices",
+        FacetFaultKind::Edge => "meet or touch along an edge that could not be computed",
+        FacetFaultKind::Vertex => "meet in a corner that could not be computed",
+        FacetFaultKind::Surface => "is not a surface of a type that formats have",
         FacetFaultKind::Many => "takes tens of thousands of patches for this tolerance, some",
         FacetFaultKind::Patch => "has a kink, or turns too fast for patches,",
     };

@@ -72,7 +72,7 @@ fn unknown(name: &str, p: Vec3) -> Diagnostic {
     let place = format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z);
     Diagnostic::error(
         "cannot-write",
-        format!("a line of `{name}` has no two sheets that meet in it near {place}"),
+        format!("a wire of `{name}` is not the intersection of two sheets near {place}"),
     )
     .help("write it as obj or vtp, or hide it")
 }

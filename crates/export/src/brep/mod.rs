@@ -179,7 +179,10 @@ pub(crate) fn fitted(brep: &Brep, document: &Document) -> Option<Diagnostic> {
     };
     let unit = length_unit(document).0;
     let message = format!("{shown}{more}: fitted within {:.2e} {unit}", brep.error());
-    Some(Diagnostic::remark("fitted-surfaces", message).help("`tolerance` asks for less, or more"))
+    Some(
+        Diagnostic::remark("fitted-surfaces", message)
+            .help("`tolerance` changes the accuracy of fits"),
+    )
 }
 
 /// Plane faces that are thinner than fits are exact: which of their edges come first is not known there, and programs

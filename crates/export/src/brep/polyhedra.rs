@@ -27,7 +27,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
             "curved-body",
             format!("`{name}` has curved faces that exist only as triangles"),
         )
-        .found(format!("{alone} triangles in planes of their own"))
+        .found(format!("{alone} triangles that share their plane with no other"))
         .help("write it as stl, 3mf or obj, or hide it; plane-faced sets, sketches and surfaces are written")
         .into());
     }

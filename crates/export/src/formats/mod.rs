@@ -64,7 +64,7 @@ pub static FORMATS: &[Format] = &[
     model_file::FORMAT,
 ];
 
-/// The format of that name or alias, in small letters or large.
+/// The format of that name or alias, ignoring case.
 ///
 /// # Errors
 /// No such format, with the nearest name; `dat`, which files of two codes end in.

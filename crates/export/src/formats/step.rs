@@ -29,12 +29,10 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
             format!("`{}` is written as {count} triangles, without surfaces", part.name),
         )
         .found(why.message.clone())
-        .help(
-            "programs without AP242 tessellation pass it over; 3mf and stl hold the same triangles",
-        );
+        .help("programs without AP242 tessellation ignore it; 3mf and stl hold the same triangles");
         match part.error {
             Some(error) => {
-                remark.note(format!("their middles are up to {error:.2e} from the shape"))
+                remark.note(format!("their centres are up to {error:.2e} from the shape"))
             }
             None => remark,
         }

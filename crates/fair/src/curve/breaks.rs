@@ -9,27 +9,27 @@ const OUTSTANDING: f64 = 8.0;
 /// Minimum number of jumps that form a pattern.
 const FEWEST: usize = 3;
 
-/// Something that noise does not explain.
+/// An irregularity that noise does not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
     /// The polygon turns at this control point: probably an intended break.
     Corner {
         /// The control point.
         index: usize,
-        /// The change of the polygon's direction, per unit of the parameter.
+        /// The change of the polygon's direction per unit of the parameter.
         turn: Vec3<f64>,
     },
-    /// This control point alone is off: probably a wrong digit.
+    /// This control point alone is displaced: probably a wrong digit.
     Outlier {
         /// The control point.
         index: usize,
-        /// Error: the point minus this agrees with its neighbours.
+        /// The displacement: the point minus this agrees with its neighbours.
         error: Vec3<f64>,
     },
 }
 
 impl Finding {
-    /// The control point that it is about.
+    /// The control point of the finding.
     pub fn index(&self) -> usize {
         match *self {
             Finding::Corner { index, .. } | Finding::Outlier { index, .. } => index,
@@ -158,8 +158,8 @@ fn pattern(
         .collect()
 }
 
-/// The job with corners as marks, and with the radius of a wrong point extended by its error, so
-/// that it can move to its neighbours instead of these to it.
+/// The job with corners as marks, and with the radius of a displaced point extended by its error,
+/// so that the point can move to its neighbours and these stay.
 pub fn with_findings(job: &Job, found: &[Finding]) -> Job {
     let mut job = job.clone();
     for finding in found {

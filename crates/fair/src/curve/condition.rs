@@ -19,7 +19,7 @@ pub(crate) const AXES: [Vec3<f64>; 3] = [
 ];
 
 impl Condition {
-    /// The left side at `points`.
+    /// The left side of the equation at `points`.
     pub fn at(&self, points: &[Vec3<f64>]) -> f64 {
         self.entries.iter().map(|(i, f)| f.dot(points[*i])).sum()
     }
@@ -51,7 +51,7 @@ impl Condition {
         [a, b].into_iter().map(|axis| Self { entries: entry(axis), value: 0.0 }).collect()
     }
 
-    /// The sum of all control points stays: the centroid of a closed uniform curve.
+    /// The sum of all control points is preserved: the centroid of a closed uniform curve.
     pub fn centroid(points: &[Vec3<f64>]) -> Vec<Self> {
         AXES.iter()
             .map(|&a| {
@@ -64,14 +64,14 @@ impl Condition {
     }
 
     /// The area that the curve sweeps round the origin in the plane of `normal` keeps its value to
-    /// first order: area is quadratic in the control points, its slope is taken at `points`.
+    /// first order: area is quadratic in the control points, its gradient is taken at `points`.
     pub fn area(space: &Space, points: &[Vec3<f64>], normal: Vec3<f64>) -> Self {
         // d/dp and d/dp' of (n . (p x p')) / 2.
         Self::integral(space, points, |p, d| (d.cross(normal) * 0.5, normal.cross(p) * 0.5))
     }
 
-    /// The volume that the curve sweeps when it turns about an axis through the origin keeps its
-    /// value to first order: pi times the integral of r^2 along the axis, r the distance from it.
+    /// The volume of revolution of the curve about an axis through the origin is preserved to first
+    /// order: pi times the integral of r^2 along the axis, with r the distance from it.
     pub fn revolution(space: &Space, points: &[Vec3<f64>], axis: Vec3<f64>) -> Self {
         let axis = axis.normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0));
         Self::integral(space, points, |p, d| {
@@ -126,9 +126,9 @@ impl Condition {
     }
 
     /// Continuous tangent direction and curvature with a neighbour at the end (`at_end`) or the
-    /// start: six conditions on the first and second derivative there; the end's position is not
-    /// among them. `other` are the neighbour's first and second derivative at the common point,
-    /// with respect to a parameter of the same direction. See [`joined`].
+    /// start: six conditions on the first and second derivative at the end, none on its position.
+    /// `other` are the neighbour's first and second derivative at the common point, with respect to
+    /// a parameter of the same direction. See [`joined`].
     ///
     /// # Errors
     /// As [`joined`].
@@ -148,9 +148,10 @@ impl Condition {
 
     /// The curve meets a neighbour with continuous curvature at its clamped end: `rows` are the
     /// neighbour's last three Bézier points, from far to near (the near one is the common point),
-    /// and b1 = p + beta (p - a1), b2 - 2 b1 + p = beta^2 (p - 2 a1 + a2) + gamma (b1 - p), where
-    /// the own first three Bézier points are p, b1, b2. Linear once beta and gamma are fixed, which
-    /// are read off the original. `at_end` says at which end of the own curve.
+    /// and the conditions are b1 = p + beta (p - a1), b2 - 2 b1 + p = beta^2 (p - 2 a1 + a2) +
+    /// gamma (b1 - p), where p, b1, b2 are the curve's first three Bézier points. The conditions
+    /// are linear for fixed beta and gamma, which are taken from the original. `at_end` says at
+    /// which end of the own curve.
     ///
     /// # Errors
     /// [`FairError::Singular`] when the neighbour's Bézier points give no direction.
@@ -210,8 +211,8 @@ pub(crate) fn end_jet<T: Real>(space: &Space, points: &[Vec3<T>], at_end: bool) 
 }
 
 /// The derivatives x' and x'' nearest to the `own` ones that continue a neighbour's n' and n'' with
-/// the same tangent direction and curvature: x' = beta n' and x'' = beta^2 n'' + gamma n', with beta
-/// and gamma read off the own ones, so that speed and its change are kept.
+/// the same tangent direction and curvature: x' = beta n' and x'' = beta^2 n'' + gamma n', with
+/// beta and gamma taken from the `own` ones, so that speed and its rate of change are preserved.
 ///
 /// # Errors
 /// [`FairError::Singular`] if the neighbour has a zero tangent there, [`FairError::TurnsBack`] if

@@ -5,22 +5,22 @@ use crate::{FairError, Fit, ParameterSpacing, Space, fit, fit_with, parameters};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
-/// A spline through points, with corners where they are meant.
+/// A spline through points, with corners at the intended breaks.
 #[derive(Clone, Debug)]
 pub struct FitWithCorners<T> {
-    /// The fitted spline; its real parts.
+    /// The fitted spline (real parts).
     pub fit: Fit,
     /// Its control points.
     pub points: Vec<Vec3<T>>,
-    /// Control points that are breaks; they coincide with the data points of the breaks.
+    /// Control points at the breaks; they coincide with the data points there.
     pub marks: Vec<usize>,
-    /// The parameter of each given point, in their order.
+    /// The parameter of each given point, in the order of the points.
     pub at: Vec<f64>,
 }
 
-/// The interpolating spline that is only continuous at the points `breaks` (from 0): knots of
-/// multiplicity `degree` separate the pieces, each of which interpolates its own points alone. A
-/// piece of fewer than `degree + 1` points is the polynomial through them.
+/// The interpolating spline that is continuous but not smooth at the points `breaks` (from 0):
+/// knots of multiplicity `degree` separate the pieces, each of which interpolates its own points
+/// alone. A piece of fewer than `degree + 1` points is the polynomial through them.
 ///
 /// A closed curve with a break becomes an open one that begins and ends at its first break: its
 /// parameters count from there. Without breaks this is [`crate::interpolate`]. Parameters are those of

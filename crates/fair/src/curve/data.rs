@@ -47,15 +47,16 @@ pub struct DataOptions {
     pub conditions: Vec<Condition>,
     /// Shape conditions, resolved for these data by [`Data::shaped`].
     pub shape: ShapeConstraints,
-    /// True to allow more inflections than the curve of least bending within the same tolerances
-    /// has.
+    /// True to allow inflections beyond those of the curve of least bending within the same
+    /// tolerances.
     pub bends: bool,
     /// Certified gap, relative to the measure.
     pub accuracy: f64,
 }
 
 impl DataOptions {
-    /// A measure and a goal without conditions, to a relative gap of 1e-9; inflections as they come.
+    /// The defaults for a measure and a goal: no conditions, a relative gap of 1e-9, inflections
+    /// not limited.
     pub fn of(measure: Measure, goal: Goal) -> Self {
         let (conditions, shape) = (Vec::new(), ShapeConstraints::default());
         Self { measure, goal, conditions, shape, bends: true, accuracy: 1e-9 }
@@ -77,36 +78,37 @@ pub struct DataFit {
     pub original: Vec<Vec3<f64>>,
     /// The distance of each datum from the curve at its parameter.
     pub residuals: Vec<f64>,
-    /// The mean of the squared residuals over the tolerances, over 1/3.
+    /// Three times the mean of the squared residuals over the tolerances; 1 for noise that fills
+    /// the tolerances evenly.
     pub used: f64,
-    /// The measure of the curve, and the optimality gap among the curves within the tolerances
-    /// whose residuals are no larger in the sum of squares.
+    /// The measure of the curve and its optimality gap, among the curves within the tolerances
+    /// whose sum of squared residuals is no larger.
     pub certificate: Certificate,
-    /// The least of the measure within the tolerances.
+    /// The minimum of the measure within the tolerances.
     pub least: f64,
     /// Squares taken by the fairest curve, counted as in [`Self::used`]; 3 if all its tolerances
     /// are reached, 0 if it was not computed.
     pub fairest_used: f64,
-    /// The weight of the data beside the measure.
+    /// The weight of the data relative to the measure.
     pub weight: f64,
     /// Newton steps taken.
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
-    /// Inflections that the goal would have added to those of the interpolating curve: if no curve
-    /// without them was found, that curve is the result, unless there are conditions.
+    /// Inflections that the goal would add to those of the interpolating curve. If no curve without
+    /// them is found, the interpolating curve is the result, unless there are conditions.
     pub bends: usize,
     /// Arcs among the shape conditions.
     pub arcs: Vec<FoundArc>,
-    /// How far the curve was moved from the goal's own (0) towards the fairest (1; up to 2 with
-    /// chord lengths as parameters) to avoid further turns.
+    /// Distance that the curve was moved from the goal's own curve (0) towards the fairest (1; up
+    /// to 2 with chord lengths as parameters) to avoid additional turns.
     pub fairer: f64,
 }
 
 /// Data in which coincident neighbours are merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
-    /// The data that are left.
+    /// The remaining data.
     pub points: Vec<Vec3<f64>>,
     /// Their tolerances.
     pub radii: Vec<f64>,
@@ -117,7 +119,7 @@ pub struct Merged {
 /// Distance of neighbours, relative to the extent, within which they coincide.
 const TOGETHER: f64 = 1e-6;
 
-/// Merges coincident neighbours: to their mean, with a tolerance within all of theirs.
+/// Replaces coincident neighbours by their mean, with a tolerance within all of theirs.
 ///
 /// # Errors
 /// [`FairError::Coincident`] when no point is within the tolerances of both.
@@ -163,7 +165,7 @@ impl Data {
         self.parts_at(options, job, &job.points)
     }
 
-    /// The same with the shape made linear at a curve.
+    /// `parts_at` with the shape made linear at a curve.
     fn parts_at<'a>(
         &self,
         options: &DataOptions,
@@ -338,7 +340,7 @@ impl Data {
         pull
     }
 
-    /// The distances of the data from a curve at their parameters.
+    /// The distances of the data from a curve at the data's parameters.
     pub fn residuals(&self, control: &[Vec3<f64>]) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for (k, owner) in self.layout.owner.iter().enumerate() {
@@ -363,7 +365,7 @@ impl Data {
 }
 
 impl InterpolationSpace {
-    /// The control point that a mark is.
+    /// The control point of a mark.
     pub fn control_of(&self, site: usize) -> usize {
         let (columns, factors) = self.rows.row(site);
         let largest = (0..factors.len()).max_by(|&a, &b| factors[a].total_cmp(&factors[b]));

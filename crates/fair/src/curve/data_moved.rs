@@ -49,10 +49,10 @@ impl<T: Real> DataNumbers<'_, T> {
     }
 }
 
-/// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
-/// parts are those of the data. Derivatives follow from
-/// the conditions of optimality by the implicit function theorem, through knots and parameters
-/// too, where there are no conditions but those of the ends and inflections are not held back (`bends`).
+/// As `fair_data`, for data, tolerances (one per datum) and parameters that carry derivatives,
+/// whose real parts are those of the data. Derivatives follow from the optimality conditions by the
+/// implicit function theorem, including those of knots and parameters, provided that the only
+/// conditions are those of the ends and inflections are not limited (`bends`).
 ///
 /// # Errors
 /// As [`fair_data`]; [`FairError::NoDerivative`] for the goal `nearest`, and for sums of lengths on knots
@@ -67,7 +67,7 @@ pub fn fair_data_with<T: Real>(
     fair_data_under(data, options, DataNumbers { points, tolerances, at, demands: &[] })
 }
 
-/// The same with the demands that the conditions come from: derivatives go through those of joins.
+/// The same with the demands behind the conditions: derivatives include those of joins.
 pub(super) fn fair_data_under<T: Real>(
     data: &Data,
     options: &DataOptions,
@@ -80,8 +80,8 @@ pub(super) fn fair_data_under<T: Real>(
     if !options.shape.is_empty() || !known || !options.bends {
         if !still {
             return Err(FairError::NoDerivative(
-                "derivatives of curves with conditions on their shape, points or inflections are \
-                 not known: take the curve without them",
+                "no derivatives are available for curves with conditions on shape, points or \
+                inflections: remove the conditions",
             ));
         }
         let made = fair_data(data, options)?;
@@ -90,7 +90,8 @@ pub(super) fn fair_data_under<T: Real>(
     if !data.layout.interpolates() {
         if !still {
             return Err(FairError::NoDerivative(
-                "derivatives of curves with fewer knots than points are not known: name a spacing",
+                "no derivatives are available for curves with fewer knots than points: name a \
+                spacing",
             ));
         }
         let made = fair_data(data, options)?;
@@ -131,8 +132,8 @@ pub(super) fn fair_data_under<T: Real>(
     }
     if parts.norm != crate::RowNorm::Square {
         return Err(FairError::NoDerivative(
-            "derivatives of a sum of lengths through moving knots are not known: take another \
-             measure, or spacing \"index\"",
+            "no derivatives are available for a sum of lengths with moving knots: use another \
+            measure, or spacing \"index\"",
         ));
     }
     // The optimum for the weight found, with the factors that derivatives need.
@@ -143,8 +144,8 @@ pub(super) fn fair_data_under<T: Real>(
     // Jumps have too few digits, and a softened problem gives approximate derivatives only.
     if weight > 0.0 && options.measure != Measure::Jumps && !solved.is_decided() {
         return Err(FairError::NoDerivative(
-            "which tolerances are reached is not decided to rounding, so that derivatives are not \
-             known: take another tolerance",
+            "the set of reached tolerances is undecided within rounding, so no derivatives are \
+            available: use another tolerance",
         ));
     }
     let control = &solved.optimum.points;

@@ -5,21 +5,21 @@ use crate::curve::moving::{MapReal, MovingSpace};
 use crate::{Condition, FairError, Space};
 use moldloft_num::{Real, Vec3};
 
-/// A condition at a parameter, or on the whole curve.
+/// A condition at a parameter or on the whole curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Demand<T = f64> {
-    /// It passes through a point.
+    /// The curve passes through a point.
     Through(Vec3<T>),
     /// Tangent direction.
     Tangent(Vec3<T>),
     /// Continuation of another curve at the start or end: its first and second derivative, with
     /// respect to a parameter of the same direction.
     Join([Vec3<T>; 2]),
-    /// It keeps the area swept about the origin in the plane of x and y, to first order.
+    /// The area swept about the origin in the plane of x and y is preserved, to first order.
     Area,
-    /// It keeps the volume of revolution about x, to first order.
+    /// The volume of revolution about x is preserved, to first order.
     Volume,
-    /// It keeps the mean of its control points.
+    /// The mean of the control points is preserved.
     Centroid,
 }
 
@@ -98,8 +98,8 @@ impl<T: Real> Demand<T> {
 }
 
 impl Demand {
-    /// Linear conditions on control points, linearised at `control`; `share` is the parameter
-    /// relative to the domain.
+    /// Linear conditions on control points, linearised at `control`; `share` is the parameter as a
+    /// fraction of the domain.
     ///
     /// # Errors
     /// As [`Condition::join`].

@@ -36,8 +36,8 @@ pub fn is_exact(points: &[Vec3<f64>], breaks: &[usize], closed: bool) -> bool {
     between_breaks(points, breaks, closed).iter().all(|part| exact(part))
 }
 
-/// The same for lines through numbered points, each its points and whether it is closed; `breaks`
-/// are numbers of points. A line of coincident points is exact.
+/// As `is_exact`, for lines through numbered points, each given by its points and true if closed;
+/// `breaks` are numbers of points. A line of coincident points is exact.
 pub fn are_exact(points: &[Vec3<f64>], lines: &[(Vec<usize>, bool)], breaks: &[usize]) -> bool {
     all_exact(lines.iter().flat_map(|(own, closed)| {
         let marks: Vec<usize> = (0..own.len()).filter(|&k| breaks.contains(&own[k])).collect();

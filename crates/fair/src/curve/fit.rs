@@ -14,7 +14,7 @@ pub enum ParameterSpacing {
     Uniform,
     /// By distance.
     Chord,
-    /// By the root of the distance (Lee 1989): calmer at sharp turns.
+    /// Square root of the distance (Lee 1989): smoother at sharp turns.
     Centripetal,
     /// The coordinate along a direction: stations. It must rise or fall from point to point.
     Along(Vec3<f64>),
@@ -35,8 +35,8 @@ pub struct Fit {
     pub rms: f64,
 }
 
-/// The parameters of data points on [0, 1]; of a closed curve the last is less than 1, the point
-/// after the last being the first.
+/// The parameters of the data points on [0, 1]. On a closed curve the last is less than 1, since
+/// the first point follows it.
 ///
 /// # Errors
 /// [`FairError::Coincident`] if two neighbours coincide and the spacing uses distances,
@@ -50,7 +50,7 @@ pub fn parameters(
     parameters_with(points, spacing, closed)
 }
 
-/// The same for points that carry derivatives, which parameters then do too.
+/// As `parameters`, for points that carry derivatives; the parameters then carry them as well.
 ///
 /// # Errors
 /// As [`parameters`].
@@ -164,10 +164,10 @@ fn placed_between<T: Real>(
 }
 
 /// As [`parameters_with`], for points that move in one direction only: chords are measured
-/// perpendicular to it, so that offsets at stations have the stations as parameters, unless the
-/// curve is too steep for that. The slope of a step is reduced by the tolerances `radii` of its two
-/// points, so that noise between two close stations does not count. Chords skip released data
-/// (tolerance of at least half the extent, while others are smaller).
+/// perpendicular to it, so that the parameters of offsets are their stations, unless the curve is
+/// too steep. The slope of a step is reduced by the tolerances `radii` of its two points, so that
+/// noise between two close stations does not count. Chords skip released data (tolerance of at
+/// least half the extent, while others are smaller).
 ///
 /// # Errors
 /// As [`parameters`].
@@ -206,7 +206,8 @@ pub fn parameters_across<T: Real>(
 }
 
 /// The spline through all points: clamped knots that are means of `degree` parameters (de Boor
-/// 1978, X(6)), or, closed, knots at the parameters (odd degree; for even degrees midway).
+/// 1978, X(6)), or, for a closed curve, the parameters (odd degree) or the midpoints between them
+/// (even degree).
 ///
 /// # Errors
 /// [`FairError`] when the points are too few, not finite or coincide.
@@ -286,8 +287,8 @@ pub fn least_squares(
     fit(space, points, at, &vec![1.0; n])
 }
 
-/// The spline of a given space nearest to data points at given parameters, each with the weight of
-/// its squared distance; a clamped spline ends at the first and last point.
+/// The spline of a given space nearest to data points at given parameters, with a weight for each
+/// squared distance; a clamped spline ends at the first and last point.
 ///
 /// # Errors
 /// [`FairError::Singular`] when the data do not determine the spline, [`FairError::Count`].
@@ -360,9 +361,9 @@ pub fn fit(
     Ok(Fit { space, points: control, parameters, largest, rms })
 }
 
-/// The spline of a given space, rational with these weights of its control points, nearest to data
-/// points at given parameters: through them when there are as many. The weights stay as they are, so
-/// the fit is linear: the homogeneous curve through points times their denominator.
+/// The rational spline of a given space, with these weights of its control points, nearest to data
+/// points at given parameters; it interpolates when there are as many points. The weights are
+/// fixed, so the fit is linear: the homogeneous curve is fitted to points times their denominators.
 ///
 /// # Errors
 /// As [`fit`]; [`FairError::Weight`], [`FairError::Count`] of the weights.
@@ -434,7 +435,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
 }
 
 /// The control points of an unweighted fit for data that carry derivatives, whose real parts are
-/// those that were fitted. Knots and parameters stay as they are, so a fit is linear in its data.
+/// the fitted data. Knots and parameters are fixed, so a fit is linear in its data.
 ///
 /// # Errors
 /// As [`fit`].

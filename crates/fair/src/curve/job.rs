@@ -66,12 +66,12 @@ pub struct Job {
     pub space: Space,
     /// The original control points.
     pub points: Vec<Vec3<f64>>,
-    /// Weights of a rational curve; they stay as they are.
+    /// Weights of a rational curve; they are fixed.
     pub weights: Option<Vec<f64>>,
     /// Limits on the moves.
     pub limit: Limit,
-    /// Control points that are intended breaks: they do not move by a bit, and nothing is smoothed
-    /// across them.
+    /// Control points that are intended breaks: they do not move, and nothing is smoothed across
+    /// them.
     pub marks: Vec<usize>,
     /// Conditions at open ends.
     pub ends: [EndContinuity; 2],
@@ -79,7 +79,7 @@ pub struct Job {
 
 impl Job {
     /// A curve with a ball of radius `tolerance` round each control point. Open ends keep two
-    /// control points each, which on clamped knots is position and tangent.
+    /// control points each, which preserves position and tangent for clamped knots.
     ///
     /// # Errors
     /// [`FairError`] when the points are too few or not finite or the tolerance is not a distance.
@@ -189,7 +189,7 @@ impl Job {
     }
 
     /// The rows of a measure that do not cross a mark, over the control points; for a rational
-    /// curve, relative to their mean.
+    /// curve relative to the mean of the control points.
     ///
     /// # Errors
     /// [`FairError::Degree`].
@@ -218,7 +218,7 @@ impl Job {
         }
     }
 
-    /// `points` as the measure sees them.
+    /// `points` as the measure takes them: relative to their mean for a rational curve.
     pub fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
         let origin = self.origin();
         points.iter().map(|&p| p - origin).collect()

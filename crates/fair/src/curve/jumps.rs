@@ -6,13 +6,13 @@ use moldloft_num::Vec3;
 /// One row per simple interior knot, and the control point whose step removes the knot.
 #[derive(Clone, Debug)]
 pub struct KnotJumps {
-    /// Row k times the control points is the jump vector, made free of the parameter's unit: the
-    /// jump of the derivative of order `degree`, times the local span length to that power. On
+    /// Row k times the control points is the jump of the derivative of order `degree`, times the
+    /// local span length to that power, which makes it independent of the parameter's unit. On
     /// uniform cubics it is the fourth difference 1, -4, 6, -4, 1.
     pub rows: SparseRows,
     /// Knot of each row, by its index in the space's knots.
     pub knots: Vec<usize>,
-    /// The control point that a step at this knot moves.
+    /// The control point that a removal of this knot moves.
     pub moved: Vec<usize>,
 }
 

@@ -8,37 +8,37 @@ use moldloft_num::{Real, Vec3};
 /// Selection of the next knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// The one whose point can make the longest move within its limit. Points that sit on their
-    /// limit are passed over, so the steps converge to the optimum.
+    /// The knot whose point can make the longest move within its limit. Points at their limit are
+    /// skipped, so the steps converge to the optimum.
     Achievable,
-    /// The one with the largest jump, as the report of 1991 has it. Once that point sits on its
-    /// limit nothing moves any more: the loop stalls, usually long before the optimum.
+    /// The knot with the largest jump, as in the report of 1991. Once its point is at its limit,
+    /// nothing moves any more: the loop stalls, usually long before the optimum.
     Literal,
 }
 
 /// Action of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemovalStep {
-    /// The knot's jump is made zero (Farin, Rein, Sapidis and Worsey 1987). On knots that are not
-    /// uniform a step is taken only when the measure falls.
+    /// Makes the knot's jump zero (Farin, Rein, Sapidis and Worsey 1987). On non-uniform knots a
+    /// step is taken only if it lowers the measure.
     Knot,
     /// The measure is minimised over one control point. For [`Measure::Second`] on uniform cubics
     /// this is the same step.
     Vertex,
 }
 
-/// When the steps end. The first that holds is reported.
+/// Conditions that end the steps. The first to hold is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stops {
     /// Maximum number of steps.
     pub steps: usize,
-    /// When no move is longer than this fraction of the largest finite limit.
+    /// No move is longer than this fraction of the largest finite limit.
     pub least_move: f64,
-    /// When a step lowers the measure by less than this fraction of it.
+    /// A step lowers the measure by less than this fraction of it.
     pub least_drop: f64,
-    /// When the certified gap, computed every n steps, is below this fraction of the measure.
+    /// The certified gap, computed every n steps, is below this fraction of the measure.
     pub gap: f64,
-    /// When the number of monotone pieces of curvature, counted every n steps, does not decrease.
+    /// The number of pieces of monotone curvature, counted every n steps, does not decrease.
     pub pieces: bool,
 }
 
@@ -49,22 +49,22 @@ impl Stops {
     }
 }
 
-/// Reason for which the steps ended.
+/// Reason why the steps ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The number of steps was used up.
+    /// All allowed steps were made.
     Steps,
-    /// The longest move left is short.
+    /// The longest remaining move is short.
     Move,
     /// The measure decreases by less than `least_drop`.
     Drop,
     /// The certified gap is small.
     Gap,
-    /// There are no fewer monotone curvature pieces than n steps before.
+    /// The number of monotone curvature pieces has not decreased for n steps.
     Pieces,
-    /// The literal rule has chosen a point that sits on its limit.
+    /// The literal rule has chosen a point at its limit.
     Stalled,
-    /// No point has a step to make.
+    /// No point has a step left to make.
     Done,
 }
 
@@ -90,7 +90,8 @@ pub struct KnotRemovalOptions {
     pub rule: Rule,
     /// Action of one step.
     pub step: RemovalStep,
-    /// The measure that [`RemovalStep::Vertex`] lowers and that stops look at; one of squares.
+    /// The measure that [`RemovalStep::Vertex`] lowers and that the stop conditions use; a measure
+    /// of squares.
     pub measure: Measure,
     /// When to end.
     pub stops: Stops,
@@ -99,7 +100,7 @@ pub struct KnotRemovalOptions {
 }
 
 impl KnotRemovalOptions {
-    /// The faithful algorithm, `steps` steps long.
+    /// The faithful algorithm with `steps` steps.
     pub fn faithful(steps: usize) -> Self {
         Self {
             rule: Rule::Achievable,
@@ -123,7 +124,7 @@ pub struct Move {
 /// Result of local steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnotRemoval {
-    /// The control points. Those that no step moved have their original bits.
+    /// The control points. Those not moved by any step are unchanged to the bit.
     pub points: Vec<Vec3<f64>>,
     /// The number of steps made.
     pub steps: usize,
@@ -231,8 +232,8 @@ pub fn knot_removal(job: &Job, options: &KnotRemovalOptions) -> Result<KnotRemov
     knot_removal_from(job, job.points.clone(), options)
 }
 
-/// Makes local steps from points that are not the original any more: limits are measured from the
-/// original of the job, across all passes.
+/// Makes local steps from points that may have moved before: limits are measured from the original
+/// of the job, across all passes.
 ///
 /// # Errors
 /// As [`local`].
@@ -359,10 +360,10 @@ pub fn knot_removal_from(
     Ok(KnotRemoval { points, steps: done, stopped, log })
 }
 
-/// A fixed number of sweeps over all points in order, each at its limited one-point minimiser:
-/// continuous in the input, and quicker than ranked steps for bulk work. Points at least as far
-/// apart as the stencil is wide are independent, so the sweep runs colour by colour and could be
-/// shared among threads without a change of bits.
+/// A fixed number of sweeps over all points in order; each point moves to its constrained
+/// minimiser. Continuous in the input, and faster than ranked steps for bulk work. Points at least
+/// a stencil width apart are independent, so the sweep runs colour by colour and could use threads
+/// with the same bits.
 ///
 /// # Errors
 /// [`FairError`] when the measure does not exist for the degree.
@@ -388,8 +389,8 @@ pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>
     Ok(points)
 }
 
-/// The points after the steps of a log, with numbers that carry derivatives: which points moved is
-/// as it was, where they went follows the input; real parts are the bits of the log.
+/// The points after the steps of a log, for numbers that carry derivatives: the same points move in
+/// the same order, and their moves follow the input. Real parts are the bits of the log.
 ///
 /// # Errors
 /// [`FairError`] as for [`local`].
@@ -403,7 +404,7 @@ pub fn replay_with<T: Real>(
     replay_from_with(job, options, log, points, points, tolerances)
 }
 
-/// The same for steps that began elsewhere, at `from`: see [`knot_removal_from`].
+/// As `replay_with`, for steps that began at `from`; see [`knot_removal_from`].
 ///
 /// # Errors
 /// As [`replay_with`].

@@ -25,7 +25,7 @@ pub struct InterpolationSpace {
     pub owner: Vec<Option<usize>>,
     /// The parameter of each datum.
     pub at: Vec<f64>,
-    /// Sites that are breaks, each a control point of its own.
+    /// Sites that are breaks; each is a control point.
     pub marks: Vec<usize>,
     /// Values at the sites over the control points.
     pub rows: SparseRows,
@@ -47,8 +47,8 @@ const CUBIC: usize = 3;
 type Share = (usize, usize, f64);
 
 impl InterpolationSpace {
-    /// The splines for data at rising parameters in [0, 1] (of a closed curve less than 1), with
-    /// `breaks` among them. A closed curve with breaks begins and ends at the first of them.
+    /// The splines for data at increasing parameters in [0, 1] (less than 1 for a closed curve),
+    /// with `breaks` among them. A closed curve with breaks begins and ends at the first break.
     ///
     /// # Errors
     /// [`FairError`] when the data are too few, or parameters do not rise.
@@ -272,7 +272,7 @@ impl InterpolationSpace {
             };
             responses.iter().map(of).collect()
         };
-        // What has to vanish, over the sites.
+        // The conditions to satisfy, over the sites.
         let mut equations: Vec<Vec<f64>> = Vec::new();
         for &(first, tangent) in held {
             let last = (first + 1..n)
@@ -364,7 +364,7 @@ impl InterpolationSpace {
         }
     }
 
-    /// True if a knot is at each datum, so that the spline interpolates.
+    /// True if there is a knot at each datum, so that the spline interpolates.
     pub fn interpolates(&self) -> bool {
         self.thin.is_none()
     }
@@ -474,7 +474,8 @@ impl InterpolationSpace {
         self.sources.row(site).0.iter().map(|&c| c as usize)
     }
 
-    /// The sites' tolerances: of a point that completes a short piece the largest near it.
+    /// The tolerances of the sites; a point that completes a short piece has the largest tolerance
+    /// near it.
     pub fn radii(&self, radii: &[f64]) -> Vec<f64> {
         let of = |k: usize| {
             let near = self.sources.row(k).0.iter().map(|&c| radii[c as usize]);
@@ -483,7 +484,7 @@ impl InterpolationSpace {
         (0..self.sources.len()).map(of).collect()
     }
 
-    /// The control points of the spline that takes these values at the sites.
+    /// The control points of the spline that has these values at the sites.
     ///
     /// # Errors
     /// [`FairError::Singular`].
@@ -566,8 +567,8 @@ impl InterpolationSpace {
     }
 
     /// Maximum move of each control point when the curve moves at the sites by at most these radii.
-    /// The collocation matrix is totally positive, so that the inverse has checkerboard signs and
-    /// one solution with alternating signs gives the row sums of absolute values.
+    /// The collocation matrix is totally positive, so its inverse has checkerboard signs, and one
+    /// solution with alternating signs gives the row sums of absolute values.
     ///
     /// # Errors
     /// [`FairError::Singular`].
@@ -598,7 +599,8 @@ impl InterpolationSpace {
         Ok(size(&all[..n]))
     }
 
-    /// The same by some of the sites: of each control point the one where it counts most.
+    /// The reach of control points that only some of the sites limit: of each control point the
+    /// site with the largest coefficient.
     fn thin_reach(&self, radii: &[f64]) -> Result<Vec<f64>, FairError> {
         let n = self.space.count();
         let mut best: Vec<Option<(f64, usize)>> = vec![None; n];
@@ -633,8 +635,8 @@ fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
     list[a] + (to - list[a]) * share
 }
 
-/// The sites of a cubic piece of so many data that takes a tangent at its first, at its last or at
-/// both: what has no sources follows from these.
+/// The sites of a cubic piece of a number of data, with tangents at its first, its last or both:
+/// sites without sources follow from these.
 fn with_tangents(count: usize, tangent: [bool; 2]) -> Vec<(Share, Vec<(usize, f64)>)> {
     let datum = |k: usize| ((k, k, 0.0), vec![(k, 1.0)]);
     if count == 2 {

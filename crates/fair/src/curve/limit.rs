@@ -3,12 +3,12 @@
 use crate::FairError;
 use moldloft_num::{Real, Vec3};
 
-/// In which directions control points may move.
+/// Directions in which control points may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// Any: the distance from the original is limited.
+    /// Any direction: the distance from the original is limited.
     Ball,
-    /// Any: each coordinate's change is limited.
+    /// Any direction: the change of each coordinate is limited.
     Box,
     /// Along this unit direction only: offsets at fixed stations.
     Along(Vec3<f64>),
@@ -23,7 +23,7 @@ pub enum Motion {
 pub struct Limit {
     /// In which directions.
     pub motion: Motion,
-    /// Maximum move of each control point; `f64::INFINITY`: free.
+    /// Maximum move of each control point; `f64::INFINITY` for no limit.
     pub radii: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Limit {
         Self::new(Motion::Ball, vec![radius; count])
     }
 
-    /// Radii of their own for all points. Directions are made unit length.
+    /// Individual radii for all points. Directions are normalised.
     ///
     /// # Errors
     /// [`FairError::Tolerance`] when one is negative or NaN, or a direction has no length.
@@ -57,8 +57,8 @@ impl Limit {
     }
 
     /// The position nearest to `wanted` that point `i`, now at `here` and originally at `original`,
-    /// may take. For measures that are isotropic in one point this is the exact constrained
-    /// minimiser when `wanted` is the free one.
+    /// may take. If the measure is isotropic in one point and `wanted` is the unconstrained
+    /// minimiser, this is the exact constrained one.
     #[inline]
     pub fn nearest(
         &self,

@@ -20,7 +20,7 @@ pub enum PointSpacing {
     /// By curvature for the goals `near` and `budget` without further conditions, and with few
     /// knots for many points; otherwise by chord length.
     Auto,
-    /// Lengths, longer where the curve turns.
+    /// Chord lengths, extended where the curve turns.
     Curvature,
     /// A given parametrisation.
     Given(ParameterSpacing),
@@ -31,27 +31,27 @@ pub enum PointSpacing {
 pub struct CurveRequest<T> {
     /// Maximum distance of each point from the curve.
     pub tolerances: Vec<T>,
-    /// Points that it passes through.
+    /// Points that the curve passes through.
     pub fixed: Vec<usize>,
-    /// Wrong points, which it may leave as far as they are apart.
+    /// Wrong points: the curve may leave them by any distance.
     pub release: Vec<usize>,
     /// Intended breaks.
     pub breaks: Vec<usize>,
     /// Polynomial degree.
     pub degree: usize,
-    /// True if the first point follows the last.
+    /// True if the curve is closed: the first point follows the last.
     pub closed: bool,
     /// The measure to minimise; [`CurveRequest::data_measure`] without one.
     pub measure: Option<Measure>,
     /// Selection among the curves within the tolerances.
     pub goal: Goal,
-    /// Parametrisation, and the parameters themselves if given.
+    /// Parametrisation, or given parameters.
     pub spacing: PointSpacing,
-    /// Rising parameters of the points, of a closed curve less than 1 apart.
+    /// Increasing parameters of the points; within a range of less than 1 for a closed curve.
     pub at: Option<Vec<T>>,
     /// Conditions at open ends, relative to the curve through the points.
     pub ends: [EndContinuity; 2],
-    /// In which directions it leaves them.
+    /// Directions in which the curve may leave its points.
     pub motion: Motion,
     /// Shape conditions.
     pub shape: Vec<ShapeCondition>,
@@ -61,8 +61,8 @@ pub struct CurveRequest<T> {
     pub bends: bool,
     /// Certified gap, relative to the measure; `None`: rounding, the smallest possible.
     pub accuracy: Option<f64>,
-    /// Whether a draft is enough, as while a tolerance slides: within the tolerances and under the goal's
-    /// budget, but with bends as they come, and without derivatives.
+    /// True for a draft, as while a tolerance slides: within the tolerances and the goal's budget,
+    /// but with inflections not limited and without derivatives.
     pub draft: bool,
 }
 
@@ -73,11 +73,11 @@ pub struct NearCurve<T> {
     pub data: Data,
     /// Index of the merged datum for each point.
     pub of: Vec<usize>,
-    /// Control points and knots of the curve.
+    /// Control points and knots.
     pub made: MovingFit<T>,
     /// The fit with its figures.
     pub fit: DataFit,
-    /// The measure that was taken.
+    /// The measure used.
     pub measure: Measure,
 }
 
@@ -86,7 +86,7 @@ pub struct NearCurve<T> {
 pub(crate) const ACCURACY: f64 = 1e-13;
 
 impl<T: Real> NearCurve<T> {
-    /// All about it, as data.
+    /// All figures, as data.
     ///
     /// # Errors
     /// [`FairError::Degree`].
@@ -102,13 +102,13 @@ impl<T: Real> NearCurve<T> {
     }
 }
 
-const MERGED: &str = "derivatives of curves through coincident points are not known";
+const MERGED: &str = "no derivatives are available for curves through coincident points";
 
-const GATED: &str = "derivatives of a curve that is fairer than its goal so that it bends no more often than the \
-                     fairest, or that has conditions against bends, are not known: allow them (bends = 1)";
+const GATED: &str = "no derivatives are available for a curve from which inflections were \
+removed, or with conditions against inflections: allow them (bends = 1)";
 
 impl<T: Real> CurveRequest<T> {
-    /// The defaults: a cubic near `points` within one tolerance, whose ends are free.
+    /// The defaults: a cubic near `points` within one tolerance, with free ends.
     ///
     /// # Example
     /// ```
@@ -145,7 +145,7 @@ impl<T: Real> CurveRequest<T> {
         }
     }
 
-    /// The measure of data without one: the third derivative, or of a lower degree the second.
+    /// The default measure for data: the third derivative, or the second below degree 3.
     pub fn data_measure(degree: usize) -> Measure {
         if degree >= 3 { Measure::Variation } else { Measure::Bending }
     }

@@ -2,7 +2,7 @@
 
 use moldloft_num::Vec3;
 
-/// A shape that the curve has to have. Data are numbered from 0.
+/// A required shape of the curve. Data are numbered from 0.
 ///
 /// Signs of curvature are those of a plane curve seen from above, or in a vertical plane with z up:
 /// convex is a turn to the left, as of a graph over x (or over y) from left to right.
@@ -25,7 +25,7 @@ pub enum ShapeCondition {
     Straight {
         /// The first and the last datum.
         between: [usize; 2],
-        /// Its direction, where it is known: flats.
+        /// Its direction, if given.
         along: Option<Vec3<f64>>,
     },
     /// A circular arc from datum to datum, tangent to straight runs and arcs beside it.
@@ -55,7 +55,7 @@ const GRAMMAR: &str = "convex, concave, one-way, straight or arc with points (co
                        side=0,-1";
 
 impl ShapeCondition {
-    /// A condition as the command and the language write it, of `count` points: `convex=4-10`
+    /// Reads a condition in the notation of command and language, for `count` points: `convex=4-10`
     /// (points from 1), `concave`, `one-way=3-9`, `straight=1-9`, `straight=1-9:0,1`, `arc=9-15`,
     /// `pieces=2`, `within=0,1:4.6`, `side=0,-1`.
     ///
@@ -123,7 +123,7 @@ impl ShapeCondition {
         }
     }
 
-    /// The same for points that were given other numbers.
+    /// The same condition for renumbered points.
     #[must_use]
     pub fn renumbered(&self, of: impl Fn(usize) -> usize) -> Self {
         let mut out = self.clone();

@@ -16,7 +16,7 @@ use crate::optimum::ControlInequality;
 use crate::{Condition, Data, FairError, InterpolationSpace, Motion, Space};
 use moldloft_num::Vec3;
 
-/// An arc that was found.
+/// An arc found in the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundArc {
     /// Its first and last datum.
@@ -25,7 +25,7 @@ pub struct FoundArc {
     pub radius: f64,
     /// Its centre.
     pub centre: Vec3<f64>,
-    /// No point of the spline there is farther from the circle: sampled 64 times a span.
+    /// Maximum distance of the spline from the circle there, sampled 64 times per span.
     pub off: f64,
 }
 
@@ -137,7 +137,7 @@ fn halved(pieces: &[Vec<Vec<f64>>]) -> Vec<Vec<Vec<f64>>> {
     out
 }
 
-/// Where a combination of control points is at most so far along a direction.
+/// The half-space in which a combination of control points is at most a distance along a direction.
 fn half_space(
     rows: impl Iterator<Item = (usize, f64)>,
     direction: Vec3<f64>,
@@ -230,7 +230,8 @@ impl Data {
                     if !matches!(self.limit.motion, Motion::Ball | Motion::Box) {
                         return Err(refused(
                             owner,
-                            "an arc moves points along the curve, too: without a direction",
+                            "an arc moves points along the curve too: do not state a direction of \
+                            motion",
                         ));
                     }
                     runs.push((owner, *between, true, None));
@@ -341,7 +342,7 @@ impl ShapeConstraints {
     }
 
     fn bezier(&self, space: &Space, span: isize, control: &[Vec3<f64>]) -> Vec<P<f64>> {
-        let plane = self.plane.expect("signs are those of plane curves");
+        let plane = self.plane.expect("signs of curvature require a plane curve");
         let columns: Vec<usize> = space.columns(span).collect();
         let local: Vec<P<f64>> = columns.iter().map(|&c| plane.down(control[c])).collect();
         let point = |row: Vec<f64>| {
@@ -361,8 +362,10 @@ impl ShapeConstraints {
             }
             let meet = w[0].1[1] == w[1].1[0] && !breaks.contains(&w[1].1[0]);
             if meet && !w[0].2 && !w[1].2 {
-                let why =
-                    format!("two straight runs meet at point {0}: a break, {0}", w[1].1[0] + 1);
+                let why = format!(
+                    "two straight runs meet at point {0}: add it to the breaks",
+                    w[1].1[0] + 1
+                );
                 return Err(refused(w[1].0, why));
             }
         }
@@ -404,7 +407,7 @@ impl ShapeConstraints {
                 continue;
             }
             // Speed along a chain is even, so that cubics follow its arcs as closely as they can.
-            let made = placed(data, plane.expect("arcs are those of plane curves"), group)?;
+            let made = placed(data, plane.expect("an arc requires a plane curve"), group)?;
             let (from, to) = (group[0].1[0], group[group.len() - 1].1[1]);
             let (first, rate) = (at[from], (at[to] - at[from]) / (made.1[to - from] - made.1[0]));
             for k in from + 1..to {
@@ -455,7 +458,7 @@ impl ShapeConstraints {
                     self.lines.push(CollinearPoints { points, along, through: None, owner });
                 }
                 Some(made) => {
-                    let plane = plane.expect("arcs are those of plane curves");
+                    let plane = plane.expect("an arc requires a plane curve");
                     self.hold(data, plane, group, &made)?;
                 }
             }
@@ -677,7 +680,7 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
         let what = if group[part].2 { "arc" } else { "straight run" };
         refused(
             group[part].0,
-            format!("point {} stays {off:.3e} off the {what} nearest to its points", point + 1),
+            format!("point {} is {off:.3e} from the {what} fitted to its points", point + 1),
         )
     })?;
     let (from, to) = (group[0].1[0], group[group.len() - 1].1[1]);
@@ -689,7 +692,7 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
         let (s, d) = found.foot(p, near(k));
         let radius = data.limit.radii[k];
         if d > radius {
-            let why = format!("point {} stays {d:.3e} off the arc and its tangents", k + 1);
+            let why = format!("point {} is {d:.3e} from the arc and its tangents", k + 1);
             return Err(refused(group[near(k)].0, why));
         }
         feet.push(s);
@@ -697,7 +700,7 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
     }
     let feet = in_order(feet, &rooms).map_err(|k| {
         let k = from + k;
-        let why = format!("point {} runs back along the arc", k + 1);
+        let why = format!("point {} is behind the point before it along the arc", k + 1);
         refused(group[near(k)].0, why)
     })?;
     Ok((found, feet))
@@ -712,7 +715,7 @@ impl ShapeConstraints {
     pub(crate) fn conditions(&self, control: &[Vec3<f64>]) -> Vec<(Condition, usize)> {
         let mut all = Vec::new();
         for (&(c, p), &owner) in self.fixed.iter().zip(&self.arc_of) {
-            let plane = self.plane.expect("arcs are those of plane curves");
+            let plane = self.plane.expect("an arc requires a plane curve");
             for axis in plane.axes {
                 let entries = vec![(c, axis)];
                 all.push((Condition { entries, value: axis.dot(p) }, owner));
@@ -832,7 +835,7 @@ impl ShapeConstraints {
         sign: &Signed,
         control: &[Vec3<f64>],
     ) -> Vec<(ControlInequality, f64)> {
-        let plane = self.plane.expect("signs are those of plane curves");
+        let plane = self.plane.expect("signs of curvature require a plane curve");
         let columns: Vec<usize> = space.columns(sign.span).collect();
         let rows = space.bezier_of(sign.span);
         let factor = if sign.positive { 1.0 } else { -1.0 };

@@ -270,8 +270,8 @@ impl Space {
     }
 
     /// Bézier points of all spans as rows over the control points, without duplicates at common
-    /// ends. With weights the rows give the displacement of the rational curve's projected Bézier
-    /// points for a displacement of its control points.
+    /// ends. For a rational curve the rows give the displacement of the rational curve's projected
+    /// Bézier points for a displacement of its control points.
     pub fn bezier(&self, weights: Option<&[f64]>) -> SparseRows {
         let mut rows = SparseRows::new();
         self.each_bezier(weights, |entries| rows.push(entries.iter().copied()));

@@ -32,9 +32,9 @@ const TURNS_BUDGET: f64 = 1.0;
 /// A turn of the tangent, in radians, below which a curve is straight.
 const NO_TURN: f64 = 1e-6;
 
-/// The budget of the goal `near` in thirds of the squared tolerances: noise that fills these evenly has 1
-/// across a curve if points move along one direction, two thirds of it in space and half of it in a plane,
-/// where the rest is along the curve.
+/// The budget of the goal `near`, as a fraction of the variance of noise that fills the tolerances
+/// evenly. The part of the noise across the curve is all of it if points move along one direction,
+/// two thirds in space and half in a plane; the rest is along the curve.
 ///
 /// # Example
 /// ```
@@ -66,9 +66,9 @@ fn is_plane(points: &[Vec3<f64>]) -> bool {
     points.iter().all(|&p| (p - first).dot(normal).abs() <= FLAT * size)
 }
 
-/// Parameters of data that run faster where their curve turns, for data with any parameters; points, `tolerances`
-/// and parameters `at` may carry derivatives. Exact points, and points without tolerances, have the parameters that
-/// they had.
+/// Parameters of data that advance faster where the curve turns, for data with any parameters;
+/// points, `tolerances` and parameters `at` may carry derivatives. Exact points and points without
+/// tolerances keep their parameters.
 ///
 /// # Errors
 /// [`FairError`] of the spaces of splines.
@@ -102,7 +102,7 @@ pub fn curvature_parameters<T: Real>(
     Ok(turned(data, &made, at))
 }
 
-/// What the curve is whose turns are taken; none where the parameters stay.
+/// Options of the curve whose turns are counted; `None` if the parameters do not change.
 fn turns_of(data: &Data) -> Option<DataOptions> {
     let degree = data.layout.space.degree();
     if degree < 2 || data.exact_parts() || data.limit.radii.iter().all(|&r| r == 0.0) {

@@ -3,14 +3,14 @@
 use crate::{Job, shape};
 use moldloft_num::Vec3;
 
-/// Distances between a faired curve and its original, at equal parameters: the Hausdorff distance
-/// of the two curves is at most that.
+/// Distances between a faired curve and its original at equal parameters, which bound the Hausdorff
+/// distance of the two curves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// The largest move of a control point.
     pub control: f64,
-    /// Certified bound of the distance of the curve from its original: the largest Bézier point of
-    /// the displacement, which is a convex combination of these.
+    /// Certified bound on the distance of the curve from its original: the largest Bézier point of
+    /// the displacement, since the displacement is a convex combination of these.
     pub certified: f64,
     /// The largest distance found by sampling.
     pub sampled: f64,
@@ -44,7 +44,7 @@ pub fn deviation(job: &Job, points: &[Vec3<f64>]) -> Deviation {
     }
 }
 
-/// The certified bound alone, in O(n) and without further memory, rounded up.
+/// The certified bound alone, rounded up, in O(n) and without further memory.
 pub fn certified(job: &Job, moved: &[Vec3<f64>]) -> f64 {
     let mut largest = 0.0f64;
     job.space.each_bezier(job.weights.as_deref(), |entries| {

@@ -3,9 +3,8 @@
 use crate::interrogate::outliers::{DataFinding, data_findings, detectable};
 use moldloft_num::Vec3;
 
-/// Points that differ from their neighbours along lines through numbered points, as the index of
-/// the line and the finding with the number of the point. A line is its points and whether it is
-/// closed.
+/// Points that differ from their neighbours along lines through numbered points: index of the line,
+/// and the finding with the number of the point. A line is given by its points and true if closed.
 ///
 /// A wrong digit shows in all lines that judge its point, or in two of them, a knuckle in one. Points
 /// that are `marked` are left out.
@@ -70,9 +69,9 @@ pub fn line_findings(
 /// The fewest points of a line whose knuckles are looked for.
 const FEWEST_JUDGED: usize = 7;
 
-/// Knuckles as what several lines share: of the findings of [`line_findings`] the line that turns and its
-/// point, and where a line of the network runs along the knuckles of those that cross it, all of these
-/// at its points from the first to the last found, and on over lines too short to be judged.
+/// Knuckles that several lines share. From the findings of [`line_findings`], the line and the
+/// point of each knuckle; where a line of the network connects the knuckles of those that cross it,
+/// all of these from the first to the last found, and beyond over lines too short to be judged.
 ///
 /// At least two crossing lines turn, and no fewer than half of those between.
 pub fn shared_knuckles(

@@ -20,14 +20,14 @@ pub enum DataFinding {
         expected: Vec3<f64>,
         /// Error relative to the local scale.
         score: f64,
-        /// Smallest error that would have been reported.
+        /// Smallest error that is reported.
         least: f64,
     },
-    /// A point at which the tangent turns: probably a break that is meant.
+    /// A point at which the tangent turns: probably an intended break.
     Knuckle {
         /// The point.
         index: usize,
-        /// The angle that the tangent turns by, in radians.
+        /// The turn of the tangent, in radians.
         angle: f64,
         /// The turn as a multiple of its scale.
         score: f64,
@@ -40,7 +40,7 @@ pub enum DataFinding {
 }
 
 impl DataFinding {
-    /// The point that it is about.
+    /// Index of the point.
     pub fn index(&self) -> usize {
         match *self {
             Self::WrongDigit { index, .. }
@@ -84,11 +84,12 @@ const CHANCE: f64 = 0.01;
 /// had a false finding away from the ends.
 const SCORES: [f64; 2] = [4.0, 5.0];
 
-/// The same where fewer than `CLOSE` neighbours are on one side: there a cubic is extrapolated, and a
-/// straight end or a trailing edge looks like a slip.
+/// The score from which a point is proposed where fewer than `CLOSE` neighbours are on one side: a
+/// cubic is extrapolated there, and a straight end or a trailing edge looks like a slip.
 const END_SCORE: f64 = 7.0;
 
-/// The same between the two, where there are more on one side than on the other.
+/// The score from which a point is proposed between these two cases: where there are more
+/// neighbours on one side than on the other.
 const ASIDE_SCORE: f64 = 6.0;
 
 /// Leaving a point out cures when no neighbour has a larger score without it.
@@ -391,8 +392,9 @@ impl FileScale {
     /// A point set against its scale.
     fn judge(&self, seen: NeighbourFit) -> Judged {
         let file = self.scale;
-        // Where cubics miss by more than noise the file's scale has little weight: a nose has its
-        // own scale. The squares of noise exceed twice their mean in one of twenty neighbourhoods.
+        // If cubics deviate by more than noise, the file's scale has little weight: a sharp turn
+        // has a scale of its own. The squares of noise exceed twice their mean in one of twenty
+        // neighbourhoods.
         let beyond = (seen.scale * seen.scale / (file * file).max(f64::MIN_POSITIVE) - 2.0) / 2.0;
         let weight = self.weight + (PRIOR[0] - self.weight) * beyond.clamp(0.0, 1.0);
         let usual = threshold(self.count, weight + FREEDOM);
@@ -515,8 +517,8 @@ fn wrong_digits(
     out
 }
 
-/// Findings among data: wrong digits first, the largest score first. Wrong digits are reported for
-/// at least 12 points, knuckles and order for at least 7.
+/// Findings among data: wrong digits first, each group by decreasing score. Wrong digits are
+/// reported for at least 12 points, knuckles and order for at least 7.
 pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     let n = points.len();
     let swapped = swapped(points, closed);
@@ -553,14 +555,13 @@ fn ordered_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     out
 }
 
-/// For each point, the smallest error that would have been found; infinite if the point is not
-/// judged.
+/// For each point, the smallest error that can be found; infinite if the point is not judged.
 pub fn detectable(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.least * j.deviation)
 }
 
-/// The deviation that is predicted for each point, by noise and the error of its neighbours'
-/// prediction; infinite where points are not judged.
+/// The expected deviation of each point, from noise and the error of the prediction by its
+/// neighbours; infinite for points that are not judged.
 pub fn predicted(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.deviation)
 }

@@ -59,7 +59,7 @@ pub struct FairingReport {
     pub stopped: Option<Stopped>,
     /// Limits that are reached; for the optimum.
     pub active: Option<usize>,
-    /// Corners and wrong points that the original's jumps give away and that are not marked.
+    /// Corners and wrong points that the original's jumps reveal and that are not marked.
     pub findings: Vec<Finding>,
     /// The jump at each knot, before and after, for jump plots.
     pub jumps: [Vec<f64>; 2],
@@ -70,7 +70,7 @@ pub struct FairingReport {
 /// Samples on each span for curvature counts.
 const SAMPLES: usize = 16;
 
-/// The numbers of a curve.
+/// The statistics of a curve.
 ///
 /// # Errors
 /// [`FairError::Degree`].
@@ -158,7 +158,7 @@ pub fn report(job: &Job, mode: &Mode) -> Result<FairingReport, FairError> {
 }
 
 /// Fairs data and reports. Jumps, counts and the deviation compare the faired curve with the one
-/// through the data; findings are the caller's to look for ([`crate::data_findings`]).
+/// through the data; findings are left to the caller ([`crate::data_findings`]).
 ///
 /// # Errors
 /// As [`fair_data`].
@@ -206,19 +206,21 @@ pub(crate) fn report_of(
     let tolerance = given.get(given.len() / 2).copied().unwrap_or(0.0);
     if tolerance > 0.05 * size {
         notes.push(format!(
-            "the tolerance, {tolerance:.3e}, is {:.0} % of the extent of the data: is its unit theirs?",
+            "the tolerance, {tolerance:.3e}, is {:.0} % of the extent of the data: check its unit",
             100.0 * tolerance / size
         ));
     }
     let held = data.limit.radii.iter().filter(|r| r.is_finite() && **r > 0.0).count();
     if held > 3 && made.active >= held {
-        notes.push("the tolerance is reached at every datum: the data ask for more".to_string());
+        notes.push(
+            "the tolerance is reached at every datum: it is smaller than the noise".to_string(),
+        );
     }
     if made.bends > 0 {
         let what = if made.points == job.points {
-            "the curve through the data is left as it is"
+            "the curve through the data is unchanged"
         } else {
-            "with these conditions there was no other way"
+            "the conditions leave no other curve"
         };
         notes.push(format!(
             "the goal adds {} inflections to those of the curve through the data: {what}; a larger \
@@ -254,8 +256,8 @@ fn notes(job: &Job, report: &FairingReport) -> Vec<String> {
     let mut notes = Vec::new();
     if report.stopped == Some(Stopped::Stalled) {
         notes.push(
-            "the literal rule stalled: the worst knot's point sits on its limit; rank by \
-             achievable move, or take the optimum"
+            "the literal rule stalled: the point of the largest jump is at its limit; rank by \
+            achievable move, or use the optimum"
                 .to_string(),
         );
     }
@@ -267,7 +269,7 @@ fn notes(job: &Job, report: &FairingReport) -> Vec<String> {
     }
     if job.limit.radii.iter().any(|r| r.is_infinite()) {
         notes.push(
-            "no tolerance: steps without end lead to a single polynomial, far from the data"
+            "no tolerance: the steps converge to a single polynomial, far from the data"
                 .to_string(),
         );
     }
@@ -310,9 +312,9 @@ impl fmt::Display for FairingReport {
         write!(f, "certificate        {:.9e}, ", self.certificate.value)?;
         let gap = self.certificate.relative();
         if d.certified == 0.0 && gap >= 1.0 {
-            writeln!(f, "no optimum is claimed: the points stay as they are")?;
+            writeln!(f, "no optimum is claimed: the points are unchanged")?;
         } else if gap >= 1.0 {
-            writeln!(f, "no optimum is claimed: what is proved of the gap exceeds the measure")?;
+            writeln!(f, "no optimum is claimed: the proved gap exceeds the measure")?;
         } else {
             writeln!(f, "relative optimality gap <= {gap:.2e} with these knots and parameters")?;
         }

@@ -119,7 +119,7 @@ pub fn samples(
     out
 }
 
-/// The same as counts want them: without third derivatives.
+/// Samples without third derivatives, for counts of inflections.
 pub(crate) fn bends(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
     let mut out = Vec::new();
     each_span(space, points, None, (counting(), false), |samples| out.extend(samples));
@@ -491,7 +491,7 @@ pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
     reversals(&bends(space, points))
 }
 
-/// The same of samples of a curve.
+/// Number of reversals of the tangent's rotation, from samples of a curve.
 pub(crate) fn reversals(all: &[Sample]) -> usize {
     let Some(normal) = plane_normal(all) else { return 0 };
     let (mut angle, mut extreme, mut rising, mut count) = (0.0, 0.0, None, 0usize);

@@ -89,8 +89,8 @@ pub fn zebra(look: &SurfaceAnalysis, view: Vec3<f64>, axis: Vec3<f64>, stripes: 
 }
 
 impl SurfaceAnalysis {
-    /// The same seen from the other side: with the opposite normal, and opposite signs of the mean
-    /// and the principal curvatures.
+    /// The analysis of the surface seen from its other side: with the opposite normal, and opposite
+    /// signs of the mean and the principal curvatures.
     pub fn turned(&self) -> Self {
         let SurfaceCurvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;
         let curvatures = SurfaceCurvatures { gaussian, mean: -mean, principal: [-k2, -k1] };

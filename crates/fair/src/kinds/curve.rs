@@ -61,14 +61,14 @@ shared_options! {
         /// "variation" for data ("bending" below degree 3), "second" where control points move.
         #[field(default)]
         measure: Option<Arc<str>>,
-        /// Role of the points: "fit" (data on the curve; default for the optimum), "control" (control
-        /// points of a uniform spline, whose ends are not at its points; default for the other modes)
-        /// or "points" (faired, then interpolated; for the optimum the same as "fit", except with
-        /// `spacing = "index"`).
+        /// Role of the points: "fit" (data on the curve; default for the optimum), "control"
+        /// (control points of a uniform spline, which does not end at its points; default for the
+        /// other modes) or "points" (faired, then interpolated; for the optimum the same as "fit",
+        /// except with `spacing = "index"`).
         #[field(default)]
         r#as: Option<Arc<str>>,
-        /// Numbers of points, from 1, that are intended breaks: they do not move, nothing is
-        /// smoothed across them, and the curve has corners there. A closed curve starts at the
+        /// Numbers, from 1, of points that are intended breaks: they do not move, nothing is
+        /// smoothed across them, and the curve has corners at them. A closed curve starts at the
         /// first of them.
         #[field(default)]
         breaks: Option<Vec<usize>>,
@@ -164,7 +164,7 @@ impl<T: Real> FairCurve<T> {
         };
         let only = |what: &str, found: &str| {
             CallError::new("not-joined", format!("a curve that joins others {what}"))
-                .expected("no `joins`, or another way")
+                .expected("no `joins`, or other options")
                 .found(found)
                 .in_field(JOINS)
         };
@@ -232,10 +232,10 @@ fn unjoined(error: &FairError, joins: [Option<usize>; 2], others: usize) -> Opti
                  by {miss:.3e})"
             );
             about(whose, "contradiction", message)
-                .expected("a larger tolerance, or points that run on from the neighbour")
+                .expected("a larger tolerance, or points that continue the neighbour")
         }
         FairError::TurnsBack => about(present.first(), "turns-back", error.to_string())
-            .expected("a curve that runs on where its neighbour ends"),
+            .expected("a curve that continues its neighbour"),
         FairError::Singular if !present.is_empty() => about(
             present.first(),
             "stands-still",

@@ -68,14 +68,14 @@ struct MovedControlPoints<T> {
     steps: Option<usize>,
 }
 
-const MOVING_KNOTS: &str = "derivatives of a bound on the curve or of steps are not known where parameters follow the \
-                            points: take spacing \"index\"";
-const FITTED: &str = "derivatives of fits by least squares and of fits with knots of their own are not known: name \
-                      neither count nor knots";
+const MOVING_KNOTS: &str = "no derivatives are available for a bound on the curve or for steps if \
+the parameters depend on the points: use spacing \"index\"";
+const FITTED: &str = "no derivatives are available for least-squares fits and fits with given \
+knots: state neither count nor knots";
 const STEPS: &str =
-    "derivatives of sweeps and levels, and of steps with weights, are not known: take the optimum";
+    "no derivatives are available for sweeps, levels, and steps with weights: use the optimum";
 const CONDITIONS: &str =
-    "derivatives of curves with conditions are not known: take the curve without them";
+    "no derivatives are available for curves with conditions: remove the conditions";
 
 /// Largest residual, relative to the extent, at which a fit counts as interpolation.
 const THROUGH: f64 = 1e-9;

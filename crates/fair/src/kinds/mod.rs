@@ -100,8 +100,8 @@ pub(crate) fn plain_spacing(name: &str, field: FieldId) -> Result<ParameterSpaci
 pub const BUDGET: f64 = 0.8;
 
 /// Default share for networks parametrised by index. Measured on 36 networks of six hulls that the
-/// measure does not describe: with this value all come nearer to the truth; with [`BUDGET`] 5 of 30
-/// do not.
+/// measure does not describe: with this value the results of all are nearer to the truth; with
+/// [`BUDGET`] those of 5 in 30 are not.
 pub const NETWORK_BUDGET: f64 = 0.3;
 
 /// Goal called `name` with its parameter `share`. The fields are those of both.

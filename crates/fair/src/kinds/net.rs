@@ -66,8 +66,8 @@ shared_options! {
         /// curves have corners there.
         #[field(default)]
         breaks: Option<Vec<Point<T>>>,
-        /// Fixed ends of open curves: "corners" (points at which every curve through them ends),
-        /// "ends" (all) or "none".
+        /// Fixed ends of open curves: "corners" (ends of all curves through them), "ends" (all) or
+        /// "none".
         #[field(default = "corners")]
         kept_ends: Arc<str>,
     }
@@ -93,36 +93,38 @@ shared_options! {
     [goal]
     [share]
     {
-        /// Points that do not move besides those of `kept_ends`.
+        /// Additional fixed points besides those of `kept_ends`.
         #[field(default)]
         fixed: Option<Vec<Point<T>>>,
         /// Tolerances of the points in `tolerances_at`, instead of `tolerance`.
         #[field(default)]
         tolerances: Option<Vec<T>>,
-        /// The points that `tolerances` belong to.
+        /// The points with the tolerances of `tolerances`.
         #[field(default)]
         tolerances_at: Option<Vec<Point<T>>>,
         /// Steps per point of each curve and pass in the mode "faithful".
         #[field(default = 3, min = 1, max = 1000)]
         steps: usize,
-        /// What the tolerance bounds: "points", their moves; "curve": no curve is farther from the one
-        /// before than the smaller tolerance of the two points beside.
+        /// Quantity that the tolerance bounds: "points" (the move of each point) or "curve" (the
+        /// distance of each curve from its initial one, by the smaller tolerance of the two
+        /// neighbouring points).
         #[field(default = "points")]
         bound: Arc<str>,
-        /// What curves have to have, exactly, by their numbers: "2: convex", "2: straight=3-9:1,0,0"
-        /// (points from 1), "2..5 at 8..12: straight:1,0,0" (of each its points on the others), "2..5 at
-        /// 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9" (on a circle, tangent to straight runs
-        /// beside it), "1: tangent=start:1,0,0". No derivatives.
+        /// Exact shape conditions of curves, given by their numbers: "2: convex", "2:
+        /// straight=3-9:1,0,0" (points from 1), "2..5 at 8..12: straight:1,0,0" (of each curve, its
+        /// points on the others), "2..5 at 8..12: flat:0,1,0" (these in one plane), "3: arc=3-9"
+        /// (on a circle, tangent to adjacent straight runs), "1: tangent=start:1,0,0". No
+        /// derivatives.
         #[field(default)]
         shape: Option<Vec<Arc<str>>>,
         /// Numbers of curves, from 1, along which all curves that cross them break.
         #[field(default)]
         knuckles: Option<Vec<usize>>,
-        /// Points that are wrong: they move wherever the curves through the others are.
+        /// Wrong points: they move to the curves through the others.
         #[field(default)]
         release: Option<Vec<Point<T>>>,
-        /// "volume" and its "centroid" stay, by splines through the sections, where points move along one
-        /// direction. No derivatives.
+        /// "volume", and with it "centroid": preserved by splines through the sections, if points
+        /// move along one direction. No derivatives.
         #[field(default)]
         keep: Option<Vec<Arc<str>>>,
     }
@@ -225,7 +227,7 @@ impl<T: Real> Joined<T> {
 }
 
 impl<T: Real> FairNet<T> {
-    /// What the network has to have, each with the item and the field that ask for it.
+    /// The conditions of the network, each with its item and field in the arguments.
     fn conditions(&self, joined: &Joined<T>) -> Result<Vec<AskedCondition>, CallError> {
         let named = NamedCurves { curves: &joined.curves, names: &[] };
         let mut out = Vec::new();

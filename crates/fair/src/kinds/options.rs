@@ -20,8 +20,8 @@ macro_rules! shared_options {
             #[field(default)]
             weights: Option<Vec<T>>,
             /// Knots of the control points (`as = "control"`) or of a fit, constant. Open: number
-            /// of control points + degree + 1, non-decreasing; closed: as many as control points,
-            /// increasing. For a fit they determine the number of control points.
+            /// of control points + degree + 1, non-decreasing; closed: number of control points,
+            /// increasing. In a fit they determine the number of control points.
             #[field(default)]
             knots: Option<Vec<T>>,
         } $($rest)*);
@@ -41,10 +41,10 @@ macro_rules! shared_options {
     (@ {$($head:tt)*} {$($done:tt)*} [share] $($rest:tt)*) => {
         $crate::kinds::options::shared_options!(@ {$($head)*} {$($done)*
             /// Parameter of the goal. "near" and "budget": mean squared residual relative to noise
-            /// that fills the tolerance; default 0.5 for plane curves with free motion, 0.8
-            /// otherwise, and for networks that noise does not explain 0.3 ("budget": 0.8).
-            /// "nearest": relative excess of the measure, default 0.1. "energy": the largest
-            /// measure, required.
+            /// that fills the tolerance; default 0.5 for plane curves with free motion, otherwise
+            /// 0.8; 0.3 for networks that noise does not explain ("budget": 0.8). "nearest":
+            /// relative excess of the measure, default 0.1. "energy": the largest measure,
+            /// required.
             #[field(default)]
             share: Option<T>,
         } $($rest)*);
@@ -131,8 +131,8 @@ macro_rules! shared_options {
             /// never.
             #[field(default = 0, min = 0)]
             stop_gap: T,
-            /// 1: single steps stop when n of them, for n points, have not reduced the number of
-            /// monotone pieces of curvature.
+            /// 1: single steps stop when the number of pieces with monotone curvature has not
+            /// decreased for n steps, with n the number of points.
             #[field(default = 0, min = 0, max = 1)]
             stop_pieces: usize,
         } $($rest)*);
@@ -297,8 +297,11 @@ pub(crate) fn constant<T: Real>(
     if numbers.all(|x| x.is_constant()) {
         return Ok(());
     }
-    Err(CallError::new("no-derivative", format!("derivatives by `{what}` are not known"))
-        .expected("a constant")
-        .found(what)
-        .in_field(field))
+    Err(CallError::new(
+        "no-derivative",
+        format!("no derivatives with respect to `{what}` are available"),
+    )
+    .expected("a constant")
+    .found(what)
+    .in_field(field))
 }

@@ -188,14 +188,15 @@ impl<T: Real> Build<T> for FairPatches<T> {
         let contradicted = |e: FairError| match e {
             FairError::Contradiction { miss, .. } => {
                 let text = format!(
-                    "the surfaces cannot run on across their seams within the tolerance (missed by {miss:.3e})"
+                    "the surfaces cannot be continuous across their seams within the tolerance \
+                    (missed by {miss:.3e})"
                 );
                 CallError::new("contradiction", text)
-                    .expected("a larger tolerance, or surfaces that run on more smoothly")
+                    .expected("a larger tolerance, or surfaces that join more smoothly")
                     .in_field(Self::SEAMS)
             }
             FairError::TurnsBack => CallError::new("turns-back", e.to_string())
-                .expected("surfaces that run on where their neighbours end")
+                .expected("surfaces that continue their neighbours")
                 .in_field(Self::SURFACES),
             e => fault(e, &places),
         };

@@ -63,7 +63,7 @@ shared_options! {
         #[field(default = "second")]
         measure: Arc<str>,
         /// Role of the points: "fit" (interpolated, then faired) or "control" (control points of a
-        /// uniform surface, whose rims are not at its points).
+        /// uniform surface, which does not end at its points).
         #[field(default = "fit")]
         r#as: Arc<str>,
         /// Polynomial degree along u, and along v without `degree_v`.
@@ -462,7 +462,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([self.tolerance]);
                     if !numbers.all(|x| x.is_constant()) {
                         return Err(FairError::NoDerivative(
-                            "no derivatives of sweeps are available: take the optimum",
+                            "no derivatives are available for sweeps: use the optimum",
                         ));
                     }
                     let (points, certificate) = network.sweeps(measure, count)?;
@@ -515,8 +515,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     .chain(tolerances.iter().copied());
                 if !numbers.all(|x| x.is_constant()) {
                     return Err(FairError::NoDerivative(
-                        "derivatives of surfaces with conditions are not known: take the surface \
-                         without them",
+                        "no derivatives are available for surfaces with conditions: remove the \
+                        conditions",
                     ));
                 }
                 let (conditions, whose) = demands.conditions(&data)?;

@@ -97,7 +97,7 @@ impl SurfaceDemands {
             if !numbers.all(|c| c.is_constant()) {
                 return Err(CallError::new(
                     "no-derivative",
-                    format!("derivatives through `{what}` are not known"),
+                    format!("no derivatives are available for `{what}`"),
                 )
                 .expected("constants")
                 .found(what)

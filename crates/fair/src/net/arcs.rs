@@ -9,12 +9,12 @@ use moldloft_num::{Dual4, Real, Vec3};
 /// The area of the triangle of an arc, relative to the square of its chord, below which it is straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// An arc of a network as faired.
+/// An arc of a faired network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkArc {
     /// The curve.
     pub curve: usize,
-    /// Its first and last point, by their places on the curve.
+    /// Indices of its first and last point on the curve.
     pub between: [usize; 2],
     /// Its radius.
     pub radius: f64,
@@ -63,7 +63,7 @@ impl Network {
         self.arcs.iter().filter(|arc| arc.0 == k).map(|arc| arc.1).collect()
     }
 
-    /// The three points that an arc's circle goes through.
+    /// The three points that determine an arc's circle.
     fn on_arc(&self, k: usize, between: [usize; 2]) -> [usize; 3] {
         [between[0], between[0].midpoint(between[1]), between[1]].map(|c| self.strands[k].points[c])
     }

@@ -8,7 +8,7 @@ use crate::optimum::{Bounded, Solved};
 use crate::{Bound, FairError, Network};
 use moldloft_num::{Real, Vec3};
 
-/// The share of a limit from which on it is one of the search.
+/// Fraction of a limit from which on it takes part in the search.
 const NEAR: f64 = 0.9;
 
 /// Limits between points.
@@ -80,8 +80,8 @@ impl LimitsBetween {
         }
         let Some(reached) = solved.reached() else {
             return Err(FairError::NoDerivative(
-                "which limits between its points the network reaches is not decided to rounding, so \
-                 its derivatives are not known: take a tolerance a little larger or smaller",
+                "the limits reached between the points of the network are undecided within \
+                rounding, so no derivatives are available: change the tolerance slightly",
             ));
         };
         let used: Vec<usize> = data.used(frozen).collect();
@@ -93,8 +93,9 @@ impl LimitsBetween {
         };
         if reached.into_iter().any(moves) {
             return Err(FairError::NoDerivative(
-                "derivatives of a network that reaches limits between its points are not known where \
-                 parameters follow the points: let them move along one direction",
+                "no derivatives are available for a network that reaches limits between its \
+                points if the parameters depend on the points: let the points move along one \
+                direction",
             ));
         }
         Ok(())

@@ -10,12 +10,12 @@ const GRAMMAR: &str = "a line, several as `WL 2..WL 5`, or where others cross th
                        tangent=start:0,1,0, tangent=end:0,1,0, or a shape of a curve such as convex=4-10, \
                        straight:1,0,0, arc=5-9, within=0,1,0:4.6";
 
-/// Curves as texts name them.
+/// Curves with the names used in texts.
 #[derive(Clone, Copy, Debug)]
 pub struct NamedCurves<'a> {
     /// The points of each curve.
     pub curves: &'a [(Vec<usize>, bool)],
-    /// Their names, or none: then they are `curve 1`, `curve 2` and so on.
+    /// Their names; if empty, `curve 1`, `curve 2` and so on.
     pub names: &'a [String],
 }
 
@@ -25,7 +25,7 @@ impl NamedCurves<'_> {
         self.names.get(curve).cloned().unwrap_or_else(|| format!("curve {}", curve + 1))
     }
 
-    /// The curve of a name, of `curve 3`, or of a number from 1.
+    /// The curve called `name`, `curve 3`, or by a number from 1.
     ///
     /// # Errors
     /// A text with the expected form.
@@ -60,7 +60,8 @@ impl NamedCurves<'_> {
 }
 
 impl NetworkCondition {
-    /// Conditions as the command and the language write them: one for each curve, or one for a flat.
+    /// Reads conditions in the notation of command and language: one for each curve, or one for a
+    /// flat.
     ///
     /// # Errors
     /// A text with the expected form.

@@ -19,8 +19,8 @@ impl BasisValues {
     }
 }
 
-/// How the surface at one place hangs on the control points: for each its share in the position and
-/// in the derivatives by u and v, by the spaces' own knots.
+/// Stencil of the surface at a point: for each control point its coefficients in the position and
+/// in the derivatives by u and v, with the spaces' knots.
 struct ControlStencil(Vec<(usize, [f64; 3])>);
 
 impl ControlStencil {
@@ -85,7 +85,8 @@ impl Network {
         Ok(AXES.map(one).to_vec())
     }
 
-    /// The surface's tangent plane at (u, v) in [0, 1] is across a normal: two conditions.
+    /// The surface's tangent plane at (u, v) in [0, 1] is perpendicular to a normal: two
+    /// conditions.
     ///
     /// # Errors
     /// As [`Network::point_condition`].
@@ -100,8 +101,8 @@ impl Network {
         Ok(vec![one(1), one(2)])
     }
 
-    /// The surface's tangent across a direction of parameters at (u, v) in [0, 1] is parallel to a
-    /// vector: the derivative by u (`along` 0) or v (1); two conditions.
+    /// The surface's derivative by u (`along` 0) or v (1) at (u, v) in [0, 1] is parallel to a
+    /// vector: two conditions.
     ///
     /// # Errors
     /// As [`Network::point_condition`].
@@ -127,7 +128,7 @@ impl Network {
         self.integral(|u, v| [u.cross(v), Vec3::zero(), Vec3::zero()])
     }
 
-    /// The area keeps its value to first order: |S_u x S_v| changes by N . (dS_u x S_v + S_u x dS_v).
+    /// The area is preserved to first order: |S_u x S_v| changes by N . (dS_u x S_v + S_u x dS_v).
     ///
     /// # Errors
     /// As [`Network::point_condition`].

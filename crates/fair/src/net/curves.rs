@@ -14,11 +14,11 @@ use crate::{
 };
 use moldloft_num::Vec3;
 
-/// The displacement of a curve between its points, in tolerances, from which it is named where the
-/// bound is that of the points.
+/// Displacement of a curve between its points, in tolerances, above which the curve is reported, if
+/// the bound is that of the points.
 pub const SWING: f64 = 1.5;
 
-/// How many times spans are halved, so that their Bézier points are near the curve.
+/// Number of halvings of the spans, which bring their Bézier points near the curve.
 pub(super) const HALVINGS: usize = 2;
 
 /// Rounding of a certified distance, relative.
@@ -27,14 +27,14 @@ const CERTIFIED_ROUNDING: f64 = 128.0 * f64::EPSILON;
 /// Rounding of that bound, relative.
 pub(super) const SWING_SLACK: f64 = 1e-6;
 
-/// A curve of a network before and after, on the same knots.
+/// A curve of a network before and after fairing, on the same knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePair {
     /// The splines.
     pub space: Space,
-    /// The control points through the points as they were given.
+    /// The control points of the curve through the given points.
     pub before: Vec<Vec3<f64>>,
-    /// Those through the faired points, at the same parameters.
+    /// The control points of the curve through the faired points, at the same parameters.
     pub after: Vec<Vec3<f64>>,
 }
 
@@ -108,7 +108,7 @@ impl Network {
         })
     }
 
-    /// Curve `k` through its points as they were given, and through these.
+    /// Curve `k` through its given points and through the faired ones.
     ///
     /// # Errors
     /// [`FairError`] when there is no such spline.
@@ -244,7 +244,7 @@ impl Network {
         Ok(limits)
     }
 
-    /// The curves that are farther from their originals than their bound, the farthest place of each.
+    /// The curves that exceed their bound, each at its farthest point.
     ///
     /// # Errors
     /// [`FairError`] when a curve has no spline.
@@ -273,8 +273,8 @@ impl Network {
         Ok(out)
     }
 
-    /// The same of a curve without parameters, whose spline has even ones, against its largest
-    /// tolerance; the point is the one that moves farthest.
+    /// The swing of a curve without parameters, measured against its largest tolerance: its spline
+    /// has even parameters. The point is that which moves farthest.
     fn even_swing(&self, k: usize, moves: &[Vec3<f64>], share: f64) -> Option<CurveSwing> {
         let own = &self.strands[k].points;
         let finite = |i: usize| Some(self.limit.radii[i]).filter(|r| r.is_finite());
@@ -313,13 +313,13 @@ impl BezierLimit {
     }
 }
 
-/// A curve that is farther from its original than its bound.
+/// A curve that exceeds its bound on the distance from its original.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveSwing {
     /// The curve.
     pub curve: usize,
-    /// The point next to the place.
+    /// The point nearest to that position.
     pub point: usize,
-    /// The displacement there in tolerances: of a Bézier point, so that the curve is no farther.
+    /// The displacement in tolerances: of a Bézier point, which bounds the distance of the curve.
     pub share: f64,
 }

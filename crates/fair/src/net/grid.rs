@@ -23,17 +23,17 @@ use crate::{
 };
 use moldloft_num::{Real, Vec3};
 
-/// A grid of data with what they allow; point (i, j) stands at `i * n + j`.
+/// A grid of data with tolerances; point (i, j) is at `i * n + j`.
 #[derive(Clone, Debug)]
 pub struct GridData {
     /// The data.
     pub points: Vec<Vec3<f64>>,
-    /// Limits of the distances of the surface from them, and the directions of these.
+    /// Limits on the distances of the surface from the data, and the directions of motion.
     pub limit: Limit,
-    /// Where they are on the surface, and the splines: along u and along v.
+    /// Parameters of the data and the splines, along u and along v.
     pub layouts: [InterpolationSpace; 2],
-    /// Conditions at the rims of the surface through the data: at both ends of u, then of v. A free rim
-    /// leaves only the corners where they are.
+    /// Conditions at the rims of the surface through the data: at both ends of u, then of v. Free
+    /// rims fix the corners alone.
     pub rims: [[EndContinuity; 2]; 2],
 }
 
@@ -42,13 +42,13 @@ pub struct GridData {
 pub struct GridFit {
     /// Its control points.
     pub points: Vec<Vec3<f64>>,
-    /// Those of the surface through the data.
+    /// Control points of the surface through the data.
     pub original: Vec<Vec3<f64>>,
     /// The distance of each datum from the surface at its parameters.
     pub residuals: Vec<f64>,
     /// The mean of the squared residuals over the tolerances, over 1/3.
     pub used: f64,
-    /// The same squares of the fairest; see [`crate::DataFit`].
+    /// The same mean for the fairest surface; see [`crate::DataFit`].
     pub fairest_used: f64,
     /// The measure of the surface and the optimality gap; see [`crate::DataFit`].
     pub certificate: Certificate,
@@ -60,10 +60,10 @@ pub struct GridFit {
     pub active: usize,
 }
 
-/// The parameters of a grid of points along both directions: of each the mean over its lines.
-/// Lines whose points coincide, such as poles, do not count; a coordinate is taken for the direction
-/// along which it rises or falls, chords for the other. `radii` are the tolerances of the points, none
-/// when empty: see [`parameters_across`].
+/// The parameters of a grid of points along both directions, each the mean over its lines. Lines of
+/// coincident points, such as poles, are ignored. A coordinate is used for the direction along
+/// which it is monotone, chord lengths for the other. `radii` are the tolerances of the points, or
+/// empty; see [`parameters_across`].
 ///
 /// # Errors
 /// [`FairError::Count`] when there are not m n points.
@@ -113,10 +113,11 @@ pub fn grid_parameters<T: Real>(
     Ok([along(0, n, &|k, line| k * n + line), along(1, m, &|k, line| line * n + k)])
 }
 
-/// Of chords, the coordinate instead that all lines of a direction have in common, as stations and
-/// waterlines do, where it rises or falls along them and they are not too steep for it. A point that
-/// leaves its station makes it chords again: for data that stay, not for what moves. A step is as steep
-/// as the tolerances `radii` of its points leave it, so that noise between close stations does not count.
+/// As `Spacing::Chord`, but with a coordinate in place of chord lengths if all lines of the
+/// direction share its values, as stations and waterlines do, it is monotone along them, and they
+/// are not too steep. A point that leaves its station makes it chord lengths again, so it is for
+/// fixed data only. The tolerances `radii` reduce the steepness of a step, so that noise between
+/// close stations does not count.
 pub fn grid_spacing(
     points: &[Vec3<f64>],
     [m, n]: [usize; 2],
@@ -132,7 +133,7 @@ pub fn grid_spacing(
     [own(0, n, &|k, line| k * n + line), own(1, m, &|k, line| line * n + k)]
 }
 
-/// The least share of a chord that its projection on stations must be.
+/// Minimum ratio of the projection of a chord on the stations to its length.
 const SHALLOW: f64 = 0.2;
 
 /// The coordinate that the lines of a direction share.
@@ -163,7 +164,7 @@ fn stations(
     })
 }
 
-/// The range that each site stands for.
+/// The range of parameters that each site represents.
 fn weights<T: Real>(sites: &[T], closed: bool) -> Vec<T> {
     let n = sites.len();
     (0..n)
@@ -587,8 +588,9 @@ fn products<T: Real>(u: &[Vec<(usize, T)>], v: &[Vec<(usize, T)>], nv: usize) ->
     MovingRows { rows: u.iter().flat_map(|a| v.iter().map(move |b| one(a, b))).collect() }
 }
 
-/// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
-/// parts are those of the data; see [`crate::fair_data_with`]. There are no conditions but rims.
+/// As `fair_grid`, for data, tolerances (one per datum) and parameters that carry derivatives,
+/// whose real parts are those of the data; see [`crate::fair_data_with`]. The only conditions are
+/// those of the rims.
 ///
 /// # Errors
 /// As [`fair_grid`]; [`FairError::NoDerivative`] for the goal `nearest`, and for sums of lengths.
@@ -655,8 +657,8 @@ pub fn fair_grid_with<T: Real>(
     check_unique(&mut parts, &found, &pull)?;
     if parts.norm != RowNorm::Square {
         return Err(FairError::NoDerivative(
-            "derivatives of a sum of lengths through moving knots are not known: take another \
-             measure",
+            "no derivatives are available for a sum of lengths with moving knots: use another \
+            measure",
         ));
     }
     // The measure's rows as knots, sites and weights move.
@@ -685,7 +687,7 @@ pub fn fair_grid_with<T: Real>(
     let largest = largest.unwrap_or_else(T::zero);
     let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
     let own: Vec<T> = limited.iter().map(of).collect();
-    // What moves with a solution, where data pull with a weight.
+    // Changes of a solution, where data pull with a weight.
     let moving = |solved: &Solved, weight: f64, budget: T| -> Result<_, FairError> {
         let control = &solved.optimum.points;
         let mut forces: Vec<Vec3<T>> =
@@ -719,8 +721,8 @@ pub fn fair_grid_with<T: Real>(
             // The squares of the fairest change, too.
             if found.share < 1.0 {
                 return Err(FairError::NoDerivative(
-                    "the budget of this surface and how far it is worth a move both hang on the fairest, so \
-                     that derivatives are not known: take the goal \"budget\"",
+                    "the budget of this surface and its use both depend on the fairest surface, \
+                    so no derivatives are available: use the goal \"budget\"",
                 ));
             }
             parts.pull = None;

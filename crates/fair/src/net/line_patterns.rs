@@ -1,14 +1,15 @@
 //! The fewest changes of curvature that a line of offsets has within its tolerances.
 
-/// The share of the tolerances within which a pattern of signs fits: at the whole of them true
-/// bends of their size would go.
+/// Fraction of the tolerances within which a pattern of signs must fit: with the whole of them true
+/// bends of that size would vanish.
 const FITS: f64 = 0.8;
 
-/// The share of the tolerances within which a list without a change is looked for: conditions may leave
+/// Multiple of the tolerances within which a list without a change is sought: conditions may leave
 /// one that its own tolerances would not.
 const WIDEST: f64 = 2.0;
 
-/// Halvings of the search for the least share of the tolerances at which a number of changes fits.
+/// Halvings in the search for the least fraction of the tolerances at which a number of changes
+/// fits.
 const HALVINGS: usize = 30;
 
 /// The most changes that are looked for.

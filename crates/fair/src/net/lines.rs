@@ -22,7 +22,7 @@ use moldloft_num::{Real, Vec3};
 /// The fewest points of a line that has changes of curvature.
 const FEWEST_POINTS: usize = 4;
 
-/// The share of the measure that noise of the tolerances has below which lines are alike.
+/// Fraction of the measure of noise that fills the tolerances, below which lines are alike.
 const ALIKE: f64 = 1e-3;
 
 /// Rounds of weights.
@@ -35,11 +35,11 @@ const BESIDE: f64 = 1.2;
 /// Accuracy of the squares of the nearest network.
 const NEAREST: f64 = 1e-6;
 
-/// By how much a sign may be left, as a share of what the tolerances let it vary.
+/// Allowed violation of a sign, relative to the variation that the tolerances allow.
 const LEFT: f64 = 1e-9;
 
-/// The same share by which a second difference of a held sign stays from zero: at zero rounding would
-/// decide its sign.
+/// Minimum distance of a second difference with a held sign from zero, relative to the same
+/// variation: at zero rounding would decide its sign.
 const SIGN_MARGIN: f64 = 1e-6;
 
 /// The same share below which a second difference has no sign.
@@ -63,7 +63,7 @@ struct HeldSign {
     /// The place at which its part of the line begins, between breaks and runs.
     part: usize,
     sign: f64,
-    /// True if it stays from zero; false where the others leave it no room for that.
+    /// True if it must differ from zero; false if the other conditions do not allow this.
     strict: bool,
 }
 
@@ -118,8 +118,8 @@ pub(super) struct LineRound<'a> {
     decided: bool,
     /// Limits between points.
     between: LimitsBetween,
-    /// Lines that bend more than the fewest changes within their tolerances: conditions or crossing
-    /// lines leave their signs no room.
+    /// Lines with more changes of curvature than required within their tolerances, because
+    /// conditions or crossing lines do not allow their signs.
     pub bent: Vec<usize>,
 }
 
@@ -317,7 +317,7 @@ impl Network {
         std::array::from_fn(|k| (parts.ties.leader(strand.points[held.first + k]), factors[k]))
     }
 
-    /// What the tolerances let a second difference vary.
+    /// The variation of a second difference that the tolerances allow.
     fn sign_range<T: Real>(&self, held: &HeldSign, at: &[T], tolerances: &[T]) -> T {
         let extent = self.extent();
         let places = held.first..held.first + 3;
@@ -348,8 +348,8 @@ impl Network {
         ControlInequality { entries: self.sign_entries(held, at), most, owner: held.line }
     }
 
-    /// How far points are beyond zero curvature and beyond a sign's half-space, as shares of what the
-    /// tolerances let the second difference vary.
+    /// Violation of zero curvature and of a sign's half-space, relative to the variation of the
+    /// second difference that the tolerances allow.
     fn off(&self, held: &HeldSign, points: &[Vec3<f64>]) -> [f64; 2] {
         let half = self.sign_half(held);
         let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
@@ -487,9 +487,9 @@ impl Network {
         for round in rounds {
             if !round.decided {
                 return Err(FairError::NoDerivative(
-                    "which changes of curvature the network keeps from is not decided to rounding, or they \
-                     leave none within the goal's budget, so its derivatives are not known: take the goal \
-                     \"budget\"",
+                    "the inflections that the network avoids are undecided within rounding, or \
+                    leave no network within the goal's budget, so no derivatives are available: \
+                    use the goal \"budget\"",
                 ));
             }
             if round.found.share == 0.0 {
@@ -600,8 +600,8 @@ impl LineFairing<'_> {
         round
     }
 
-    /// The optimum under the signs that are held. Signs that the conditions and other lines leave no room
-    /// are given up; before that the budget is widened.
+    /// The optimum under the held signs. Signs that the conditions and other lines do not allow are
+    /// given up; before that the budget is widened.
     fn under_signs<'a>(&mut self, parts: &Parts<'a>) -> Result<LineRound<'a>, FairError> {
         loop {
             let held: Vec<HeldSign> = self.held().flat_map(|line| &line.left).copied().collect();
@@ -648,7 +648,8 @@ impl LineFairing<'_> {
             for line in self.signs.iter_mut().filter(|line| line.held) {
                 line.left.retain_mut(|sign| {
                     let up = given_up.next() != Some(false);
-                    // Without room beyond zero the second difference may be zero.
+                    // If the conditions allow nothing beyond zero, the second difference may be
+                    // zero.
                     let relaxed = up && sign.strict && !hopeless;
                     sign.strict &= !up;
                     !up || relaxed
@@ -732,8 +733,8 @@ impl LineFairing<'_> {
         }
     }
 
-    /// The optimum to rounding where the signs that are reached are conditions: `near` is the one of an
-    /// interior point, which stands where that shows other signs.
+    /// The optimum to rounding where the signs that are reached are conditions: `near` is the one
+    /// of an interior point, which remains if that shows other signs.
     fn settled<'a>(
         &self,
         parts: &Parts<'a>,

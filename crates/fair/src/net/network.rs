@@ -11,18 +11,18 @@ use crate::{Bound, Condition, EndContinuity, FairError, Job, Limit, Measure, Spa
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
 
-/// Curves over common points. A shared point is one point: it moves for all its curves at once.
+/// Curves with common points: a shared point moves for all its curves at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// The original points.
     pub points: Vec<Vec3<f64>>,
-    /// Limits of their moves, across all passes.
+    /// Limits on the moves of the points, across all passes.
     pub limit: Limit,
     /// The curves, in the order of passes.
     pub strands: Vec<NetworkCurve>,
     /// Points that do not move.
     pub kept: Vec<usize>,
-    /// Scope of the limits of goals: points, or all along curves through points.
+    /// Scope of the limits of goals: the points, or the whole curves through the points.
     pub bound: Bound,
     /// Its conditions.
     pub(super) conditions: Vec<NetworkCondition>,
@@ -32,7 +32,7 @@ pub struct Network {
     pub(super) held: Vec<(usize, Vec3<f64>)>,
     /// The one direction in which the points of each curve move, if there is one.
     pub(super) ways: Vec<Option<Vec3<f64>>>,
-    /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
+    /// The spaces of a tensor-product net, whose point (i, j) is at `i * count_v + j`.
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
     /// The nets of joined surfaces.
@@ -64,8 +64,8 @@ impl Network {
         Ok(network)
     }
 
-    /// The network with single points that do not move in directions of their own: an offset moves
-    /// along its own axis only, while a sheer moves in two.
+    /// The network with points that do not move in certain directions: an offset moves along its
+    /// own axis only, a sheer in two.
     ///
     /// # Errors
     /// [`FairError::Mark`] when there is no such point.
@@ -101,10 +101,10 @@ impl Network {
         }
     }
 
-    /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes run over the
-    /// curves of constant v first, as the report of 1991 has it, then over those of constant u.
-    /// Each curve keeps two points at open ends; the joint optimum keeps the four corners, two by
-    /// two points each, of open directions.
+    /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes fair the
+    /// curves of constant v first, as in the report of 1991, then those of constant u. Each curve
+    /// keeps two points at open ends; the joint optimum keeps two by two points at each of the four
+    /// corners of open directions.
     ///
     /// # Errors
     /// As [`Network::new`].
@@ -144,9 +144,9 @@ impl Network {
         Ok(network)
     }
 
-    /// The net with intended breaks: knuckle lines along whole rows of points, at these places along
-    /// u (each a curve of constant u) and along v. Their points stay, and nothing is smoothed across
-    /// them.
+    /// The net with intended breaks: knuckle lines along whole rows of points, at these indices
+    /// along u (each a curve of constant u) and along v. Their points do not move, and nothing is
+    /// smoothed across them.
     ///
     /// # Errors
     /// [`FairError::Mark`] when there is no such row, or the network is not a net.
@@ -173,10 +173,10 @@ impl Network {
         Ok(self)
     }
 
-    /// The net with rims that keep what neighbours share with it: at both ends of u, then of v.
-    /// On clamped knots the position is one row of points, tangents are two and curvature three;
-    /// these do not move by a bit, in the joint optimum and in passes. Rims of a closed direction are
-    /// none.
+    /// The net with rims that preserve continuity with neighbours: at both ends of u, then of v. On
+    /// clamped knots the position is one row of points, tangents are two and curvature three; these
+    /// rows do not move, neither in the joint optimum nor in passes. A closed direction has no
+    /// rims.
     ///
     /// # Errors
     /// [`FairError::Count`] when the network is not a net.
@@ -203,7 +203,7 @@ impl Network {
         self.net.as_ref().map(|spaces| (spaces, self.weights.as_deref()))
     }
 
-    /// Refuses what cannot be faired.
+    /// Refuses invalid networks.
     ///
     /// # Errors
     /// The first thing that is wrong.
@@ -407,7 +407,7 @@ impl Network {
         }
     }
 
-    /// All curves faired together: the sum of the measure over all of them is the least within the
+    /// All curves faired together: minimises the sum of the measure over all curves within the
     /// limits, with a certificate. `conditions` are over the network's points.
     ///
     /// The factor of a net of m by n points takes about m n min(m, n) numbers.
@@ -425,7 +425,7 @@ impl Network {
         self.parts(measure, bound, conditions, accuracy)?.solve()
     }
 
-    /// The same for numbers that carry derivatives; see [`crate::optimum_with`].
+    /// As `optimum`, for numbers that carry derivatives; see [`crate::optimum_with`].
     ///
     /// # Errors
     /// As [`Network::optimum`].

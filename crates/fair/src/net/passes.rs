@@ -27,9 +27,9 @@ impl Network {
         job
     }
 
-    /// Fairs curve after curve by local steps, `passes` times over: the faithful way. The limit is
-    /// kept from the original across passes. The direction faired first gets rougher again, so
-    /// passes do not converge to the joint optimum.
+    /// Fairs curve after curve by local steps, `passes` times: the faithful algorithm. The limit is
+    /// measured from the original across passes. The direction faired first becomes rougher again,
+    /// so passes do not converge to the joint optimum.
     ///
     /// `steps` is the number of steps per control point of each curve.
     ///
@@ -54,8 +54,8 @@ impl Network {
         Ok(points)
     }
 
-    /// The same for points that carry derivatives, whose real parts are those of the network: which
-    /// knots are chosen is as it is for the real parts.
+    /// As `passes`, for points that carry derivatives, whose real parts are those of the network:
+    /// knots are chosen by the real parts.
     ///
     /// # Errors
     /// As [`Network::passes`].
@@ -91,8 +91,9 @@ impl Network {
         Ok(now)
     }
 
-    /// Joint sweeps over single points, each to its limited minimiser: for nets beyond the direct
-    /// solver. Never worse from sweep to sweep; says how far from the optimum it is.
+    /// Joint sweeps over single points, each moved to its constrained minimiser: for nets too large
+    /// for the direct solver. No sweep increases the measure; reports the distance from the
+    /// optimum.
     ///
     /// # Errors
     /// As [`crate::sweeps`].

@@ -80,12 +80,12 @@ impl PatchNet {
     }
 }
 
-/// An edge of a net: where a parameter begins or ends.
+/// An edge of a net, at the start or end of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NetEdge {
     /// The parameter that is constant on it: 0 for u, 1 for v.
     pub direction: usize,
-    /// 0 where it begins, 1 where it ends.
+    /// 0 at its start, 1 at its end.
     pub end: usize,
 }
 
@@ -96,14 +96,15 @@ pub struct Seam {
     pub sheets: [usize; 2],
     /// The edge of each.
     pub edges: [NetEdge; 2],
-    /// True if the second runs against the first.
+    /// True if the second edge has the opposite direction.
     pub reversed: bool,
-    /// The continuity: [`EndContinuity::Position`], [`EndContinuity::Tangent`] or [`EndContinuity::Curvature`].
+    /// The continuity across the seam: [`EndContinuity::Position`], [`EndContinuity::Tangent`] or
+    /// [`EndContinuity::Curvature`].
     pub keeps: EndContinuity,
 }
 
 impl Seam {
-    /// The edges that sheets share: those whose control points are the same.
+    /// The edges shared by sheets, found by identical control points.
     pub fn found(sheets: &[PatchNet], keeps: EndContinuity) -> Vec<Seam> {
         let mut all: Vec<(usize, NetEdge, Vec<Vec3<f64>>)> = Vec::new();
         for (k, sheet) in sheets.iter().enumerate() {
@@ -145,8 +146,9 @@ fn size(points: &[Vec3<f64>]) -> f64 {
 }
 
 impl Network {
-    /// Surfaces with common edges: a point on a seam is one point of all its sheets. Each sheet keeps
-    /// the corners that are on no seam, two by two points each, and what its rims say.
+    /// Surfaces with common edges: a point on a seam is one point of all its sheets. Each sheet
+    /// keeps its corners that are on no seam, two by two points each, and the conditions of its
+    /// rims.
     ///
     /// The surfaces come out of [`Network::sheet`]; local passes and sweeps cannot keep more than the
     /// position of seams.
@@ -326,7 +328,9 @@ fn check(sheets: &[PatchNet], seam: &Seam) -> Result<(), String> {
             return Err("tangents across an edge need clamped knots of degree 2 or more".to_owned());
         }
         if seam.keeps.kept() >= 2 && sheet.weights.is_some() {
-            return Err("of rational surfaces only the position of a seam can be kept".to_owned());
+            return Err(
+                "for rational surfaces only the position of a seam can be preserved".to_owned()
+            );
         }
     }
     let along = |(sheet, edge): (&PatchNet, NetEdge)| sheet.spaces[1 - edge.direction].clone();
@@ -348,7 +352,7 @@ fn check(sheets: &[PatchNet], seam: &Seam) -> Result<(), String> {
     }
     let apart = knots[0].iter().zip(&knots[1]).any(|(s, t)| (s - t).abs() > 1e-9);
     if near.degree() != far.degree() || knots[0].len() != knots[1].len() || apart {
-        return Err("the edges have not the same degree and knots".to_owned());
+        return Err("the edges differ in degree or knots".to_owned());
     }
     let row = |(sheet, edge): (&PatchNet, NetEdge)| sheet.row(edge, 0);
     let mut others = row(b);

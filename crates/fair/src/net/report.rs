@@ -15,34 +15,35 @@ pub struct NetworkReport {
     pub measure: [f64; 2],
     /// Sum of squared jumps over all curves, before and after.
     pub jumps: [f64; 2],
-    /// No point of the surface (or control point of a network) moved farther.
+    /// Certified bound on the move of the surface (or of a control point of a network).
     pub certified: f64,
     /// The largest distance found by sampling.
     pub sampled: f64,
     /// The measure and the optimality gap within the limits.
     pub certificate: Certificate,
-    /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
+    /// For goals, three times the mean of the squared moves over tolerances; otherwise not a
+    /// number.
     pub used: f64,
-    /// Curves with more inflections than their points within the tolerances require, under the goal
-    /// [`Goal::Near`]: conditions or crossing curves leave no others.
+    /// Curves with more inflections than their points require within the tolerances, under the goal
+    /// [`Goal::Near`]: conditions or crossing curves force them.
     pub bent: Vec<usize>,
-    /// The circular arcs that it was asked to have.
+    /// The requested circular arcs.
     pub arcs: Vec<NetworkArc>,
-    /// Curves that are farther from their originals than their bound: all along, or 1.5 tolerances
-    /// where it is that of the points.
+    /// Curves that exceed their bound on the distance from their originals: the tolerance
+    /// everywhere, or 1.5 tolerances if the bound is that of the points.
     pub swings: Vec<CurveSwing>,
 }
 
 /// Method of fairing a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NetworkMode {
-    /// All curves at once, with a ball round each point, towards a goal.
+    /// All curves at once towards a goal, with a ball round each point.
     Toward(Goal),
     /// All curves at once: the fairest.
     Joint(Bound),
-    /// All curves at once by so many sweeps over single points.
+    /// All curves at once, by a number of sweeps over single points.
     Sweeps(usize),
-    /// Curve after curve: so many passes of so many steps per point.
+    /// Curve after curve: a number of passes, and of steps per point.
     Passes(usize, usize),
 }
 
@@ -55,7 +56,7 @@ impl Network {
         self.report_with(measure, mode, Vec::new())
     }
 
-    /// The same under linear conditions, which the joint optimum alone can keep.
+    /// As `report`, under linear conditions, which only the joint optimum can satisfy.
     ///
     /// # Errors
     /// As [`Network::report`].

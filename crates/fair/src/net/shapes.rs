@@ -14,21 +14,21 @@ use moldloft_num::{Vec3, gauss_points};
 /// A condition of a network. Points are indices of the network's list.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetworkCondition {
-    /// A shape of one curve, whose points have their places on it.
+    /// A shape of one curve, in terms of the indices of its points.
     Curve {
         /// The curve.
         curve: usize,
         /// Its shape.
         shape: ShapeCondition,
     },
-    /// Points in one plane: a flat of side or bottom.
+    /// Points in one plane: a flat part of the side or bottom.
     Flat {
         /// The points.
         points: Vec<usize>,
-        /// The plane's normal, where it is known.
+        /// The plane's normal, if given.
         normal: Option<Vec3<f64>>,
     },
-    /// A curve's tangent at its end, or else at its start.
+    /// A curve's tangent at its end or start.
     Tangent {
         /// The curve.
         curve: usize,
@@ -37,12 +37,12 @@ pub enum NetworkCondition {
         /// The direction.
         direction: Vec3<f64>,
     },
-    /// The volume under the plane sections across an axis, by splines through the sections, stays; or
-    /// else its centre along the axis and across it.
+    /// The volume of the plane sections across an axis, by splines through the sections, or its
+    /// centroid along the axis and across it, is preserved.
     Volume {
         /// The axis.
         axis: Vec3<f64>,
-        /// True if the centre is kept.
+        /// True for the centroid.
         centre: bool,
     },
 }
@@ -59,16 +59,17 @@ pub(super) const MET: f64 = 1e-12;
 /// Tolerance of half-spaces, relative to the mean tolerance: that of the solver.
 pub(super) const KEPT: f64 = 1e-8;
 
-/// The miss of equations, as a share of the mean tolerance, that rounding of a solution may leave.
+/// Residual of equations, relative to the mean tolerance, that the rounding of a solution may
+/// leave.
 pub(super) const SETTLED: f64 = 1e-6;
 
-/// Projections on conditions and tolerances in turn, the share of these that a start has at most, and the
-/// smaller one that is aimed at.
+/// Maximum number of projections on conditions and tolerances in turn; the fraction of the
+/// tolerances that a start may use, and the smaller target.
 const MOST_PROJECTIONS: usize = 2000;
 const STRICTLY: f64 = 0.9999;
 const DEEPER: f64 = 0.999;
 
-/// A factor of a condition below which it depends on those before, as a share of its own size.
+/// Relative size of a condition's factor below which the condition depends on earlier ones.
 const DEPENDENT: f64 = 1e-9;
 
 /// Maximum number of passes over the equations in which ranges of moves are narrowed, and the rounding
@@ -80,19 +81,19 @@ const PROPAGATED: f64 = 1e-6;
 /// near 1, these fall geometrically.
 const NEGLIGIBLE: f64 = 1e-18;
 
-/// By how much a condition that depends on others may contradict these, as a share of the extent:
-/// rounding of what was read.
+/// Allowed contradiction of a condition that depends on others, relative to the extent: rounding of
+/// the input.
 const AGREES: f64 = 1e-9;
 
 /// Conditions of a network made linear at its points.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LinearConditions {
-    /// Equations, each with the condition that asks for it.
+    /// Equations, each with the condition that requires it.
     pub equations: Vec<(Condition, usize)>,
     pub halves: Vec<ControlInequality>,
-    /// By how much equations are missed at these points, and whose that is.
+    /// The largest residual of an equation at these points, and the condition that requires it.
     pub missed: (f64, usize),
-    /// The same of half-spaces.
+    /// The largest distance from a half-space at these points, and the condition that requires it.
     pub left: (f64, usize),
 }
 
@@ -101,8 +102,8 @@ fn refused(shape: usize, why: impl Into<String>) -> FairError {
 }
 
 impl NetworkCondition {
-    /// What stays by its word, "volume" or "centroid", where points move along a direction: sections
-    /// are in planes across the first axis across that.
+    /// The quantity to preserve, "volume" or "centroid", where points move along a direction:
+    /// sections are in planes perpendicular to the first axis perpendicular to it.
     pub fn kept(word: &str, way: Option<Vec3<f64>>) -> Option<Self> {
         let axes = [Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 1.0, 0.0)];
         let across = |a: &Vec3<f64>| way.is_none_or(|way| a.dot(way).abs() < 1e-9 * way.norm());
@@ -182,7 +183,7 @@ impl Network {
                         return Err(refused(
                             owner,
                             format!(
-                                "two straight runs meet at point {0}: a break, {0}",
+                                "two straight runs meet at point {0}: add it to the breaks",
                                 pair[1][0] + 1
                             ),
                         ));
@@ -429,13 +430,14 @@ impl Network {
     /// The volume, or its centre: linear where points move along one direction.
     fn kept_volume(&self, axis: Vec3<f64>, centre: bool) -> Result<Vec<Condition>, String> {
         let Motion::Along(way) = self.limit.motion else {
-            return Err(
-                "the volume of a network is kept where points move along one direction".into()
-            );
+            return Err("the volume of a network can be preserved only if points move along one \
+                direction"
+                .into());
         };
         let axis = axis.normalized().ok_or("the axis has no length")?;
         let up = axis.cross(way).normalized().filter(|_| axis.dot(way).abs() < 1e-9);
-        let up = up.ok_or("the axis of a volume is across the direction in which points move")?;
+        let up =
+            up.ok_or("the axis of a volume must be perpendicular to the direction of motion")?;
         let size = self.extent();
         // The sections: curves in planes across the axis.
         let mut sections: Vec<(f64, usize)> = Vec::new();
@@ -549,8 +551,8 @@ impl Network {
                     return Err(refused(
                         owner,
                         format!(
-                            "points that stay, the direction in which points move or other conditions \
-                             leave it missed by {off:.3e}"
+                            "fixed points, the direction of motion or other conditions leave a \
+                            deviation of {off:.3e}"
                         ),
                     ));
                 }
@@ -644,8 +646,8 @@ impl EquationSpan {
         out
     }
 
-    /// Moves that meet the conditions strictly within the tolerances, by projections on both in turn;
-    /// none where these find none.
+    /// Moves that satisfy the conditions strictly within the tolerances, by projections on both in
+    /// turn; `None` if they find none.
     pub fn within(&self, network: &Network) -> Vec<Vec3<f64>> {
         let radii = &network.limit.radii;
         let mut points = network.points.clone();
@@ -743,8 +745,8 @@ fn factor_size(entries: &[(usize, Vec3<f64>)]) -> f64 {
     entries.iter().map(|(_, f)| f.norm_sq()).sum::<f64>().sqrt()
 }
 
-/// The one direction in which points move that are still in others, where there is one; those that move
-/// in more directions than that one move in it, too.
+/// The common direction of the moving points, if there is one; points that move in more directions
+/// move along it as well.
 pub fn one_way(motion: Motion, held: &[(usize, Vec3<f64>)], points: &[usize]) -> Option<Vec3<f64>> {
     if let Motion::Along(d) = motion {
         return d.normalized();

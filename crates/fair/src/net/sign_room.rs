@@ -18,7 +18,7 @@ const ROUNDS: usize = 3;
 const MISSED: f64 = 1e-5;
 const SMALL: f64 = 0.01;
 
-/// The same distance from a sign's limit below which the others leave it no room.
+/// The same distance from a sign's limit, below which the other conditions do not allow the sign.
 const TIGHT: f64 = 1e-6;
 
 /// Accuracy of the linear program, relative to its value and to a miss of one sign.
@@ -39,7 +39,7 @@ fn sum(entries: &[(usize, problem::V)], x: &[problem::V]) -> f64 {
 pub(super) struct SignRoom {
     /// Signs that it misses.
     pub missed: Vec<bool>,
-    /// Signs that the others leave no room.
+    /// Signs that the other conditions do not allow.
     pub tight: Vec<bool>,
     /// Its displacements from the positions of ties; none where the conditions have no solution.
     pub moves: Vec<Vec3<f64>>,

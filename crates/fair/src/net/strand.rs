@@ -8,20 +8,19 @@ use moldloft_num::Real;
 pub struct NetworkCurve {
     /// Its spline.
     pub space: Space,
-    /// Its control points: places in the network's list.
+    /// Its control points, by index in the network's list.
     pub points: Vec<usize>,
     /// Weights of a rational curve.
     pub weights: Option<Vec<f64>>,
-    /// Its own places that are intended breaks.
+    /// Its control points that are intended breaks, by index on the curve.
     pub marks: Vec<usize>,
-    /// Straight runs among its points, from place to place: nothing is smoothed across their ends but
-    /// the tangent.
+    /// Straight runs, by the indices of their first and last point on the curve: only the tangent
+    /// is continuous across their ends.
     pub runs: Vec<[usize; 2]>,
-    /// Continuity kept at its ends when it is faired alone.
+    /// Continuity at its ends when it is faired alone.
     pub ends: [EndContinuity; 2],
-    /// Parameters of its points in [0, 1], for points that the curve passes through: measures are
-    /// then those of divided differences. Without them the points are control points of its
-    /// spline.
+    /// Parameters of its points in [0, 1], for a curve through its points: measures are then those
+    /// of divided differences. Without parameters the points are control points of its spline.
     pub at: Option<Vec<f64>>,
 }
 

@@ -211,8 +211,8 @@ impl Network {
         Ok((reached.found, bent))
     }
 
-    /// The same for numbers that carry derivatives: points, tolerances, and of each curve with
-    /// parameters these. With the points what is to be said of them.
+    /// As `toward`, for numbers that carry derivatives: points, tolerances, and the parameters of
+    /// each curve that has them. Returns notes with the points.
     ///
     /// # Errors
     /// As [`Network::toward`].
@@ -240,7 +240,7 @@ impl Network {
         }
         if !self.conditions.is_empty() {
             return Err(FairError::NoDerivative(
-                "derivatives of a network with shapes and other conditions are not known",
+                "no derivatives are available for a network with shapes and other conditions",
             ));
         }
         if found.share == 0.0 {
@@ -248,8 +248,8 @@ impl Network {
         }
         if self.first_bound() != Bound::ControlPoints {
             return Err(FairError::NoDerivative(
-                "derivatives of a network with limits all along its curves are not known: take limits of \
-                 its points",
+                "no derivatives are available for a network with limits along its curves: limit \
+                its points",
             ));
         }
         let explained = allowed(0.0, found.used, owners.len()).is_none();
@@ -262,8 +262,8 @@ impl Network {
             // Limits at one line leave the others' parabolas free, and which of them the solver takes
             // says nothing about how they move.
             return Err(FairError::NoDerivative(
-                "the fairest network may be one of many as fair, so that its derivatives are not \
-                 known: take the goal \"budget\"",
+                "several networks may be equally fair, so no derivatives are available: use the \
+                goal \"budget\"",
             ));
         }
         if !rounds.is_empty() {
@@ -278,8 +278,8 @@ impl Network {
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
         {
             return Err(FairError::NoDerivative(
-                "derivatives of a sum of lengths through moving parameters are not known: take \
-                 another measure, or spacing \"index\"",
+                "no derivatives are available for a sum of lengths with moving parameters: use \
+                another measure, or spacing \"index\"",
             ));
         }
         parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
@@ -344,8 +344,8 @@ impl Network {
         let used = fairest.last().map_or(0.0, |round| round.found.used);
         if is_between(used, count) {
             return Err(FairError::NoDerivative(
-                "the budget of this network moves with what its fairest takes, which may be one of many, \
-                 so that its derivatives are not known: take the goal \"budget\"",
+                "the budget of this network depends on the fairest one, which may not be unique, \
+                so no derivatives are available: use the goal \"budget\"",
             ));
         }
         let mut most = T::from(share);
@@ -389,8 +389,8 @@ pub struct NetworkFit {
     pub certificate: Certificate,
     /// Limits that are reached.
     pub active: usize,
-    /// The mean of the squared moves over tolerances, over 1/3.
+    /// Three times the mean of the squared moves over tolerances.
     pub used: f64,
-    /// The same squares of the fairest; 3 if all moves reach their tolerances.
+    /// The same mean for the fairest network; 3 if all moves reach their tolerances.
     pub fairest_used: f64,
 }

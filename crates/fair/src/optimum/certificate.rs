@@ -3,17 +3,17 @@
 use crate::{Job, Limit, Motion, RowNorm, SparseRows};
 use moldloft_num::Vec3;
 
-/// Distance of a result from the best within its limits.
+/// Distance of a result from the optimum within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// The measure of the result.
     pub value: f64,
-    /// No curve within the limits measures less than `value - gap`.
+    /// No curve within the limits has a measure below `value - gap`.
     pub gap: f64,
 }
 
 impl Certificate {
-    /// The gap as a share of the value.
+    /// The gap relative to the value.
     pub fn relative(&self) -> f64 {
         if self.gap <= 0.0 { 0.0 } else { self.gap / self.value }
     }
@@ -30,7 +30,7 @@ pub fn ball_gap(job: &Job, rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>
     gap(&job.points, &job.limit, &job.frozen(), rows, norm, points, &relative)
 }
 
-/// The same for anything that is made of rows.
+/// The gap of any problem whose measure is given by rows.
 pub(crate) fn gap(
     original: &[Vec3<f64>],
     limit: &Limit,

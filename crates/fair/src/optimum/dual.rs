@@ -17,7 +17,7 @@ use crate::optimum::second_order_cone::{V, axpy, dot};
 /// Steps at most; each takes off what rounding left of the one before.
 const STEPS: usize = 4;
 
-/// The least slack of a limit, as a share of its radius: what is nearer is reached.
+/// Minimum slack of a limit, relative to its radius; a closer limit counts as reached.
 const LEAST_SLACK: f64 = 1e-6;
 
 impl<const D: usize> InteriorPointState<'_, D> {

@@ -13,10 +13,11 @@ use moldloft_num::{Dual4, Real, Vec3};
 /// Goal among the curves within the tolerances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The fairest: the least of the measure.
+    /// Minimum of the measure.
     Fairest,
-    /// The fairest of those whose squared residuals, each over its tolerance, have a mean of at
-    /// most this share of 1/3, which is what noise has that fills the tolerance evenly.
+    /// Minimum of the measure among the curves whose squared residuals, each relative to its
+    /// tolerance, have a mean of at most this fraction of 1/3; noise that fills the tolerance
+    /// evenly has a mean of 1/3.
     Budget(f64),
     /// The same, as far as it is worth a move: data whose own curve measures less than one and a
     /// half times as much do not move at all, and from three times on they move all the way.
@@ -26,21 +27,21 @@ pub enum Goal {
     /// quarter more. Of a grid of as many data the budget falls to 0.3 where the fairest surface takes
     /// more than that, and of both to 0.05 where it takes much more.
     Near(f64),
-    /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
-    /// by at most this share. Data that are as fair as that do not move.
+    /// The curve nearest to the data (in the sum of the same squares) whose measure exceeds the
+    /// minimum by at most this fraction. Data that are already as fair do not move.
     Nearest(f64),
-    /// The one nearest to the data whose measure is at most this.
+    /// The curve nearest to the data whose measure is at most this.
     Energy(f64),
-    /// The one nearest to the data that has the shape and meets the conditions asked for, whatever
-    /// it measures. Data that do so do not move.
+    /// The curve nearest to the data that has the shape and meets the conditions, whatever its
+    /// measure. Data that already do so do not move.
     Closest,
 }
 
 /// Solutions at most on the way to a goal.
 const MOST_SOLUTIONS: usize = 60;
 
-/// How many times the optimum's measure the data's own curve must have before anything moves, and
-/// before it moves all the way.
+/// Ratio of the measure of the data's own curve to that of the optimum at which moves begin, and at
+/// which they are complete.
 const STAYS: f64 = 1.5;
 const MOVES: f64 = 3.0;
 
@@ -49,7 +50,8 @@ pub(crate) fn worth<T: Real>(gain: T) -> T {
     worth_beside(gain, 0.0)
 }
 
-/// The same where the measure is as far as `foreign` none of the data's, and says as little about the gain.
+/// [`worth`] where the measure differs by `foreign` from one that suits the data, and therefore
+/// tells less about the gain.
 fn worth_beside<T: Real>(gain: T, foreign: f64) -> T {
     let own = 1.0 - foreign;
     let (stays, moves) = (1.0 + (STAYS - 1.0) * own, 1.0 + (MOVES - 1.0) * own);
@@ -97,7 +99,7 @@ pub(crate) fn is_between(used: f64, count: usize) -> bool {
     count >= FEWEST && foreign > 0.0 && foreign < 1.0
 }
 
-/// From a budget to the least one by a share.
+/// A budget moved towards the minimum by a fraction.
 fn towards<T: Real>(from: T, least: f64, by: T) -> T {
     if from.re() <= least || by.re() <= 0.0 {
         from
@@ -452,7 +454,7 @@ where
         }
         if norm != RowNorm::Square {
             return Err(FairError::Goal(
-                "a sum of lengths has neither budget nor share: take `fairest`",
+                "budget and share do not apply to a sum of lengths: use `fairest`",
             ));
         }
         // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
@@ -497,7 +499,8 @@ where
                 best = Some((trial, value, bounded.clone()));
                 break;
             }
-            // Where it is known which limits are reached, or there are few, each further solution is quick.
+            // If it is known which limits are reached, or there are few, each further solution is
+            // fast.
             let cheap = known.is_some() && (decided || !many);
             let close = if cheap { DECIDED } else { GOAL_ACCURACY };
             idle = if better { 0 } else { idle + 1 };
@@ -558,15 +561,15 @@ where
 pub(crate) fn check_single(found: &GoalOptimum, begin: f64) -> Result<(), FairError> {
     if found.weight == 0.0 && found.share > 0.0 && found.least <= NOTHING * begin {
         return Err(FairError::NoDerivative(
-            "more than one result within the tolerance measures nothing, so derivatives of the one \
-             that was taken are not known: take a smaller tolerance",
+            "several results within the tolerance have measure 0, so no derivatives are \
+            available: use a smaller tolerance",
         ));
     }
     Ok(())
 }
 
-/// The weight of the data, as a share of that which balances the measure, by which one of many fairest
-/// results would go to the data, and how far, in tolerances.
+/// Weight of the data, relative to the one that balances the measure, that moves one of many
+/// fairest results to the data, and the distance of that move, in tolerances.
 const LIGHT: f64 = 1e-6;
 const APART: f64 = 0.05;
 
@@ -599,8 +602,8 @@ pub(crate) fn check_unique(
     let far = (0..pull.len()).map(|k| pull.apply(k, &between).norm()).fold(0.0, f64::max);
     if far > APART {
         return Err(FairError::NoDerivative(
-            "more than one result within the tolerance is the fairest, so derivatives of the one that \
-             was taken are not known: take the goal \"budget\"",
+            "several results within the tolerance are equally fair, so no derivatives are \
+            available: use the goal \"budget\"",
         ));
     }
     Ok(())
@@ -614,14 +617,14 @@ pub(crate) fn check_unique(
 pub(crate) fn check_decided(found: &GoalOptimum, solved: &Solved) -> Result<(), FairError> {
     if found.weight == 0.0 && found.share > 0.0 && !solved.is_decided() {
         return Err(FairError::NoDerivative(
-            "which tolerances the fairest reaches is not decided to rounding, so its derivatives are \
-             not known: take the goal \"budget\"",
+            "the tolerances that the fairest result reaches are undecided within rounding, so no \
+            derivatives are available: use the goal \"budget\"",
         ));
     }
     Ok(())
 }
 
-/// The share of the data's own measure that is nothing.
+/// Fraction of the data's own measure that counts as zero.
 const NOTHING: f64 = 1e-9;
 
 /// Variations of the data of a result.
@@ -701,7 +704,8 @@ pub(crate) fn moved<T: Real>(
         let (change, rate) = match goal {
             Goal::Nearest(_) | Goal::Energy(_) | Goal::Closest => {
                 return Err(FairError::NoDerivative(
-                    "derivatives of the nearest curve are not known: take `near`, `budget` or `fairest`",
+                    "no derivatives are available for the nearest curve: use `near`, `budget` or \
+                    `fairest`",
                 ));
             }
             _ => {

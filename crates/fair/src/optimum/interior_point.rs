@@ -13,27 +13,27 @@ use moldloft_num::Real;
 
 const MOST_ITERATIONS: usize = 80;
 
-/// The share of the value at which the gap shows which limits are reached, and the next one when it
-/// did not: there the solution is polished.
+/// Relative gap at which the reached limits become visible, and the next one if they did not: the
+/// solution is polished there.
 const SHOWS: f64 = 1e-7;
 
 /// Newton steps without a better certificate after which it will not get better.
 const MOST_IDLE: usize = 6;
 
-/// The step, as a share of Newton's, that moves nothing.
+/// Step, relative to Newton's, that counts as no move.
 const STUCK: f64 = 1e-9;
 
 /// The same as long as the conditions are not met.
 const MOST_TRIALS: usize = 12;
 
-/// Once the complementarity is this share of the certified gap, the rest of the gap is rounding.
+/// Ratio of the complementarity to the certified gap below which the remaining gap is rounding.
 const ROUNDING: f64 = 1e-3;
 
-/// The share of the value from which on a gap is worth a better dual point.
+/// Relative gap above which a better dual point is worth computing.
 const REFINED: f64 = 1e-6;
 
-/// The most unknowns of which a solution that rounding ended is polished all the same: of more, squares
-/// of fourth differences have too few digits left.
+/// Maximum number of unknowns for polishing a solution that rounding ended: with more, squares of
+/// fourth differences have too few digits left.
 const POLISHED: usize = 1000;
 
 /// The largest matrix of which the measure's share is kept beside the sum.
@@ -71,7 +71,7 @@ impl<const D: usize> Half<D> {
         near.map(stiffness).fold(0.0, f64::max)
     }
 
-    /// By how much it is left, as a share of its scale.
+    /// Violation, relative to its scale.
     fn outside(&self, x: &[V<D>]) -> f64 {
         let off = self.at(x) - self.room;
         if off <= 0.0 { 0.0 } else { off / self.scale.max(f64::MIN_POSITIVE) }
@@ -98,7 +98,7 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub nu: Vec<f64>,
     /// Set once the solution is polished.
     pub active: Option<Active>,
-    /// The measure's share of the matrix.
+    /// The part of the matrix from the measure.
     base: Option<Band>,
     /// A bound on the gap by a better dual point than that of the displacements.
     refined: Option<f64>,
@@ -583,7 +583,8 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         (value, gap.max(0.0))
     }
 
-    /// Adds the forces of conditions and half-spaces to a slope; returns the half-spaces' share of the gap.
+    /// Adds the forces of conditions and half-spaces to a slope; returns the part of the gap from
+    /// the half-spaces.
     pub fn add_linear(&self, slope: &mut [V<D>]) -> f64 {
         let mut gap = 0.0;
         for (condition, nu) in self.conditions.iter().zip(&self.nu) {
@@ -653,7 +654,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         self.cones.extend(lengths);
         let size = |f: &[(usize, V<D>)]| f.iter().map(|(_, f)| dot(*f, *f).sqrt()).sum::<f64>();
         for half in &mut self.halves {
-            // Outside it begins with a slack all the same, and comes in step by step.
+            // If it is outside, it begins with a positive slack, and enters step by step.
             half.slack = (half.room - half.at(&self.x)).abs().max(0.1 * half.scale).max(1e-200);
             half.force = force / size(&half.entries).max(f64::MIN_POSITIVE);
         }
@@ -801,7 +802,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     }
 }
 
-/// The iterate with the least gap of those that meet what is asked.
+/// The iterate with the least gap among those that meet the requested accuracy.
 struct BestIterate<const D: usize> {
     gap: f64,
     x: Vec<V<D>>,
@@ -888,7 +889,7 @@ pub(crate) fn solve<const D: usize>(
         state.direction(&band, &dense, centring * mu, Some(&affine), &mut corrected);
         let longest = state.longest(&corrected);
         if !corrected.is_finite() {
-            // The matrix has no digits left: what was reached before stands.
+            // The matrix has no digits left: the earlier result is kept.
             break;
         }
         let by = (longest * 0.99).min(1.0);
@@ -910,7 +911,7 @@ pub(crate) fn solve<const D: usize>(
             turned = mu;
         }
         if meets && best.as_ref().is_none_or(|b| gap < b.gap) {
-            // Better by a hair is no better.
+            // A minimal improvement does not count.
             let hair = best.as_ref().is_some_and(|b| gap > 0.99 * b.gap);
             idle = if hair && !nears { idle + 1 } else { 0 };
             best = Some(BestIterate::of(&state, gap));
@@ -944,7 +945,7 @@ pub(crate) fn solve<const D: usize>(
         let gap = best.gap;
         best.restore(&mut state);
         if state.polished() && state.unknowns() <= POLISHED {
-            // Where rounding ends the search early, the limits that are reached may show all the same.
+            // If rounding ends the search early, the reached limits may still be visible.
             let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
             let better = state.polish(&mut band, margin) && {
                 let missed = state.missed();

@@ -26,8 +26,8 @@ use ties::Ties;
 pub enum Bound {
     /// Each control point stays near its original place.
     ControlPoints,
-    /// Each Bézier point of the displacement stays small, which bounds the displacement of the
-    /// curve everywhere and leaves the control points more room.
+    /// Each Bézier point of the displacement is bounded, which bounds the displacement of the curve
+    /// everywhere and allows larger moves of control points.
     Bezier,
 }
 
@@ -40,13 +40,13 @@ pub struct OptimumOptions {
     pub bound: Bound,
     /// Conditions besides the ends.
     pub conditions: Vec<Condition>,
-    /// The certified gap to reach, as a share of the measure.
+    /// The certified gap to reach, relative to the measure.
     pub accuracy: f64,
 }
 
 impl OptimumOptions {
-    /// The fairest curve by a measure under balls round the control points, to a relative gap
-    /// of 1e-9.
+    /// The defaults: the minimum of a measure with a ball round each control point, to a relative
+    /// gap of 1e-9.
     pub fn of(measure: Measure) -> Self {
         Self { measure, bound: Bound::ControlPoints, conditions: Vec::new(), accuracy: 1e-9 }
     }
@@ -55,20 +55,20 @@ impl OptimumOptions {
 /// The fairest curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
-    /// The control points; those that must not move have their original bits.
+    /// The control points; fixed ones are unchanged to the bit.
     pub points: Vec<Vec3<f64>>,
-    /// The measure and the proven bound on the optimality gap.
+    /// The measure, with the proven bound on the optimality gap.
     pub certificate: Certificate,
     /// Newton steps taken.
     pub iterations: usize,
-    /// The number of limits that are reached.
+    /// Number of limits reached.
     pub active: usize,
 }
 
 /// Reach of points without a tolerance, in extents.
 pub(crate) const FAR: f64 = 10.0;
 
-/// The gap, as a share of the measure, to which the weight of a budget is looked for.
+/// Relative gap to which the weight of a budget is determined.
 const WEIGHED: f64 = 1e-8;
 
 /// The same that rounding may leave of very many.
@@ -139,10 +139,11 @@ pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError
     Parts::of(job, options)?.solve()
 }
 
-/// The same for numbers that carry derivatives: `points` and `tolerances` (per control point) have
-/// the real parts of the job, whose weights are constant, `targets` those of the values of the options' conditions (empty when these are constant). Derivatives follow from the
-/// conditions of optimality by the implicit function theorem; real parts are the bits of
-/// [`optimum`]. Factors of conditions are taken as constant.
+/// As `optimum`, for numbers that carry derivatives: `points` and `tolerances` (per control point)
+/// have the real parts of the job, whose weights are constant, `targets` those of the values of the
+/// options' conditions (empty when these are constant). Derivatives follow from the conditions of
+/// optimality by the implicit function theorem; real parts are the bits of [`optimum`]. Factors of
+/// conditions are taken as constant.
 ///
 /// # Errors
 /// As [`optimum`].
@@ -463,7 +464,7 @@ impl<'a> Parts<'a> {
             })
         };
         let mut values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
-        // d(A x) = 0 and d(slope + nu A) = 0: both have a share of dA.
+        // d(A x) = 0 and d(slope + nu A) = 0: both contain dA.
         let none = bends.is_empty() && forces.is_empty();
         let mut pushes = vec![[T::zero(); 3]; if none { 0 } else { points.len() }];
         for (push, force) in pushes.iter_mut().zip(forces) {

@@ -20,7 +20,7 @@ use moldloft_num::Real;
 /// One coordinate triple; only those of the problem's dimension are used.
 pub(crate) type V = [f64; 3];
 
-/// A limit |o_k + Q_k x| <= radius, of all coordinates together or of each by itself.
+/// A limit |o_k + Q_k x| <= radius, of all coordinates together or of each separately.
 pub(crate) struct NormBounds {
     pub rows: SparseRows,
     /// Each row is a single point, each point has at most one row.
@@ -28,7 +28,7 @@ pub(crate) struct NormBounds {
     pub radii: Vec<f64>,
     /// Offsets of the rows, shorter than their radii; zero when empty.
     pub offsets: Vec<V>,
-    /// Each coordinate is limited by itself.
+    /// True to limit each coordinate separately.
     pub separate: bool,
 }
 
@@ -143,8 +143,8 @@ impl UnknownOrder {
     }
 }
 
-/// An order of the unknowns with a narrow band: as they stand, or by breadth-first search from a
-/// point at the rim (Cuthill and McKee 1969), whichever is narrower.
+/// An order of the unknowns with a narrow band: the original one, or that of a breadth-first search
+/// from a point at the rim (Cuthill and McKee 1969), whichever is narrower.
 fn order(p: &Problem) -> (Vec<u32>, usize, usize) {
     let n = p.frozen.len();
     let natural: Vec<u32> = {

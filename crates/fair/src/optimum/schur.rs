@@ -24,7 +24,7 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    /// The system of conditions over so many unknowns; `inverse` solves with the factored matrix, in place.
+    /// The system of `n` conditions; `inverse` solves with the factored matrix, in place.
     pub fn new<const D: usize>(
         conditions: &[LinearConstraint<D>],
         unknowns: usize,

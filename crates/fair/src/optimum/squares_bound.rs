@@ -136,7 +136,7 @@ impl<const D: usize> SquaresBound<D> {
         }
     }
 
-    /// The changes that go with a displacement.
+    /// The changes that accompany a displacement.
     pub fn change(&self, towards: Option<(f64, &BoundStep)>, x: &[V<D>]) -> BoundStep {
         let along: f64 = self.slope.iter().zip(x).map(|(a, b)| dot(*a, *b)).sum();
         let slack = -along - towards.map_or(0.0, |(_, before)| before.square);
@@ -161,8 +161,9 @@ impl<const D: usize> SquaresBound<D> {
         self.follow(x);
     }
 
-    /// Adds the force's share of the slope at `x`, and returns that of the gap: of all that keep the
-    /// bound none lies farther along the slope than the sum of squares allows, which is convex.
+    /// Adds the contribution of the force to the slope at `x`, and returns its contribution to the
+    /// gap: no point within the bound is farther along the slope than the convex sum of squares
+    /// allows.
     pub fn certify(&self, x: &[V<D>], slope: &mut [V<D>]) -> f64 {
         let mut squares = 0.0;
         for k in 0..self.rows.len() {

@@ -244,7 +244,7 @@ fn derivatives_are_differences(
     let at = [at[0].as_slice(), at[1].as_slice()];
     let tolerances = vec![Dual4::seeded(tolerance, 2); points.len()];
     let made = match fair_grid_with(&data, measure, goal, 1e-13, &moving, &tolerances, at) {
-        Err(FairError::Goal(why)) if why.contains("not decided") => return false,
+        Err(FairError::Goal(why)) if why.contains("undecided") => return false,
         made => made.unwrap().0,
     };
     // The corners of the net are the data's, and the curve along a rim is a spline: compare the

@@ -165,7 +165,7 @@ fn what_cannot_be_joined_is_refused() {
     assert!(said(&sheets, across).contains("10 control points, the other 8"));
     let mut low = sheets.clone();
     low[1].spaces[1] = Space::clamped(4, 8).unwrap();
-    assert!(said(&low, seam).contains("degree and knots"));
+    assert!(said(&low, seam).contains("degree or knots"));
     let mut rational = sheets.clone();
     rational[0].weights = Some(vec![1.0; 80]);
     assert!(said(&rational, seam).contains("rational"));

@@ -48,7 +48,7 @@ impl<T: Real> Spanning<T> {
                 }
                 (_, Some(true)) => round.push(p),
                 (form, Some(false)) => {
-                    return no_hull(format!("what is outside of a {}", form.name()));
+                    return no_hull(format!("the outside of a {}", form.name()));
                 }
                 (form, None) => return no_hull(format!("a {}", form.name())),
             }

@@ -64,8 +64,8 @@ fn grown<T: Real>(p: &Primitive<T>, distance: T) -> Result<Set<T>, FieldError> {
 }
 
 impl<T: Real> Set<T> {
-    /// The body grown by a distance, or shrunk by a negative one: the faces that it shows move along their normals. Edges
-    /// that open stay sharp (mitred); the others are exact.
+    /// The body grown by a distance, or shrunk by a negative one: its visible faces move along
+    /// their normals. Opening edges are mitred, all others are exact.
     ///
     /// Faces of the formula on which the body does not end, such as those between parts face to face or the ends of a cutter
     /// outside, do not count.
@@ -109,7 +109,7 @@ impl<T: Real> Set<T> {
         })
     }
 
-    /// The wall of that thickness inside of the body's surface.
+    /// The wall of the given thickness inside the body's surface.
     ///
     /// # Errors
     /// As [`Set::offset`]; a thickness that is not above zero.

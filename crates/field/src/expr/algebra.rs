@@ -5,14 +5,14 @@ use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
 use moldloft_num::{Box3, Real, Vec3};
 
-/// A function of one number.
+/// A function of one variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unary {
     /// -x.
     Neg,
-    /// |x|; at zero with the slope of x, so that sheets have normals.
+    /// |x|; at zero it has the slope of x, so that sheets have normals.
     Abs,
-    /// 1 above zero, else -1.
+    /// 1 if positive, else -1.
     Sign,
     /// Square root; of negative numbers zero, and at zero with slope zero.
     Sqrt,
@@ -24,7 +24,7 @@ pub enum Unary {
     Cos,
     /// Exponential.
     Exp,
-    /// Natural logarithm; it has no value where x is not above 0.
+    /// Natural logarithm; without a value unless x is positive.
     Ln,
     /// Tangent; it has poles.
     Tan,
@@ -577,7 +577,7 @@ impl Algebra<f64> for Interval {
 pub struct GradientRange {
     /// Range of the value.
     pub value: Interval,
-    /// Ranges of the derivatives; where the function has a kink, of the slopes of its chords.
+    /// Ranges of the derivatives; at a kink of the function, ranges of the slopes of its chords.
     pub slope: [Interval; 3],
 }
 

@@ -171,8 +171,8 @@ pub fn round<T: Real>(
     Ok(SetBlend { primitive: -hollow.primitive, patch, set: hollow.set.complement() })
 }
 
-/// The body `l1` up to the rail `l3`, the body `l2` up to the rail `l4`, and Zhang's transition between:
-/// the solid sides of the rails keep the bodies.
+/// The union of Zhang's transition between two bodies with the part of `l1` that is inside the rail `l3`
+/// and the part of `l2` inside the rail `l4`.
 ///
 /// # Errors
 /// As [`zhang`].

@@ -189,8 +189,8 @@ impl<T: Real> Primitive<T> {
         Ok(f.remembered(Form::Cylinder { axis, radius }))
     }
 
-    /// The double cone p^2 + q^2 - (h tan(a/2))^2 with its apex at the axis's point; `angle` is the full
-    /// angle a, below pi. One nappe is the intersection with a half-space through the apex.
+    /// The double cone p^2 + q^2 - (h tan(a/2))^2 with its apex at the axis's point; `angle` is the
+    /// full angle a, below pi. For one nappe, intersect with a half-space through the apex.
     ///
     /// # Errors
     /// An angle outside (0, pi), an axis without direction, numbers that are not finite.

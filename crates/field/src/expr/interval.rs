@@ -4,8 +4,8 @@ use moldloft_num::Box3;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// The numbers between two ends. Every operation encloses all real results, and also the result
-/// that plain double arithmetic gives, whatever the rounding.
+/// The numbers between two ends. Every operation encloses all real results, and the result of plain
+/// double arithmetic in any rounding mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Low end.
@@ -80,20 +80,20 @@ impl Interval {
         Self { low: self.low.min(o.low), high: self.high.max(o.high) }
     }
 
-    /// The numbers in both. Two enclosures of one number always meet; if rounding at infinity ever
-    /// made them miss, the first is kept.
+    /// The numbers in both. Two enclosures of one number always overlap; if rounding at infinity
+    /// separates them, the result is the first.
     pub fn meet(self, o: Self) -> Self {
         let (low, high) = (self.low.max(o.low), self.high.min(o.high));
         if low <= high { Self { low, high } } else { self }
     }
 
-    /// The smaller of a number of each.
+    /// The minima of a number of each interval.
     #[inline(always)]
     pub fn min(self, o: Self) -> Self {
         Self { low: self.low.min(o.low), high: self.high.min(o.high) }
     }
 
-    /// The larger of a number of each.
+    /// The maxima of a number of each interval.
     #[inline(always)]
     pub fn max(self, o: Self) -> Self {
         Self { low: self.low.max(o.low), high: self.high.max(o.high) }
@@ -106,7 +106,7 @@ impl Interval {
         if c < 0.0 { Self::outward(b, a) } else { Self::outward(a, b) }
     }
 
-    /// Its numbers divided by `c`, which is not zero.
+    /// The interval divided by `c`, which is not zero.
     pub fn divided(self, c: f64) -> Self {
         let (a, b) = (self.low / c, self.high / c);
         if c < 0.0 { Self::outward(b, a) } else { Self::outward(a, b) }
@@ -132,7 +132,7 @@ impl Interval {
         Self { low: out.low.max(0.0), high: out.high }
     }
 
-    /// Powers with a whole exponent, even ones not below zero.
+    /// Powers with an integer exponent; even powers are not negative.
     pub fn powi(self, n: u32) -> Self {
         match n {
             0 => Self::point(1.0),
@@ -202,7 +202,7 @@ impl Interval {
         Self { low: out.low.max(-1.0), high: out.high.min(1.0) }
     }
 
-    /// Sines: cosines a quarter turn later.
+    /// Sines, as cosines shifted by a quarter turn.
     pub fn sin(self) -> Self {
         (self - Self { low: FRAC_PI_2, high: FRAC_PI_2.next_up() }).cos()
     }

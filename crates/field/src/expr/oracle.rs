@@ -4,8 +4,8 @@ use crate::expr::interval::Interval;
 use moldloft_num::{Box3, Field, Real, Vec3};
 use std::sync::Arc;
 
-/// A primitive that is not a formula of ours. Its ranges must contain every value that it takes; wide
-/// ones cost time, wrong ones cost correctness.
+/// An external primitive. Its ranges must contain all its values; wide ranges cost time, wrong ones
+/// correctness.
 pub trait Oracle<T: Real>: Field<T> {
     /// A range of the value over a box.
     fn range(&self, over: &Box3) -> Interval;
@@ -36,8 +36,8 @@ pub trait Oracle<T: Real>: Field<T> {
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }
 
-/// A plain primitive among numbers with derivatives: it depends on no parameter, but its position
-/// may.
+/// A plain primitive in calculations with derivatives: it depends on no parameter, though its
+/// position may.
 pub struct Constant(pub Arc<dyn Oracle<f64>>);
 
 /// True when a point carries no derivatives.
@@ -112,7 +112,7 @@ impl<T: Real> Oracle<T> for Constant {
     }
 }
 
-/// An affine map of space, here from the world to where a primitive was made.
+/// An affine map of space, here from the world to the frame in which a primitive was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine<T> {
     /// Rows of the matrix.
@@ -122,7 +122,7 @@ pub struct Affine<T> {
 }
 
 impl<T: Real> Affine<T> {
-    /// The map that changes nothing.
+    /// The identity map.
     pub fn identity() -> Self {
         let rows = [Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 1.0, 0.0), Vec3::of(0.0, 0.0, 1.0)];
         Self { rows, shift: Vec3::zero() }
@@ -157,7 +157,7 @@ impl<T: Real> Affine<T> {
         Self { rows: self.rows.map(|row| first.pull_back(row)), shift: self.apply(first.shift) }
     }
 
-    /// The same with real parts only.
+    /// The map with real parts only.
     pub fn re(&self) -> Affine<f64> {
         Affine { rows: self.rows.map(|r| r.re()), shift: self.shift.re() }
     }

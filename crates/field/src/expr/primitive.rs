@@ -305,7 +305,7 @@ impl<T: Real> Primitive<T> {
     pub fn exp(&self) -> Self {
         self.unary(Unary::Exp)
     }
-    /// Natural logarithm: without a value where it is not above zero.
+    /// Natural logarithm, defined where the primitive is positive.
     pub fn ln(&self) -> Self {
         self.unary(Unary::Ln)
     }
@@ -391,8 +391,8 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// The degree of the polynomial, as svLis counts it: reals 0, planes 1, sums the larger,
-    /// products the sum, functions one more, primitives from outside 100.
+    /// The degree of the polynomial, counted as in svLis: reals 0, planes 1, sums the maximum,
+    /// products the sum, functions one more, external primitives 100.
     pub fn degree(&self) -> u32 {
         self.0.degree
     }
@@ -448,12 +448,12 @@ impl<T: Real> Primitive<T> {
         &self.0.op
     }
 
-    /// Its value, when it is a constant.
+    /// Its value if it is constant.
     pub fn constant_value(&self) -> Option<f64> {
         self.as_real().map(T::re)
     }
 
-    /// True when no point changes its value.
+    /// True if its value is the same at all points.
     pub fn is_constant(&self) -> bool {
         self.as_real().is_some()
     }
@@ -512,7 +512,7 @@ impl<T: Real> Primitive<T> {
 }
 
 impl Primitive<f64> {
-    /// The same function among numbers with derivatives; it depends on no parameter.
+    /// The same function in numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Primitive<S> {
         self.rebuilt(
             &|c| S::from(c),

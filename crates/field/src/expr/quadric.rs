@@ -19,17 +19,17 @@ pub enum QuadricClass {
     Ellipsoid,
     /// An elliptic cylinder, along the third axis.
     Cylinder,
-    /// An elliptic cone about the third axis; as wide as high at the ends of its axes.
+    /// An elliptic cone about the third axis; its radii equal its height at the ends of the axes.
     Cone,
 }
 
-/// A quadric by its centre and the vectors to the ends of its axes: the image of the unit sphere, of the cylinder
-/// x^2 + y^2 = 1 or of the cone x^2 + y^2 = z^2 of coordinates along them.
+/// A quadric given by its centre and the vectors to the ends of its axes: the image of the unit
+/// sphere, the cylinder x^2 + y^2 = 1 or the cone x^2 + y^2 = z^2 in coordinates along these.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricAxes {
     /// Class.
     pub class: QuadricClass,
-    /// Its centre: of a cone its apex, of a cylinder a point of its axis.
+    /// Its centre; for a cone its apex, for a cylinder a point of its axis.
     pub centre: Vec3,
     /// The half axes, at right angles; a cylinder's third one has the length of its second.
     pub half: [Vec3; 3],

@@ -8,7 +8,7 @@
 use crate::{FieldError, Primitive};
 use moldloft_num::Real;
 
-/// The shape of a smooth minimum: how it falls below its operands.
+/// Shape of a smooth minimum: how far it is below its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SmoothShape {
     /// g = h^2 / 4: common tangents at the ends of the blend.
@@ -34,8 +34,8 @@ impl SmoothShape {
     pub const NAMES: [&'static str; 3] = ["quadratic", "cubic", "circular"];
 }
 
-/// The smooth minimum of two functions: the union of their solid sides with their edge filled, over a width in which they differ
-/// by less than `width`.
+/// The smooth minimum of two functions: the union of their solid sides with filled edges, where the
+/// functions differ by less than `width`.
 ///
 /// # Errors
 /// A width that is not above zero.

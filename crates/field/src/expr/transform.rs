@@ -27,7 +27,7 @@ impl<T: Real> Affine<T> {
         Self::from_images(|p| point + (p - point) * factor)
     }
 
-    /// Stretches along `axis` by `factor`, the plane across its point staying.
+    /// Stretches along `axis` by `factor`; the plane through its point across it is fixed.
     pub fn stretch(axis: &Axis<T>, factor: T) -> Self {
         let d = axis.direction;
         Self::from_images(|p| p + d * (d.dot(p - axis.point) * (factor - 1.0)))
@@ -58,7 +58,7 @@ impl<T: Real> Affine<T> {
 
 impl<T: Real> Primitive<T> {
     /// The primitive moved by an affine map: its value at the image of a point is the old value at
-    /// the point. Planes stay planes; forms are kept when all lengths change by one factor.
+    /// the point. Planes stay planes; forms are preserved by uniform scaling.
     ///
     /// # Errors
     /// A map without inverse.

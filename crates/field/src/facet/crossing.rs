@@ -6,7 +6,7 @@ use moldloft_parallel::prelude::*;
 use smallvec::SmallVec;
 
 /// Intersecting pairs of faces of a triangle mesh, in order, by the signs of volumes; pairs that
-/// touch within rounding do not count. With `flagged`, only pairs with a flagged one.
+/// touch within rounding do not count. With `flagged`, only pairs that contain a flagged face.
 ///
 /// # Example
 /// ```

@@ -20,7 +20,7 @@ struct MemoEntry {
 const MOST: usize = 12;
 const MOST_CELLS: usize = 1_500_000;
 
-/// The facets that a model made last.
+/// The facets computed last for a model.
 #[derive(Default)]
 pub struct FacetMemo(Mutex<VecDeque<MemoEntry>>);
 

@@ -61,26 +61,27 @@ const REFINEMENT_BYTES: u64 = 400;
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
 pub struct Facets {
-    /// The triangles: closed, manifold, oriented; one patch per primitive that shows.
+    /// The triangles: closed, manifold, oriented; one patch per visible primitive.
     pub mesh: Mesh,
     /// The leaves of the set, followed by the six faces of the box.
     pub leaves: Vec<Leaf>,
-    /// Number of leaves that are the set's own.
+    /// Number of leaves of the set itself.
     pub own_leaves: usize,
     /// The leaf of each patch.
     pub patch_leaves: Vec<usize>,
     /// Leaves of each vertex.
     pub surfaces: Vec<SmallVec<[u32; 3]>>,
-    /// Cells whose triangles cut others, or may when the facets were to be sharp. Elsewhere no two triangles meet except where they join: by
-    /// construction, or where a cell has several vertices or one outside it, by test.
+    /// Cells whose triangles intersect others, or may do so if facets were to be sharp. Elsewhere
+    /// no two triangles intersect: by construction, or by test for cells with several vertices or
+    /// one outside.
     pub undecided: Vec<Box3>,
     /// Cells with cut-off edges or corners: no vertex is within a hundredth of a cell of the edge
-    /// or corner, because it is thinner than a cell, or because its vertices would have made
-    /// triangles intersect. Also cells in which another primitive cuts off surfaces of triangles by
-    /// as much at their corners, midpoints of sides or centres, and cells with folded triangles.
+    /// or corner. Causes: a feature thinner than a cell, or vertices that would have made triangles
+    /// intersect. Includes cells in which another primitive cuts off triangles by as much at their
+    /// corners, midpoints or centres, and cells with folded triangles.
     pub blunt: Vec<Box3>,
-    /// Cells, or parts of them, that may contain features that their corners do not show. Nothing
-    /// is missed elsewhere.
+    /// Cells, or parts of them, that may contain features that do not show at their corners.
+    /// Elsewhere no feature is missed.
     pub unresolved: Vec<Unresolved>,
     /// Contacts of bodies without common volume, which were meshed separately.
     pub contacts: Vec<Vec3>,
@@ -88,7 +89,7 @@ pub struct Facets {
     pub(crate) about: Vec3,
     /// Number of cells that the surface passes through.
     pub cells: usize,
-    /// Side of a cell; of a body of planes alone, its shortest edge.
+    /// Side of a cell; for a body of planes its shortest edge.
     pub step: f64,
     /// Number of blocks of 8 x 8 x 8 cells that contain the surface.
     pub blocks: usize,
@@ -134,8 +135,8 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
     Ok(capped)
 }
 
-/// The facets of `set` within the box `over`, of whose faces those that cut the set are faces of the
-/// mesh, too.
+/// The facets of `set` within the box `over`; faces of the box that cut the set are faces of the
+/// mesh.
 ///
 /// # Errors
 /// A box without volume or thinner than its cells, a resolution beyond the limit, a primitive without value, a budget that is spent.
@@ -157,8 +158,7 @@ pub fn facet(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Facets, F
     refacet(set, over, options, None)
 }
 
-/// As [`facet`], taking over from `before` the blocks in which the set did not change: the result is
-/// the same, bit for bit.
+/// As `facet`, with unchanged blocks taken from `before`: the same result, bit for bit.
 ///
 /// # Errors
 /// As [`facet`].
@@ -572,7 +572,7 @@ pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
 }
 
 impl Facets {
-    /// The unresolved regions, neighbours joined: at most 100, the largest first.
+    /// The unresolved regions with neighbours joined: at most 100, largest first.
     pub fn open_places(&self) -> Vec<Unresolved> {
         unresolved::gathered(&self.unresolved, self.step)
     }

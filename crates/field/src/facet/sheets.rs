@@ -20,11 +20,11 @@ use std::collections::HashMap;
 pub struct Sheet {
     /// Its triangles, with normals along the gradient of the primitive; open at its boundary.
     pub mesh: Mesh,
-    /// The number of its leaf among [`Set::leaves`].
+    /// Index of its leaf in [`Set::leaves`].
     pub leaf: usize,
     /// Leaves of its vertices.
     pub on: LeafIncidence,
-    /// The number of its primitive among the leaves of `on`.
+    /// Index of its primitive among the leaves of `on`.
     pub own: usize,
 }
 
@@ -33,7 +33,7 @@ pub struct Sheet {
 pub struct TriplePoint {
     /// Position.
     pub point: Vec3,
-    /// The numbers of its three leaves.
+    /// Indices of its three leaves.
     pub leaves: [usize; 3],
     /// Leaves of the point.
     pub on: LeafIncidence,
@@ -52,7 +52,7 @@ impl Sheet {
     }
 }
 
-/// A set of mixed dimension.
+/// A set of solids, sheets, wires and points.
 #[derive(Clone, Debug)]
 pub struct Mixed {
     /// The solid part.
@@ -63,7 +63,7 @@ pub struct Mixed {
     pub wires: Vec<FacetWire>,
     /// The points where three sheets meet.
     pub points: Vec<TriplePoint>,
-    /// The leaves of the set, by which the others are numbered.
+    /// The leaves of the set, to which the indices refer.
     pub leaves: Vec<Leaf>,
 }
 
@@ -193,7 +193,7 @@ fn behind(
 pub struct BehindSheet {
     /// The closed facets of the solid.
     pub facets: Facets,
-    /// For each of its patches, whether that is the sheet.
+    /// For each of its patches, true if it is the sheet.
     pub shown: Vec<bool>,
     /// Attributes of the sheet.
     pub info: PatchInfo,

@@ -81,8 +81,8 @@ impl Facets {
         self.shells().iter().filter(|s| s.volume > 0.0).count()
     }
 
-    /// Contacts: positions at which two shells have a vertex each, ascending by x, y, z. Each shell
-    /// keeps its own vertex there, so that both stay manifold.
+    /// Contacts: positions where two shells have a vertex each, ascending by x, y, z. The vertices
+    /// are separate, so that both shells are manifold.
     pub fn touching(&self) -> Vec<Vec3> {
         let shells = self.shells();
         if shells.len() < 2 {

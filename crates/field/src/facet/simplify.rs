@@ -226,9 +226,9 @@ impl Simplifier<'_> {
 }
 
 impl Facets {
-    /// The same surface with fewer triangles: middles and sides of triangles stay within `accuracy` of it, by
-    /// |f| / |f'|, where they were. Closed, manifold and oriented as before; no two triangles cut each other
-    /// that did not.
+    /// The same surface with fewer triangles: their centres and sides stay within `accuracy` of it,
+    /// by |f| / |f'|, where they already were. The mesh stays closed, manifold and oriented,
+    /// without additional intersections.
     ///
     /// # Errors
     /// An accuracy that is not above zero.

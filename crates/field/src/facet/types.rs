@@ -16,10 +16,11 @@ use std::sync::Arc;
 pub enum Resolution {
     /// Cells of side (longest side of the box) / 2^depth.
     Depth(u32),
-    /// As that depth, but no coarser than the thinnest side of the box at level 5, a half of it at 6 and so on.
+    /// As `Depth`, but no coarser than the thinnest side of the box at level 5, half of it at 6 and
+    /// so on.
     Level(u32),
-    /// Triangle centres at most about this far from the surface: estimated by |f| / |f'| and kept by
-    /// refining, not proved.
+    /// Maximum distance of triangle centres from the surface: estimated by |f| / |f'| and reached
+    /// by refinement, not proved.
     Accuracy(f64),
 }
 
@@ -28,17 +29,17 @@ pub enum Resolution {
 pub struct FacetOptions {
     /// Resolution.
     pub resolution: Resolution,
-    /// The most cells that the surface may pass through.
+    /// Maximum number of cells that the surface passes through.
     pub limit: f64,
-    /// Keeps vertices on edges and corners even if triangles then intersect: integrals over the
-    /// body are not affected by that, but lose accuracy by cut-off edges.
+    /// Keeps vertices on edges and corners even if triangles then intersect: this does not affect
+    /// integrals over the body, which cut-off edges would make less accurate.
     pub sharp: bool,
     /// Limits of memory and time.
     pub budget: Arc<Budget>,
 }
 
 impl FacetOptions {
-    /// Facets of that resolution, at most 20 million cells.
+    /// Options for a resolution, with at most 20 million cells.
     pub fn new(resolution: Resolution) -> Self {
         Self { resolution, limit: 2e7, sharp: false, budget: Arc::default() }
     }
@@ -80,10 +81,9 @@ pub(super) struct CellVertex {
 pub struct Unresolved {
     /// A cell, or a part of one.
     pub place: Box3,
-    /// Proved bound of the solid that it may contain where the facets have air, or of the air where
-    /// they have solid.
+    /// Proved bound on the volume of solid hidden in air, or of air hidden in solid.
     pub volume: f64,
-    /// True when there is some for sure: a wall or gap thinner than the cell.
+    /// True if a feature is certainly missed: a wall or gap thinner than the cell.
     pub missed: bool,
     /// A point of it, …
     pub(super) witness: Vec3,
@@ -277,6 +277,6 @@ pub(crate) struct TriangleView<'a> {
 pub struct LeafIncidence {
     /// The leaves.
     pub leaves: Vec<Leaf>,
-    /// For each point, numbers of leaves.
+    /// For each point, indices of leaves.
     pub surfaces: Vec<SmallVec<[u32; 3]>>,
 }

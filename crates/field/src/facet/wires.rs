@@ -20,7 +20,7 @@ pub struct FacetWire {
     pub points: Vec<Vec3>,
     /// True when it ends where it began.
     pub closed: bool,
-    /// The numbers of its two leaves.
+    /// Indices of its two leaves.
     pub leaves: [usize; 2],
     /// Leaves of its vertices.
     pub on: LeafIncidence,

@@ -27,12 +27,12 @@ pub struct Liming<T: Real> {
     l1: NamedField<T>,
     /// The other body.
     l2: NamedField<T>,
-    /// The rail, or one of the two others.
+    /// The rail, or the first of the two other bodies.
     l3: NamedField<T>,
     /// The other of them.
     #[field(default)]
     l4: Option<NamedField<T>>,
-    /// Shape: near 0 the blend hugs the rail, near 1 the bodies.
+    /// Shape between 0 (near the rail) and 1 (near the bodies).
     #[field(default = 0.5)]
     lambda: T,
     /// Order of contact on a rail.
@@ -63,8 +63,8 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
     outcome.map_err(|e| fault(&e).in_field(field))
 }
 
-/// The transition from one body, which it touches at its rail, to another, which it touches at its own:
-/// (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
+/// The transition from one body, tangent to it at its rail, to another, tangent at its own rail: (1
+/// - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 ///
 /// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; over a box `low`, `high` this is
 /// proved, or the point at which it fails is reported.
@@ -77,15 +77,15 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
     example = "field x = plane({1, 0, 0}, {0, 0, 0}); field a = sphere({0, 0, 0}, 1); field duct = zhang(a, sphere({0, 0, 0}, 2), x, 1 - x);"
 )]
 pub struct Zhang<T: Real> {
-    /// The body that it begins on.
+    /// The body at the first rail.
     l1: NamedField<T>,
-    /// The body that it ends on.
+    /// The body at the second rail.
     l2: NamedField<T>,
     /// The rail on the first body.
     l3: NamedField<T>,
     /// The rail on the second.
     l4: NamedField<T>,
-    /// Shape: which body it follows longer.
+    /// Shape between 0 (longer along the first body) and 1 (longer along the second).
     #[field(default = 0.5)]
     lambda: T,
     /// Order of contact.
@@ -238,7 +238,7 @@ pub struct Transition<T: Real> {
     l1: NamedField<T>,
     /// The body that it ends on.
     l2: NamedField<T>,
-    /// The rail on the first body: its solid side keeps the body.
+    /// The rail on the first body; the body is kept on its solid side.
     l3: NamedField<T>,
     /// The rail on the second.
     l4: NamedField<T>,

@@ -40,7 +40,7 @@ pub struct SetBody<T: Real> {
     /// Default: 6, without an accuracy.
     #[field(default, min = 1, max = 16)]
     depth: Option<u32>,
-    /// Maximum distance of triangle centres from the surface, estimated by refinement.
+    /// Maximum distance of triangle centres from the surface, reached by refinement, estimated.
     #[field(default)]
     accuracy: Option<T>,
     /// Largest distance from the surface when triangles are merged, in units of length. Default: no
@@ -82,7 +82,7 @@ impl<T: Real> Build<T> for SetBody<T> {
                 let remark = &flaw.remark;
                 return Err(CallError::new(
                     "thin-part",
-                    format!("nothing of the set shows: {}", remark.message),
+                    format!("no part of the set is visible: {}", remark.message),
                 )
                 .expected("a set that is thicker than the cells")
                 .help(remark.advice)
@@ -151,7 +151,7 @@ impl Pieces {
         })
     }
 
-    /// A body whose coordinates carry the derivatives of the set's.
+    /// A body whose coordinates carry the derivatives of the set.
     ///
     /// # Errors
     /// A lifter of another set.

@@ -170,7 +170,7 @@ impl<T: Real> Build<T> for SetOffset<T> {
     }
 }
 
-/// The wall inside of a set's surface.
+/// The wall inside a set's surface.
 #[derive(Kind)]
 #[kind(
     forward,

@@ -7,7 +7,7 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, TriangleBody, Value};
 use std::sync::Arc;
 
-/// The set of a closed body of plane faces: exact half-spaces, one for each plane.
+/// The set of a closed body of plane faces: exact half-spaces, one per plane.
 ///
 /// Coplanar triangles form a face. For bodies with thousands of faces, such as a triangulated ball,
 /// use `set(inside(body))`. Coplanar faces share a half-space, even if a change of a parameter
@@ -52,12 +52,12 @@ impl<T: Real> Build<T> for Polyhedron<T> {
     example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); FaceSet s(b, {1, 2, 3, 4});"
 )]
 pub struct FaceSet<T: Real> {
-    /// The body; triangles of round faces are chords of them.
+    /// The body; the triangles of round faces are inscribed.
     body: Arc<TriangleBody<T>>,
-    /// The number of the face of each triangle; triangles in one plane make a face by default.
+    /// Face number of each triangle; by default the triangles of one plane are a face.
     #[field(default)]
     faces: Option<Vec<u32>>,
-    /// The round faces, five vectors each.
+    /// The round faces, as five vectors each.
     #[field(default)]
     rounds: Option<Vec<Vec3<T>>>,
 }

@@ -71,7 +71,7 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
                     places[0].y,
                     places[0].z
                 ),
-                "let them overlap, or stay apart, if they are to be joined or are not",
+                "let them overlap to join them, or move them apart",
             ),
         };
         Flaw { name, remark: Remark { id, message, advice }, places }

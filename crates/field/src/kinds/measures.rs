@@ -301,8 +301,8 @@ impl<T: Real> Build<T> for Member<T> {
     }
 }
 
-/// Name of the deciding primitive at a point: the least of a union, the greatest of an
-/// intersection.
+/// Name of the primitive that decides the value at a point: the least of a union, the greatest of
+/// an intersection.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -405,8 +405,8 @@ impl<T: Real> Build<T> for Range<T> {
     }
 }
 
-/// The degree of a field, or the highest in a set: numbers 0, planes 1, sums the larger, products the sum,
-/// functions one more, primitives from outside 100.
+/// The degree of a field, or the highest in a set: numbers 0, planes 1, sums the maximum, products
+/// the sum, functions one more, external primitives 100.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -578,7 +578,7 @@ impl<T: Real> Build<T> for Distance<T> {
     }
 }
 
-/// The number of bodies of a set, those that only touch counted separately: by facets.
+/// The number of bodies of a set, by facets; bodies that only touch are counted separately.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -627,7 +627,7 @@ impl<T: Real> Build<T> for Components<T> {
 pub struct Bounds<T: Real> {
     /// The set.
     set: SetArgument<T>,
-    /// Largest excess over the set.
+    /// Maximum distance between the box and the set.
     #[field(default = 1e-3, min = 0)]
     accuracy: T,
 }

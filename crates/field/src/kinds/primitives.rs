@@ -108,7 +108,7 @@ impl<T: Real> Build<T> for Cylinder<T> {
     }
 }
 
-/// The double cone whose apex is the start of a line.
+/// The double cone with its apex at the start of a line.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -177,7 +177,7 @@ pub struct Cyclide<T: Real> {
     /// Mean radius of the tube.
     #[field(min = 0)]
     minor: T,
-    /// Variation of the tube's radius: thinner there, thicker opposite; below the major radius.
+    /// Variation of the tube's radius, less than the major radius.
     change: T,
 }
 
@@ -198,7 +198,7 @@ impl<T: Real> Build<T> for Cyclide<T> {
 pub struct FieldObject<T: Real> {
     /// The function.
     field: NamedField<T>,
-    /// Objects from which it is computed.
+    /// Objects that it is computed from.
     #[field(default)]
     of: Option<Vec<Value<T>>>,
 }

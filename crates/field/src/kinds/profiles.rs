@@ -103,7 +103,7 @@ impl<T: Real> Build<T> for Extruded<T> {
     }
 }
 
-/// The body that a closed plane curve passes over in a full turn about a line of its plane.
+/// The solid of revolution of a closed plane curve about a line in its plane.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -115,7 +115,7 @@ impl<T: Real> Build<T> for Extruded<T> {
 pub struct ProfileRevolved<T: Real> {
     /// The closed plane curve.
     curve: CurveRef<T>,
-    /// A line in its plane that it does not cross.
+    /// The axis: a line in the plane of the curve that does not cross it.
     axis: Axis<T>,
 }
 

@@ -48,7 +48,7 @@ impl<T: Real> FromValue<T> for SetSource<T> {
     }
 }
 
-/// The points where a field is not positive, or a line as a wire, or a point.
+/// The points where a field is not positive; or a line as a wire; or a point.
 ///
 /// Its faces are called as the field is. A line reaches from its start to its end. Sets are combined by `|` (union), `&` (intersection), `-`
 /// (difference), `^` (points in just one) and the sign `-` (complement).
@@ -123,7 +123,7 @@ impl<T: Real> Build<T> for Tetrahedron<T> {
     }
 }
 
-/// The faces of a set as sheets, without its inside.
+/// The faces of a set as sheets, without its interior.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -133,7 +133,7 @@ impl<T: Real> Build<T> for Tetrahedron<T> {
     example = "set tank = thin(cuboid({0, 0, 0}, {2, 1, 1}));"
 )]
 pub struct Thin<T: Real> {
-    /// The set with the intersections of its primitives.
+    /// The set whose primitives intersect.
     set: SetArgument<T>,
 }
 
@@ -200,7 +200,7 @@ pub struct Attributed<T: Real> {
     /// Its material.
     #[field(default)]
     material: Option<Arc<str>>,
-    /// Distance below which two of its points count as one.
+    /// Distance below which two points of the set count as one.
     #[field(default, min = 0)]
     tolerance: Option<T>,
     /// Further attributes, as `tag = text` separated by `;`.

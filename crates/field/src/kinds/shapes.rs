@@ -13,7 +13,7 @@ fn positive<T: Real>(what: &'static str, value: T, field: FieldId) -> Result<T, 
     crate::error::positive(what, value).map_err(|e: FieldError| fault(&e).in_field(field))
 }
 
-/// The distance from a curve less a radius: a round bar swept along it, with round ends.
+/// The distance from a curve minus a radius: a round bar along the curve, with round ends.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -37,7 +37,7 @@ impl<T: Real> Build<T> for TubeOf<T> {
     }
 }
 
-/// The distance from a surface on both sides, less half a thickness: a plate with round edges.
+/// The distance from a surface on both sides, minus half a thickness: a plate with round edges.
 #[derive(Kind)]
 #[kind(
     forward,

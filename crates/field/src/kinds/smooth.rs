@@ -32,9 +32,10 @@ macro_rules! smooth {
     ($kind:ident, $name:literal, $doc:literal, $example:literal, $signs:expr) => {
         #[doc = $doc]
         ///
-        /// The blend is where both functions differ by less than the width; with distances this is a length. A set counts by
-        /// its function. Quadratic blends have common tangents with both bodies, cubic ones common curvature, circular ones
-        /// are arcs between planes at right angles.
+        /// The blend extends over the points where the functions differ by less than the width, a
+        /// length for distances. A set is taken as its function. Quadratic blends have common
+        /// tangents with both bodies, cubic ones common curvature, circular ones are arcs between
+        /// planes at right angles.
         #[derive(Kind)]
         #[kind(forward, class = Field, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {

@@ -141,7 +141,7 @@ impl<T: Real> Build<T> for Scaled<T> {
     }
 }
 
-/// A field or set stretched along a line; the plane across the line's start stays.
+/// A field or set stretched along a line; the plane across the line's start is fixed.
 #[derive(Kind)]
 #[kind(
     forward,

@@ -21,21 +21,21 @@ use std::sync::Arc;
 /// Limits of the work on integrals.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// The width of the volume's bracket that is good enough.
+    /// Width of the volume's bracket at which work ends.
     pub accuracy: f64,
-    /// The most cells to look at.
+    /// Maximum number of cells.
     pub cells: usize,
-    /// Cells are halved this often along each axis at most.
+    /// Maximum number of halvings of cells along each axis.
     pub depth: u32,
 }
 
 impl Effort {
-    /// Until the volume's bracket is that narrow, with at most 400 000 cells.
+    /// Until the volume's bracket has this width, with at most 400 000 cells.
     pub fn to(accuracy: f64) -> Self {
         Self { accuracy, cells: 400_000, depth: ALL }
     }
 
-    /// As narrow as that many cells make it.
+    /// The narrowest bracket for this number of cells.
     pub fn of_cells(cells: usize) -> Self {
         Self { accuracy: 0.0, cells, depth: ALL }
     }
@@ -49,7 +49,7 @@ pub struct Certified {
     pub best: Moments<f64>,
     /// Number of cells examined.
     pub cells: usize,
-    /// Cells whose contribution is still open, the widest first: each with the volume that is.
+    /// Cells with an undecided contribution, the widest first, each with its undecided volume.
     pub open: Vec<(Box3, f64)>,
     sealed: Moments<f64>,
     parts: Vec<Open>,

@@ -7,29 +7,29 @@ use crate::{Facets, FieldError, Leaf, Moments, Primitive, Set};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Real, Vec3};
 
-/// Facets whose numbers carry derivatives; the real parts are those of the plain ones.
+/// Facets with coordinates that carry derivatives; the real parts are those of the plain ones.
 #[derive(Clone, Debug)]
 pub struct Lifted<T: Real> {
-    /// The mesh, on the plain one's topology.
+    /// The mesh, with the topology of the plain one.
     pub mesh: Mesh<T>,
     /// The body's moments.
     pub moments: Moments<T>,
 }
 
-/// The primitives of a set as they are with plain numbers, and as they are with derivatives.
+/// The primitives of a set in plain numbers, and in numbers that carry derivatives.
 pub struct Lifter<T: Real> {
     pairs: Vec<(Primitive<f64>, Primitive<T>)>,
     corners: Option<[Vec3<T>; 2]>,
 }
 
 impl<T: Real> Lifter<T> {
-    /// For a set, within a box whose corners have derivatives.
+    /// For a set within a box with corners that carry derivatives.
     pub fn new(set: &Set<T>, corners: Option<[Vec3<T>; 2]>) -> Self {
         Self::of(set, &set.re(), corners)
     }
 
-    /// As [`Lifter::new`], given the plain set from which facets were made. External primitives are
-    /// identified by identity, so they must be the same.
+    /// As [`Lifter::new`], given the plain set from which the facets were made. External primitives
+    /// must be the same objects, since they are matched by identity.
     pub fn of(set: &Set<T>, plain: &Set<f64>, corners: Option<[Vec3<T>; 2]>) -> Self {
         let pairs = plain.traversal().into_iter().zip(set.traversal()).collect();
         Self { pairs, corners }
@@ -123,7 +123,7 @@ impl<T: Real> Lifter<T> {
 }
 
 impl Facets {
-    /// The facets of `set`, the same as the one they were made of but with numbers that carry
+    /// The facets of `set`, which is the set that they were made of in numbers that carry
     /// derivatives.
     ///
     /// A vertex moves by the shortest vector that keeps it on all its surfaces (the implicit function

@@ -36,8 +36,8 @@ const FINEST: u32 = 15;
 /// Default agreement of two best values, relative to the box's volume.
 const USUAL: f64 = 1e-8;
 
-/// Certified brackets of the moments of a set within a box, from boxes halved `depth` times along each axis at
-/// most; they close at second order, also along edges and in thin walls.
+/// Certified brackets of the moments of a set within a box, from boxes halved at most `depth` times
+/// along each axis; convergence is of second order, including edges and thin walls.
 ///
 /// # Errors
 /// A box without volume, a depth above 12.
@@ -68,7 +68,8 @@ fn effort(depth: u32) -> Result<Effort, FieldError> {
 /// Options of integrals.
 #[derive(Clone, Default)]
 pub struct IntegralOptions {
-    /// Boxes of the bracket are halved this often at most; by default a few thousand are enough.
+    /// Maximum number of halvings of the bracket's boxes; the default suffices for a few thousand
+    /// boxes.
     pub depth: Option<u32>,
     /// Maximum proved distance of the volume from its best value.
     pub accuracy: Option<f64>,
@@ -81,12 +82,12 @@ pub struct IntegralOptions {
 }
 
 impl IntegralOptions {
-    /// With a bracket of boxes halved that often.
+    /// With a bracket of boxes halved this number of times.
     pub fn to_depth(depth: u32) -> Self {
         Self { depth: Some(depth), ..Self::default() }
     }
 
-    /// With a volume that is proved to be that near to its best value.
+    /// With a volume proved to be within this distance of its best value.
     pub fn to_accuracy(accuracy: f64) -> Self {
         Self { accuracy: Some(accuracy), ..Self::default() }
     }
@@ -99,10 +100,10 @@ pub struct BracketedMass<T: Real = f64> {
     pub bracket: Moments<Interval>,
     /// Within the bracket.
     pub best: Moments<T>,
-    /// Proved: the right volume is no further from the best one.
+    /// Proved bound on the distance of the exact volume from the best one.
     pub uncertain: f64,
-    /// Difference of the best volumes of two levels of facets, with their possible misses: an
-    /// estimate of the error, no bound; 0 if they agree as well as requested.
+    /// Difference of the best volumes of two levels of facets, including possible misses: an
+    /// estimate of the error, not a bound; 0 if they agree as requested.
     pub estimate: f64,
 }
 
@@ -113,20 +114,20 @@ impl<T: Real> BracketedMass<T> {
         Self { bracket, best, uncertain, estimate: estimate.min(uncertain) }
     }
 
-    /// Warning for a volume, and values derived from it, with less than the requested accuracy
+    /// Warning about a volume, and values derived from it, that misses the requested accuracy
     /// (default: six digits).
     pub fn doubt(&self, accuracy: Option<f64>) -> Option<Remark> {
         let enough = accuracy.unwrap_or(1e-6 * self.best.volume().re().abs());
         (self.estimate > enough).then(|| Remark {
             id: "volume-uncertain",
-            message: format!("the volume is known to {:.1e} only", self.uncertain),
+            message: format!("the volume is accurate to {:.1e} only", self.uncertain),
             advice: "edges thinner than its cells limit the accuracy; `volume_bracket` with a greater depth is narrower, \
                      and a greater `accuracy` accepts this result",
         })
     }
 }
 
-/// The moments of a set within a box: a proved bracket, and a best value inside it.
+/// The moments of a set within a box: a proved bracket, and the best value inside it.
 ///
 /// # Errors
 /// As [`bracket`] and [`crate::facet`]; [`FieldError::NotReached`] when the accuracy would need more cells than
@@ -139,7 +140,8 @@ pub fn mass(
     mass_of(set, over, None, measure, &FacetMemo::default())
 }
 
-/// As [`mass`], of a set and a box whose numbers may carry derivatives; facets are taken from the memo.
+/// As `mass`, for a set and a box whose numbers may carry derivatives; facets are taken from the
+/// memo.
 ///
 /// # Errors
 /// As [`mass`].
@@ -301,15 +303,16 @@ fn by_facets<T: Real>(
 }
 
 impl Facets {
-    /// The moments of the body, of sixth order in the size of the facets away from its edges and of fourth,
-    /// with small factors, along these.
+    /// The moments of the body, of sixth order in the size of the facets away from its edges, and
+    /// of fourth order with small factors along them.
     pub fn moments(&self) -> Moments<f64> {
         let primitives: Vec<Option<Primitive>> =
             self.leaves.iter().map(|l| Some(l.primitive.clone())).collect();
         Curved::new(&self.flat()).moments(self.mesh.positions(), &primitives, self.about)
     }
 
-    /// The area of the set's surface, of the order of [`Facets::moments`]; faces of the box do not count.
+    /// The area of the set's surface, of the same order as [`Facets::moments`], without faces of
+    /// the box.
     pub fn area(&self) -> f64 {
         let primitives: Vec<Option<Primitive>> =
             self.leaves.iter().map(|l| Some(l.primitive.clone())).collect();

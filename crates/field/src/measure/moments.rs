@@ -3,11 +3,11 @@
 use crate::expr::interval::Interval;
 use moldloft_num::{Real, Vec3};
 
-/// Integrals over a body, about a point near it: far from the origin those about the origin would be differences of
-/// large numbers.
+/// Integrals over a body about a point near it; about the origin they would be differences of large
+/// numbers for a distant body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments<N> {
-    /// The point about which they are; it depends on nothing.
+    /// The reference point, a constant.
     pub about: Vec3,
     /// Integrals of 1; x, y, z; xx, yy, zz; xy, yz, zx.
     pub terms: [N; 10],
@@ -102,14 +102,14 @@ impl Moments<Interval> {
         }
     }
 
-    /// A bracket of each coordinate of the centroid; everything when the volume may be zero.
+    /// A bracket of each coordinate of the centroid; unbounded when the volume may be zero.
     pub fn centroid(&self) -> [Interval; 3] {
         let one = self.terms[0].reciprocal();
         [0, 1, 2].map(|k| self.terms[1 + k] * one + Interval::point(self.about[k]))
     }
 
-    /// Brackets of the matrix of inertia about the centroid, for unit density; everything when the volume
-    /// may be zero.
+    /// Brackets of the matrix of inertia about the centroid, for unit density; unbounded when the
+    /// volume may be zero.
     pub fn inertia(&self) -> [[Interval; 3]; 3] {
         let m = &self.central().terms;
         let one = m[0].reciprocal();
@@ -120,7 +120,7 @@ impl Moments<Interval> {
         [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
     }
 
-    /// True if all of `m`, about the same point, are inside.
+    /// True if all integrals of `m`, about the same point, are inside.
     pub fn contains(&self, m: &Moments<f64>) -> bool {
         self.terms.iter().zip(&m.terms).all(|(range, x)| range.contains(*x))
     }

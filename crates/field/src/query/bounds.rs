@@ -44,8 +44,8 @@ impl Ord for ReachBox {
     }
 }
 
-/// A box that is proved to contain a set, each side within `accuracy` of the best provable by
-/// ranges; `None` for a set that is proved empty.
+/// A box proved to contain a set, each side within `accuracy` of the best that ranges can prove;
+/// `None` for a set proved to be empty.
 ///
 /// # Errors
 /// [`FieldError::Unbounded`] when the set reaches 2^60 from the origin, or that cannot be excluded;
@@ -145,7 +145,7 @@ const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
 /// are a sixteenth of it.
 const LEAST_SIDE: f64 = 0.25;
 
-/// A box around a set, a little wider; `None` for an empty set.
+/// A box around a set, slightly enlarged; `None` for an empty set.
 ///
 /// # Errors
 /// A set without end.

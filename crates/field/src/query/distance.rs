@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub struct SetDistance {
     /// The distance of the two points; 0 where the sets overlap or touch.
     pub distance: f64,
-    /// Proved: no two points of the sets in the box are nearer.
+    /// Proved: no two points of the sets in the box are closer.
     pub at_least: f64,
     /// A point of the first set.
     pub first: Vec3,
@@ -143,7 +143,8 @@ fn apart(a: &Sides, b: &Sides) -> (f64, [Vec3; 2]) {
     (p.distance(q) * (1.0 - 4.0 * f64::EPSILON), [p, q])
 }
 
-/// The distance of two sets within a box, to `accuracy`; `None` when one of them has no point in it.
+/// The distance of two sets within a box, to `accuracy`; `None` when one of them has no point in
+/// the box.
 ///
 /// Pairs of boxes are visited by their distance, without those proved to be air, until no other is
 /// nearer than the best pair of points by more than `accuracy`, or 40 000 pairs were visited:

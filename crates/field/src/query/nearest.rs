@@ -49,7 +49,7 @@ pub struct CertifiedNearest {
     pub point: Vec3,
     /// Its distance.
     pub distance: f64,
-    /// A proved bound: no point of the surface in the box is nearer.
+    /// A proved bound: no point of the surface in the box is closer.
     pub at_least: f64,
 }
 
@@ -277,8 +277,8 @@ pub struct SetContour {
 }
 
 impl Facets {
-    /// The contours in which a plane cuts the body: those of the triangles, each point then moved in
-    /// the plane onto the primitive that is nearest to zero there.
+    /// The contours in which a plane cuts the body: contours of the triangles, with each point then
+    /// moved in the plane onto the primitive with the least absolute value there.
     ///
     /// # Errors
     /// A plane whose normal has no direction.

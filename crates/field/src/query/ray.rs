@@ -31,11 +31,12 @@ pub struct Hit {
     pub t: f64,
     /// The point.
     pub point: Vec3,
-    /// The number of the leaf among [`Set::leaves`].
+    /// Index of the leaf in [`Set::leaves`].
     pub leaf: usize,
     /// Unit normal, from solid to air; zero if undefined.
     pub normal: Vec3,
-    /// True when the ray enters the solid, false when it leaves it or passes through a sheet.
+    /// True when the ray enters the solid; false when it leaves the solid or passes through a
+    /// sheet.
     pub enters: bool,
 }
 
@@ -228,7 +229,7 @@ pub fn roots(f: &Primitive, ray: &Ray) -> Vec<f64> {
     kept.into_iter().map(|(a, b)| 0.5 * (a + b)).collect()
 }
 
-/// A set made ready for many rays.
+/// A set prepared for many rays.
 pub struct Caster {
     body: SurfacedSet,
 }

@@ -13,7 +13,7 @@ use crate::{Primitive, Set};
 use moldloft_num::{Box3, Vec3};
 use std::sync::Arc;
 
-/// Parts in which so few leaves decide are not halved.
+/// Number of deciding leaves up to which parts are not halved.
 const FEW_LEAVES: usize = 3;
 /// Parts are halved this often at most.
 const DEEPEST: u32 = 8;

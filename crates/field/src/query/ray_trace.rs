@@ -14,14 +14,14 @@ pub struct Light {
     pub direction: Option<Vec3>,
     /// Position of a lamp.
     pub place: Vec3,
-    /// Linear red, green and blue; 1 lights a white face that looks into it fully.
+    /// Linear red, green and blue; with 1 a white face perpendicular to the light is fully lit.
     pub colour: [f64; 3],
 }
 
 /// A view of a set with its lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayTrace {
-    /// Picture points across and down.
+    /// Pixels across and down.
     pub size: [usize; 2],
     /// Position of the eye.
     pub eye: Vec3,
@@ -39,14 +39,14 @@ pub struct RayTrace {
     pub background: [[u8; 3]; 2],
     /// True to draw shadows.
     pub shadows: bool,
-    /// Strength of highlights, 0 to 1, and how small they are.
+    /// Strength of highlights, 0 to 1, and their sharpness.
     pub shine: [f64; 2],
     /// sRGB of each of the set's leaves.
     pub colours: Vec<[u8; 3]>,
-    /// Fraction of light reflected by each of the set's leaves, 0 to 1; 0 beyond the end of the
+    /// Fraction of light reflected by each of the set's leaves, 0 to 1; 0 for leaves not in the
     /// list.
     pub mirrors: Vec<f64>,
-    /// Rays along each side of a picture point.
+    /// Rays along each side of a pixel.
     pub samples: usize,
 }
 
@@ -83,7 +83,8 @@ fn clipped(start: Vec3, direction: Vec3, over: &Box3) -> Option<[f64; 2]> {
     (near < far).then_some([near, far])
 }
 
-/// The picture of a set within a box, whose faces cut it: three bytes a point, row by row from the top.
+/// The picture of a set within a box whose faces cut it: three bytes per pixel, row by row from the
+/// top.
 ///
 /// # Errors
 /// A box without volume, a view without direction, a budget that is spent.

@@ -149,7 +149,7 @@ impl SurfacedSet {
     }
 
     /// State of a point. A surface passes through it if it is within `tolerance`, by |f| / |f'|, or
-    /// if it belongs to one of the primitives in `known`.
+    /// if it belongs to one of the primitives `known`.
     pub fn member(&self, p: Vec3, tolerance: f64, known: &[Primitive]) -> Membership {
         let (mut sides, active) = self.sides_at(p, tolerance, known);
         let mut found: Option<Membership> = None;
@@ -442,7 +442,7 @@ pub(crate) fn surfaces_of(leaves: &[Leaf]) -> (Vec<Primitive>, Vec<LeafSide>) {
 }
 
 impl Set<f64> {
-    /// The set with its surfaces, for many questions about where it ends.
+    /// The set with its surfaces, for many queries about its boundary.
     pub fn as_body(&self) -> SurfacedSet {
         SurfacedSet::of(self)
     }

@@ -15,12 +15,12 @@ use std::hash::{Hash, Hasher};
 use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
 use std::sync::Arc;
 
-/// Attributes of a handle to a set; leaves inherit those that they do not have.
+/// Attributes of a handle to a set; leaves inherit missing attributes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SetAttributes {
     /// Name.
     pub name: Option<String>,
-    /// True for an explicit name, which is kept when the set is declared under another.
+    /// True for an explicit name, which is preserved when the set is declared under another.
     pub given: bool,
     /// Index of a palette colour, 0 to 15.
     pub colour: Option<u8>,
@@ -33,7 +33,7 @@ pub struct SetAttributes {
 }
 
 impl SetAttributes {
-    /// These, and where they are silent those of `outer`.
+    /// These attributes, with missing ones taken from `outer`.
     pub fn or(&self, outer: &Self) -> Self {
         Self {
             name: self.name.clone().or_else(|| outer.name.clone()),
@@ -118,12 +118,12 @@ impl<T: Real> Clone for Set<T> {
     }
 }
 
-/// A primitive of a set with the attributes that reach it.
+/// A primitive of a set with the attributes that apply to it.
 #[derive(Clone, Debug)]
 pub struct Leaf<T: Real = f64> {
     /// The primitive as used in the set: negated within a complement.
     pub primitive: Primitive<T>,
-    /// Its own attributes, completed by those of the sets around it.
+    /// Its attributes, completed by those of the enclosing sets.
     pub attributes: SetAttributes,
 }
 
@@ -255,7 +255,7 @@ impl<T: Real> Set<T> {
         Ok(set)
     }
 
-    /// A wire: the straight line between two points, where two sheets along it meet.
+    /// A wire: the straight line between two points, as the intersection of two sheets.
     ///
     /// # Errors
     /// Points that coincide.
@@ -276,7 +276,7 @@ impl<T: Real> Set<T> {
         Ok(set)
     }
 
-    /// A point: where three sheets meet.
+    /// A point: the intersection of three sheets.
     ///
     /// # Errors
     /// A coordinate that is not finite.
@@ -298,8 +298,8 @@ impl<T: Real> Set<T> {
         Ok(Self::cuboid(low, high)?.skin())
     }
 
-    /// The sheets on the surfaces of its primitives, each trimmed by the set: the surface of a set
-    /// whose primitives meet, such as a cuboid or a tetrahedron, without its inside.
+    /// The sheets on the surfaces of the set's primitives, each trimmed by the set: the surface of
+    /// a set whose primitives meet, such as a cuboid or a tetrahedron, without its interior.
     pub fn skin(&self) -> Self {
         let mut set = Self::nothing();
         for leaf in self.leaves() {
@@ -308,7 +308,7 @@ impl<T: Real> Set<T> {
         set
     }
 
-    /// The primitive, when the set is one.
+    /// The primitive, if the set is a single one.
     pub fn primitive(&self) -> Option<&Primitive<T>> {
         match &self.node.kind {
             SetNodeKind::Leaf(p) => Some(p),
@@ -341,12 +341,12 @@ impl<T: Real> Set<T> {
         Self::of(if union { SetNodeKind::Union } else { SetNodeKind::Intersection }, vec![a, b])
     }
 
-    /// True for the whole of space, known as such.
+    /// True if the set is known to be the whole of space.
     pub fn is_everything(&self) -> bool {
         matches!(self.node.kind, SetNodeKind::Everything)
     }
 
-    /// True for the empty set, known as such.
+    /// True if the set is known to be empty.
     pub fn is_nothing(&self) -> bool {
         matches!(self.node.kind, SetNodeKind::Nothing)
     }
@@ -356,7 +356,7 @@ impl<T: Real> Set<T> {
         &self.node.operands
     }
 
-    /// The same set with these attributes, completed by those it has.
+    /// The same set with these attributes, completed by its existing ones.
     pub fn with(&self, attributes: SetAttributes) -> Self {
         let attributes = match &self.attributes {
             Some(old) => attributes.or(old),
@@ -407,7 +407,7 @@ impl<T: Real> Set<T> {
         self.attributes.as_deref()
     }
 
-    /// True when both handles hold the very same node.
+    /// True when both handles refer to the same node.
     pub fn is(&self, o: &Self) -> bool {
         Arc::ptr_eq(&self.node, &o.node)
     }
@@ -611,13 +611,12 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Self::of(SetNodeKind::Leaf(p.clone()), Vec::new()), false, &combine)
     }
 
-    /// The primitives in order of their first appearance, with the attributes that reach them.
+    /// The primitives in order of their first appearance, with the attributes that apply to them.
     pub fn leaves(&self) -> Vec<Leaf<T>> {
         self.compiled().leaves
     }
 
-    /// Number of leaves of the tree, shared parts counted as often as they occur; at most
-    /// `usize::MAX`.
+    /// Number of leaves of the tree, shared parts counted at each occurrence; at most `usize::MAX`.
     pub fn contents(&self) -> usize {
         self.folded(&|_| 1, 0, 0, &|_, a: usize, b| a.saturating_add(b))
     }
@@ -703,8 +702,8 @@ impl<T: Real> Set<T> {
         Compiled { tape: Arc::new(builder.build(root)), leaves, places }
     }
 
-    /// The value that decides at a point, and the number of its leaf among [`Set::leaves`]; `None` for
-    /// everything and nothing.
+    /// The value that decides at a point, and the index of its leaf in [`Set::leaves`]; `None` for
+    /// the whole of space and the empty set.
     pub fn winner(&self, p: Vec3<T>) -> (T, Option<usize>) {
         self.compiled().winner(p)
     }
@@ -722,7 +721,7 @@ impl<T: Real> Set<T> {
 }
 
 impl Set<f64> {
-    /// The same set among numbers with derivatives; it depends on no parameter.
+    /// The same set in numbers with derivatives; it depends on no parameter.
     pub fn constant<S: Real>(&self) -> Set<S> {
         let leaf = |p: &Primitive| Set::of(SetNodeKind::Leaf(p.constant()), Vec::new());
         self.rebuilt(&leaf, false, &Set::combined)
@@ -738,7 +737,7 @@ impl Set<f64> {
         self.compiled().tape.bulk(points, out, &mut Default::default());
     }
 
-    /// The set as it is inside a box: primitives that are all solid or all air there are left out.
+    /// The set inside a box, without primitives that are all solid or all air there.
     pub fn pruned(&self, over: &Box3) -> Self {
         let leaf = |p: &Primitive| {
             let range = p.range(over);
@@ -787,7 +786,7 @@ macro_rules! set_operator {
 set_operator!(BitOr, bitor, "The points in either.", |a, b| a.join(b));
 set_operator!(BitAnd, bitand, "The points in both.", |a, b| a.cut(b));
 set_operator!(Sub, sub, "The points of the first that are not in the second.", |a, b| a.cut(-b));
-set_operator!(BitXor, bitxor, "The points in just one.", |a, b| {
+set_operator!(BitXor, bitxor, "The points in exactly one of the two.", |a, b| {
     let (outside, apart) = (a.complement(), b.complement());
     a.cut(apart).join(b.cut(outside))
 });

@@ -53,7 +53,7 @@ impl<T: Real> Surface<f64> for Shown<SurfaceRef<T>> {
     moldloft_num::surface_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
-/// The distance from a curve less a radius.
+/// The distance from a curve minus a radius.
 pub struct Tube<T: Real> {
     curve: CurveRef<T>,
     nearest: Arc<NearestCurve>,
@@ -61,7 +61,7 @@ pub struct Tube<T: Real> {
 }
 
 impl<T: Real> Tube<T> {
-    /// About `curve`, round, with round ends.
+    /// A tube about `curve`, with round ends.
     pub fn new(curve: CurveRef<T>, radius: T) -> Self {
         let nearest = Arc::new(NearestCurve::new(&PlainCurve(&*curve)));
         Self { curve, nearest, radius }
@@ -103,9 +103,9 @@ impl<T: Real> Oracle<T> for Tube<T> {
 /// Solid bounded by a surface.
 #[derive(Clone, Copy, Debug)]
 pub enum Beside<T> {
-    /// The distance from it on both sides, less half this thickness.
+    /// The distance from the surface on both sides, minus half this thickness.
     Plate(T),
-    /// Its side: negative against its natural normal.
+    /// One side of the surface: negative against its natural normal.
     Side,
 }
 
@@ -186,7 +186,7 @@ impl<T: Real> Oracle<T> for Near<T> {
     }
 }
 
-/// Why triangles bound no solid.
+/// Reason why triangles bound no solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotClosed {
     /// Number of edges without exactly one triangle on each side.

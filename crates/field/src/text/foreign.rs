@@ -62,7 +62,8 @@ fn axis(name: &str) -> Option<Primitive> {
     }
 }
 
-/// The field of a text of fidget: a line `name operation operands` for each value, the last being the field.
+/// The field of a fidget text: a line `name operation operands` for each value, the last being the
+/// field.
 ///
 /// # Errors
 /// The fault of the text, with its line.
@@ -121,7 +122,7 @@ pub fn read_fidget(text: &str) -> Result<Primitive, TextError> {
     }
 }
 
-/// The field of a text of libfive: nested lists such as `(- (sqrt (+ (square x) (square y))) 1)`.
+/// The field of a libfive text: nested lists such as `(- (sqrt (+ (square x) (square y))) 1)`.
 ///
 /// # Errors
 /// The fault of the text, with its line.

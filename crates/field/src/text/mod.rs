@@ -23,7 +23,7 @@ use moldloft_num::{Axis, Plane, Vec3};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// Why a text is not a set or field.
+/// Reason why a text is not a set or field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextError {
     /// The line, from 1.
@@ -208,7 +208,7 @@ fn attribute_text(a: &SetAttributes) -> String {
 }
 
 impl Set<f64> {
-    /// The set as text, from which [`Set::from_text`] makes the same one, bit for bit.
+    /// The set as text, from which [`Set::from_text`] makes an identical one, bit for bit.
     ///
     /// # Errors
     /// [`FieldError::Outside`] when a primitive is a function from outside.
@@ -243,7 +243,7 @@ impl Set<f64> {
         Ok(writer.out)
     }
 
-    /// The set of a text that [`Set::to_text`] wrote.
+    /// The set of a text written by [`Set::to_text`].
     ///
     /// # Errors
     /// The fault of the text, with its line.
@@ -267,7 +267,7 @@ impl Primitive<f64> {
         Ok(writer.out)
     }
 
-    /// The primitive of a text that [`Primitive::to_text`] wrote.
+    /// The primitive of a text written by [`Primitive::to_text`].
     ///
     /// # Errors
     /// The fault of the text, with its line.

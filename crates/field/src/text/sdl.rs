@@ -107,8 +107,8 @@ fn attribute_arguments(a: &SetAttributes) -> String {
 }
 
 impl Set<f64> {
-    /// The set as a program of the language that declares it under `name`: the same values, bit for bit, and the same
-    /// faces under the same names.
+    /// The set as a program that declares it under `name`: the same values, bit for bit, and the
+    /// same faces and names.
     ///
     /// # Errors
     /// [`FieldError::Outside`] when a primitive is a function from outside.

@@ -25,7 +25,7 @@ impl BoundaryPart {
     }
 }
 
-/// Layers that are nearer to each other than this share of their last cell touch, they do not cross.
+/// Distance of layers, relative to their last cell, below which they touch and do not cross.
 const TOUCHING: f64 = 1e-6;
 
 /// The last layer, with its points moved towards the layer below by a share of at most twice [`TOUCHING`]: fronts

@@ -223,7 +223,7 @@ fn an_open_hull_knows_its_freeboard() {
     let sinks = equilibrium(&open, Water::default(), sinks, Attitude::upright(0.0));
     assert!(matches!(sinks, Err(FloatError::Sinks { rim: Some(_), .. })), "{sinks:?}");
     let message = sinks.unwrap_err().to_string();
-    assert!(message.contains("open edge is under water"), "{message}");
+    assert!(message.contains("without an immersed open edge"), "{message}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::read_text::read_text;
 use super::variant::{FORMAT, Laid, Variant};
 use crate::{FilePosition, ReadError, StructuredGrid};
 
-/// The blocks of a file and which variant it is.
+/// The blocks of a file, and its variant.
 ///
 /// Memory grows with the bytes that are there, whatever the sizes in the file say.
 ///
@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), ReadError> {
             found: match bytes.len() {
                 0 => "an empty file".into(),
                 1 => "one byte".into(),
-                n => format!("{n} bytes that no variant explains"),
+                n => format!("{n} bytes, which match no variant"),
             },
         },
         |c| c.error,

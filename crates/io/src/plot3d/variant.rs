@@ -8,31 +8,31 @@ pub(super) const FORMAT: &str = "Plot3D";
 pub enum Laid {
     /// Text.
     Formatted,
-    /// Plain numbers, as C writes them.
+    /// Plain numbers, as written by C.
     #[default]
     Stream,
-    /// Records as a Fortran program writes them, each with its length before and after.
+    /// Fortran records, each with its length before and after.
     Unformatted,
 }
 
-/// Everything that the format leaves open.
+/// Choices that the format leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
     /// Encoding of the numbers.
     pub laid: Laid,
-    /// Double precision; single otherwise. Text has either.
+    /// Double precision, otherwise single. Irrelevant for text.
     pub double: bool,
-    /// The number of blocks comes first; without, there is one block.
+    /// The number of blocks comes first; otherwise there is one block.
     pub multi: bool,
     /// Three sizes and coordinates; two otherwise.
     pub three: bool,
-    /// A whole number for each point follows its block's coordinates.
+    /// An integer for each point follows the coordinates of its block.
     pub iblank: bool,
     /// The most significant byte comes first.
     pub big_endian: bool,
     /// Bytes of a record's length: 4 or 8.
     pub mark: usize,
-    /// Coordinates come plane by plane, k = 1 first: of records a record each.
+    /// Coordinates come plane by plane, k = 1 first; with records, one record per plane.
     pub planes: bool,
 }
 

@@ -93,7 +93,7 @@ pub fn write(brep: &Brep, header: &StepHeader<'_>) -> Result<Vec<u8>, WriteError
         let items = shapes.facets(&mut file, part);
         let words = match part.error {
             Some(error) => format!(
-                "{} triangles, no surfaces; their middles are within {} of the shape",
+                "{} triangles, no surfaces; their centres are within {} of the shape",
                 part.triangles.len(),
                 real(error)
             ),

@@ -86,8 +86,8 @@ pub fn grid_files(blocks: &[StructuredGrid], stem: &str) -> Result<Vec<NamedFile
     Ok(indexed(blocks.iter().enumerate().map(one).collect(), stem))
 }
 
-/// One grid of points as a `.vts` file, with fields whose numbers come i fastest. Those of other
-/// lengths are refused.
+/// One grid of points as a `.vts` file, with fields in the order i fastest. Fields of other lengths
+/// are refused.
 ///
 /// # Errors
 /// Coordinates that are not finite; fields that are not of the grid.

@@ -63,8 +63,8 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     polydata_with(mesh, &LinesAndPoints::default(), &[])
 }
 
-/// As [`polydata`], with points as vertex cells and polylines as line cells, whose `patch` is -1. The
-/// fields of patches are point arrays; where patches meet they are the mean of both.
+/// As [`polydata`], with points as vertex cells and polylines as line cells, whose `patch` is -1.
+/// The fields of patches are point arrays, averaged where patches meet.
 ///
 /// # Errors
 /// As [`polydata`].

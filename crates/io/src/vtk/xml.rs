@@ -3,7 +3,7 @@
 
 use crate::text::put;
 
-/// A file to be written beside others.
+/// A file to be written, with its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
     /// File name, without folder.

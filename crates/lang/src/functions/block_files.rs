@@ -25,7 +25,7 @@ pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 /// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
 pub type PeriodicJoint = ([f64; 3], [f64; 3], [f64; 3]);
 
-/// Both sides of a joint; for each axis of the first that of the second, from 1, negative if
+/// Both sides of a joint; for each axis of the first, the axis of the second, from 1, negative if
 /// opposite; and the position of the second relative to the first, if periodic.
 pub type BlockJoint = (FacePart, FacePart, [i32; 3], Option<PeriodicJoint>);
 
@@ -43,7 +43,7 @@ pub struct CgnsBlocks {
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,
-    /// The parts of faces that meet nothing and have no name.
+    /// Parts of faces without a neighbour or a name.
     pub nameless: Vec<FacePart>,
 }
 

@@ -4,10 +4,10 @@
 use crate::functions::block_files::BOUNDARY_KINDS;
 use crate::functions::grid_formats::{self, GridFormat};
 
-/// The finest grids: intervals halved that many times.
+/// Maximum refinement level: intervals are halved this number of times.
 pub const MOST_REFINED: u32 = 8;
 
-/// A built-in function, as the reference and the editor show it.
+/// A built-in function, with its texts for the reference and the editor.
 #[derive(Clone, Copy, Debug)]
 pub struct Builtin {
     /// Its name.
@@ -17,15 +17,15 @@ pub struct Builtin {
     pub doc: &'static str,
     /// Description of the result.
     pub returns: &'static str,
-    /// Name, class and meaning of each argument; `?` behind the name of one that may be left out.
+    /// Name, class and meaning of each argument; a `?` after the name marks an optional argument.
     pub help: &'static [(&'static str, &'static str, &'static str)],
     /// A complete program that calls it.
     pub example: &'static str,
 }
 
 impl Builtin {
-    /// The call: `name(a, [b], ...)`, with arguments that may be left out in brackets, and dots if
-    /// the last ones may be repeated.
+    /// The call: `name(a, [b], ...)`, with optional arguments in brackets, and dots if the last
+    /// ones may be repeated.
     pub fn signature(&self) -> String {
         let mut arguments: Vec<String> = Vec::new();
         for (name, ..) in self.help {
@@ -64,7 +64,7 @@ impl Builtin {
         words.iter().copied()
     }
 
-    /// True of the argument that names a file.
+    /// True for an argument that names a file.
     pub fn names_file(&self, argument: usize) -> bool {
         argument == 0 && self.help.first().is_some_and(|(name, ..)| *name == "name")
     }

@@ -54,7 +54,7 @@ fn in_order(m: &Module, builtin: &Builtin, args: NodeList<Arg>) -> Result<Vec<Ex
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The row of a function for a number of arguments; that of `makecc` for its misprint of 1992.
+    /// The row of a function for a number of arguments; includes the misprint of `makecc` of 1992.
     pub fn row(
         &mut self,
         m: &Module,
@@ -210,7 +210,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         f64::from(1u32 << self.inputs.settings.refine)
     }
 
-    /// A whole number of at least 1.
+    /// An integer of at least 1.
     pub fn whole(&mut self, m: &Module, arg: ExprId) -> Result<f64, Diagnostic> {
         let n = self.number(m, arg)?.re();
         if n.fract() == 0.0 && (1.0..=1e9).contains(&n) {

@@ -365,7 +365,7 @@ fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
     T::from(f(x.re()))
 }
 
-/// The remainder of small positive whole numbers, several times as quick as the general one.
+/// The remainder of small positive integers, several times faster than the general one.
 #[inline(always)]
 pub fn small_remainder(a: f64, b: f64) -> Option<f64> {
     /// Adding it and taking it away rounds to a whole number, up to 2^51.

@@ -75,7 +75,7 @@ impl OpenMode {
     }
 }
 
-/// A name of a file inside the program's folder, `/` between its parts.
+/// The name of a file inside the program's folder, with `/` between its parts.
 pub fn inside(path: &str) -> Result<String, Diagnostic> {
     let outside = |why: &str| {
         Diagnostic::error("outside-folder", format!("cannot write `{path}`: {why}"))
@@ -193,7 +193,7 @@ impl RunFiles {
         Ok(())
     }
 
-    /// The host is to make CGNS of a file that was put, of these blocks.
+    /// Marks a written file for conversion to CGNS by the host, with these blocks.
     pub fn for_cgns(&mut self, path: &str, blocks: CgnsBlocks) -> Result<(), Diagnostic> {
         self.cgns.insert(inside(path)?, blocks);
         Ok(())

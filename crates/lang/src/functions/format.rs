@@ -14,7 +14,7 @@ pub enum FormatArgument {
 /// The widest field and the most digits.
 const WIDEST: usize = 1_000;
 
-/// The text of `items` by the format, which is repeated for remaining items.
+/// The text of `items` by the format, which is repeated for the remaining items.
 ///
 /// # Errors
 /// For directives that do not exist, or items that do not fit them.

@@ -160,7 +160,7 @@ pub(crate) fn plot(
     }
 }
 
-/// Arrays of points as a picture shows them.
+/// Arrays of points for a picture.
 pub struct DrawnArrays {
     /// Surfaces, and the faces of blocks.
     pub mesh: Mesh,

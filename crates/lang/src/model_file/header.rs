@@ -7,7 +7,7 @@ use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 
-/// The model's properties: its mirror planes, its unit, and the header of its model file.
+/// The model's properties: its symmetry planes, units, and the header of its model file.
 ///
 /// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
 /// and hydrostatics count both.
@@ -17,7 +17,7 @@ pub struct Model<T: Real> {
     /// The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
     #[field(default = "")]
     symmetry: Text<T>,
-    /// The units of length, mass, force and angle, such as "m t kN": of each at most one.
+    /// The units of length, mass, force and angle, at most one of each, such as "m t kN".
     #[field(default = "")]
     units: Text<T>,
     /// The version of the model file, such as "0.35" or "1.44".
@@ -62,7 +62,7 @@ pub fn row() -> Row {
     <Model<f64> as StaticRow>::row()
 }
 
-/// The header's text of that field in the first object of kind `Model`; empty without one.
+/// The text of that field in the header: the first object of kind `Model`; empty without one.
 pub fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
     let Some(object) = graph.objects().find(|o| o.row.role == Role::Header) else {
         return String::new();

@@ -6,7 +6,7 @@
 use moldloft_registry::{Attributes, PanelAttributes, Value};
 use std::fmt::Write;
 
-/// The attributes of a model file's line for the panels of a head.
+/// The attributes of panels in a model file's line, from a head.
 pub fn written(panels: &PanelAttributes) -> String {
     let mut out = String::new();
     if panels.size.iter().any(Option::is_some) {

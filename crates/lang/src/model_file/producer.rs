@@ -27,15 +27,15 @@ pub struct Producer<'a, 'g, T: Scalar> {
     pub registry: &'a Registry,
     /// The program that loads the file, with its host.
     pub host: RunContext<'a>,
-    /// The environment that the run leaves behind.
+    /// The environment after the run.
     pub env: &'a mut Environment<T>,
     /// The numbers of variables and formulas, by their index in the file.
     pub reals: HashMap<usize, T>,
     /// Values of parameters and literals for this run.
     pub inputs: Inputs<'a, T>,
-    /// The run of the graph that declarations go to.
+    /// The run of the graph that receives the declarations.
     pub run: &'a mut Run<'g, T>,
-    /// By the index of the object in the file.
+    /// Results, by the index of the object in the file.
     pub outcomes: Vec<Option<Outcome>>,
     pub(super) roots: Vec<RootCause>,
     /// Number of searches for the nearest name, which are slow in large models.

@@ -36,7 +36,7 @@ pub struct ModelFileSource {
     pub names: HashMap<Box<str>, usize>,
 }
 
-/// A number of the file that an argument is.
+/// The number of the file behind an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelNumber {
     id: NumberId,
@@ -46,7 +46,7 @@ pub struct ModelNumber {
 
 /// The fields of an object, by purpose.
 pub struct Sorted {
-    /// The row of its entity; `None` if model files do not know it.
+    /// The row of its entity; `None` for an entity that model files do not have.
     pub row: Option<Arc<Row>>,
     /// Colour, visibility and divisions.
     pub head: Vec<Written>,
@@ -86,13 +86,13 @@ pub(super) struct RootCause {
     pub(super) first_use: Option<(Span, String)>,
 }
 
-/// Why a field has no value.
+/// Reason why a field has no value.
 pub enum Trouble {
     /// Faulty.
     Wrong(Box<Diagnostic>),
-    /// It refers to an object that is missing because of this root.
+    /// It refers to an object that is missing because of this root cause.
     Blocked {
-        /// The root, by its number.
+        /// The root cause, by number.
         root: usize,
         /// The span of the reference.
         span: Span,
@@ -312,7 +312,7 @@ impl ModelFileSource {
     }
 
     /// The objects, parents before children, otherwise in the order of the file; and the cycles,
-    /// each as the path round it.
+    /// each as a closed path.
     pub fn order(&self, sorted: &[Sorted]) -> (Vec<usize>, Vec<Vec<usize>>) {
         #[derive(Clone, Copy, PartialEq)]
         enum Mark {
@@ -388,7 +388,7 @@ impl ModelFileSource {
         }
     }
 
-    /// Mentions of this object in others, by object and position. Every word of an unknown entity
+    /// References to this object in others, by object and position. Every word of an unknown entity
     /// may be a name.
     pub fn mentions(&self, registry: &Registry, name: &str) -> Vec<(usize, Span)> {
         let mut found = Vec::new();
@@ -556,7 +556,7 @@ impl ModelFileSource {
         }
     }
 
-    /// The number of the file that a number of an object is.
+    /// The number of the file behind a number of an object.
     pub fn literal(
         &self,
         object: &Object<f64>,
@@ -582,7 +582,7 @@ impl ModelFileSource {
         }
     }
 
-    /// Gives a number of the file another value, in the argument's unit.
+    /// Sets a number of the file, in the argument's unit.
     pub fn set(&mut self, number: ModelNumber, value: f64) -> Result<(), Diagnostic> {
         self.model.set_number(number.id, if number.angle { degrees(value) } else { value })
     }

@@ -60,12 +60,12 @@ const KNOWN_COLUMNS: [&str; 26] = [
 pub struct ModelFileText {
     /// The text.
     pub text: String,
-    /// Numbers without their relation to parameters.
+    /// Numbers that lost their relation to parameters.
     pub remarks: Vec<Diagnostic>,
 }
 
-/// The model file of the objects that a program, the main module of a run, made. The text is read again, and its
-/// objects compared with those of the program.
+/// The model file of the objects declared by the main module of a run. The text is read back, and
+/// its objects are compared with those of the program.
 ///
 /// # Errors
 /// Objects that a model file cannot represent.
@@ -268,10 +268,10 @@ impl<'a> ToModelFile<'a> {
         let mut remarks = match self.computed.len() {
             0 => Vec::new(),
             _ if self.evaluation.env.params.is_empty() => Vec::new(),
-            _ => vec![
-                Diagnostic::warning("numbers-fixed", self.fixed_numbers())
-                    .help("a model file keeps what the main program states by parameters, by variables that are assigned once, and by objects; not what a routine or a loop computes"),
-            ],
+            _ => vec![Diagnostic::warning("numbers-fixed", self.fixed_numbers()).help(
+                "a model file keeps parameters, objects and variables that are assigned \
+                    once in the main program, not values computed by a routine or a loop",
+            )],
         };
         if let Some(message) = self.left_out_message() {
             let help = "solve conditions, and check what must hold, in the program";
@@ -297,7 +297,7 @@ impl<'a> ToModelFile<'a> {
         if !self.evaluation.env.params.is_empty() && body.iter().any(|id| chosen(&id)) {
             parts.push("conditions (the branch that is taken now is written)".to_string());
         }
-        (!parts.is_empty()).then(|| format!("a model file has no place for {}", parts.join(", ")))
+        (!parts.is_empty()).then(|| format!("a model file cannot hold {}", parts.join(", ")))
     }
 
     fn fixed_numbers(&self) -> String {

@@ -30,7 +30,7 @@ pub(crate) const ORDER: &str = "#ms2-order ";
 /// The most names in a line of the order.
 const NAMES_IN_LINE: usize = 12;
 
-/// The program that makes the objects of a model file, as a run of it built them.
+/// The program that declares the objects of a model file, as a run of it built them.
 pub fn to_program(
     source: &ModelFileSource,
     registry: &Registry,

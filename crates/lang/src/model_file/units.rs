@@ -13,8 +13,9 @@ pub enum PhysicalDimension {
     Angle,
 }
 
-/// The units that are known: word, dimension, size in metres, kilograms, newtons or radians. Exact by definition
-/// (BIPM 2019, The International System of Units; NIST SP 811, appendix B), but for the angle.
+/// The known units: word, dimension, size in metres, kilograms, newtons or radians. Exact by
+/// definition (BIPM 2019, The International System of Units; NIST SP 811, appendix B), except for
+/// the angle.
 pub const UNITS: [(&str, PhysicalDimension, f64); 21] = [
     ("m", PhysicalDimension::Length, 1.0),
     ("cm", PhysicalDimension::Length, 0.01),
@@ -39,13 +40,13 @@ pub const UNITS: [(&str, PhysicalDimension, f64); 21] = [
     ("deg", PhysicalDimension::Angle, std::f64::consts::PI / 180.0),
 ];
 
-/// The unit of that word; letters may be of either case where that is unambiguous.
+/// The unit of that word, ignoring case if unambiguous.
 pub fn unit(word: &str) -> Option<(&'static str, PhysicalDimension, f64)> {
     let same = UNITS.into_iter().find(|u| u.0 == word);
     same.or_else(|| UNITS.into_iter().find(|u| u.0.eq_ignore_ascii_case(word)))
 }
 
-/// The units that a text such as "m t kN" states, at most one of a dimension.
+/// The units stated by a text such as "m t kN", at most one per dimension.
 ///
 /// # Errors
 /// The word that is not a unit, or the second of a dimension.

@@ -350,7 +350,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(solid) = sketch.map(|s| format!("{s}.solid"))
             && self.run.find(&solid).is_some()
         {
-            let text = format!("`{text}` has no closed form: round faces of it end in others");
+            let text = format!(
+                "`{text}` has no closed form: some of its round faces are bounded by others"
+            );
             return Diagnostic::error("unknown-name", text)
                 .help(format!("`set(inside({solid}))` is the body with chords in place of arcs"));
         }
@@ -544,7 +546,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let callee = self.modules.get(routine.module);
                 Diagnostic::error("no-value", format!("`{text}` returns no value")).help(
                     match callee.program[routine.routine].result {
-                        Some(_) => "it came to its end: every way through it must `return` one",
+                        Some(_) => {
+                            "it ended without one: every path through it must `return` a value"
+                        }
                         None => "only a function does: declare it as `function float f(...)`",
                     },
                 )
@@ -661,7 +665,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         diagnostic.maybe_help(self.meant(text))
     }
 
-    /// What a word without meaning may stand for: a name of a library, another language's word, a name misspelled.
+    /// Possible meaning of an unknown word: a name in a library, a word of another language, a
+    /// misspelled name.
     fn meant(&self, text: &str) -> Option<String> {
         let near = || self.nearest_name(text).map(|near| format!("did you mean `{near}`?"));
         crate::source::library::defining(text)

@@ -11,7 +11,7 @@ pub struct InsertedFile {
     pub doc: &'static str,
     /// Its arguments, each with a line of help.
     pub arguments: &'static [(&'static str, &'static str)],
-    /// An example; where a line begins with `# name.suffix`, a file of that name follows.
+    /// An example; after a line `# name.suffix` a file of that name follows.
     pub example: &'static str,
     pub(crate) content: Content,
 }

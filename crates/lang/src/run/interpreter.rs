@@ -27,7 +27,7 @@ use moldloft_syntax::sdl::{
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-/// The most errors of a run; hints that take a search go with the first of them only.
+/// Maximum number of errors of a run; hints that need a search accompany only the first ones.
 const MOST_ERRORS: usize = 1_000;
 const MOST_HINTS: usize = 100;
 
@@ -40,7 +40,7 @@ pub(crate) const DEEPEST: u32 = 2_500;
 /// Maximum depth of routine calls.
 pub(super) const MOST_CALLS: usize = 12_000;
 
-/// Stack of a run: maximum nesting times the largest frame, with a reserve.
+/// Stack size of a run: maximum nesting times the largest frame, with a reserve.
 #[cfg(not(target_arch = "wasm32"))]
 pub const STACK_BYTES: usize = 192 << 20;
 
@@ -51,7 +51,7 @@ pub(crate) const SILENT: &str = "silent";
 pub struct Inputs<'a, T: Scalar> {
     /// Values of parameters that differ from the text's.
     pub overrides: &'a IndexMap<String, f64>,
-    /// Gives a parameter or a literal of an object its derivative; for plain runs the identity.
+    /// Gives a parameter or a literal of an object its derivative; the identity for plain runs.
     pub seed: Seed<'a, T>,
     /// Objects with seeded literals, by name.
     pub seeded_objects: &'a HashSet<String>,
@@ -66,15 +66,16 @@ pub struct Inputs<'a, T: Scalar> {
 pub struct Settings {
     /// Number of halvings of `refined` intervals.
     pub refine: u32,
-    /// True for the reference that code is tested against: statements one by one, operators one after the
-    /// other, whole arrays at a time.
+    /// True for the reference that compiled code is tested against: one statement and one operator
+    /// at a time, on whole arrays.
     pub reference: bool,
-    /// As many steps instead of those that the limits allow, those of code counted in full, for tests.
+    /// Maximum number of steps instead of that of the limits, without the discount for compiled
+    /// code; for tests.
     pub most_steps: Option<u64>,
 }
 
 impl<'a, T: Scalar> Inputs<'a, T> {
-    /// The same once more.
+    /// Another copy of these inputs.
     pub fn again(&self) -> Inputs<'a, T> {
         let &Inputs { overrides, seed, seeded_objects, budget, settings } = self;
         Inputs { overrides, seed, seeded_objects, budget, settings }
@@ -105,7 +106,7 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub components: Vec<usize>,
     /// Reported faults: a repeated statement reports each fault once.
     reported: HashSet<(Cow<'static, str>, Span)>,
-    /// Failed objects that were reported to the program when it read them.
+    /// Failed objects reported to the program when it read them.
     pub blocked: HashSet<Key>,
     /// Objects read by the current expression, while the log is open.
     pub reads: ReadLog,
@@ -118,9 +119,9 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub(crate) refined: RefinedNumbers<T>,
     /// Numbers of the whole model that were read last.
     pub(crate) measured: Option<(usize, String, Vec<(&'static str, Value<T>)>)>,
-    /// True once the note on the misprint of 1992 was given.
+    /// True once the note on the misprint of 1992 has been given.
     pub misprint_told: bool,
-    /// True while a library routine is left because of an error in it.
+    /// True while returning from a library routine because of an error in it.
     pub abandoned: bool,
     /// The statements that were executed.
     pub(super) executed: Executed,
@@ -175,7 +176,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    /// Runs a module from its first statement to its last, once.
+    /// Runs a module once, from its first statement to its last.
     pub fn module(&mut self, at: usize) -> Flow<T> {
         if !self.env.scope.executed.insert(at) {
             return Flow::Next;
@@ -195,7 +196,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    /// Checks the statements that were not executed; not for a stopped run.
+    /// Checks the statements that were not executed, unless the run was stopped.
     pub fn judge(&mut self) {
         self.env.steps = self.usage.steps;
         if self.env.stopped || T::PARTS > 1 {
@@ -259,7 +260,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         diagnostic.at(call).note_at(inside, text)
     }
 
-    /// Counts the elements of a new value as steps, so that no program eats the machine.
+    /// Counts the elements of a new value as steps, to limit the memory of a program.
     ///
     /// # Errors
     /// When the run must stop; that was reported.
@@ -420,7 +421,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         );
     }
 
-    /// Goes one level deeper; false when that is too deep.
+    /// Enters one more level; false at the maximum depth.
     pub fn deeper(&mut self, span: Span) -> bool {
         if self.usage.depth >= DEEPEST {
             self.stop(
@@ -435,7 +436,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         true
     }
 
-    /// The value that a variable has now, read through references.
+    /// The current value of a variable, read through references.
     pub fn peek(&self, bound: &ScopedBinding<T>) -> Option<Value<T>> {
         match &bound.what {
             Binding::Variable { value, .. } => Some(value.clone()),
@@ -639,8 +640,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Err(diagnostic)
     }
 
-    /// Marks the name of a failed declaration, so that its uses stay silent; a name that something
-    /// else has by right keeps its meaning.
+    /// Marks the name of a failed declaration, so that its uses are not reported; a name with
+    /// another valid meaning keeps it.
     pub fn poison(&mut self, m: &Module, ident: Ident) {
         let name = m.names[ident.symbol.0 as usize];
         let turn = self.env.scope.frame().loops.last().map(|turn| turn.id);
@@ -806,7 +807,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Ok(Flow::Next)
     }
 
-    /// The routine that a name means: one that was passed, or one of the program.
+    /// The routine of that name: one passed as an argument, or one of the program.
     pub fn routine_named(&self, name: Name) -> Option<RoutineAt> {
         match self.env.scope.lookup(name).map(|bound| &bound.what) {
             Some(Binding::Routine(at)) => Some(*at),
@@ -834,7 +835,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.usage.errors < MOST_HINTS
     }
 
-    /// The most alike of the names that mean something here.
+    /// The most similar name that has a meaning here.
     pub fn nearest_name(&self, word: &str) -> Option<String> {
         if !self.hints() {
             return None;

@@ -39,7 +39,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let [from, to, step] = numbers;
         if step.re() == 0.0 || !from.re().is_finite() || !to.re().is_finite() {
-            return Err(Diagnostic::error("endless-loop", "this loop cannot come to an end")
+            return Err(Diagnostic::error("endless-loop", "this loop cannot end")
                 .at(span)
                 .expected("finite ends and a step other than 0")
                 .found(format!("{}:{}:{}", from.re(), to.re(), step.re())));

@@ -29,22 +29,22 @@ pub struct RunContext<'a> {
     pub registry: &'a Registry,
     /// The source texts, for spans in diagnostics.
     pub sources: &'a mut Sources,
-    /// The sketch that is the model, when it is not a program.
+    /// The sketch, if the model is one instead of a program.
     pub sketch: Option<Arc<SketchFile>>,
-    /// The program of a model file that is loaded.
+    /// The program of a loaded model file.
     pub converted: Convert,
 }
 
-/// Why a number of an object is not a literal of the text.
+/// Reason why a number of an object is not a literal of the text.
 pub enum NotLiteral {
-    /// It is computed from these names.
+    /// It is computed from other names.
     Expression {
         /// The span of the expression.
         span: Span,
         /// The names that it reads.
         names: Vec<String>,
     },
-    /// The statement makes several objects.
+    /// The statement declares several objects.
     Shared {
         /// The span of the statement.
         span: Span,
@@ -58,12 +58,12 @@ pub enum NotLiteral {
 pub enum ArgumentInText {
     /// The expression.
     Written(Span),
-    /// It is not given: it can be inserted by its name at the end of this range.
+    /// It is omitted: it can be inserted by its name at the end of this range.
     After(Span),
 }
 
-/// Runs `f` where a deeply nested program finds enough stack: a thread of its own, except where all work
-/// stays on one thread, whose stack has [`STACK_BYTES`].
+/// Runs `f` with sufficient stack for a deeply nested program: on a thread of its own, or on the
+/// current thread, whose stack has [`STACK_BYTES`], if all work stays on one thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     if moldloft_parallel::is_alone() {
@@ -108,7 +108,8 @@ pub(crate) fn on_new_stack<R: Send>(_: &Budget, f: impl FnOnce() -> R + Send) ->
     Some(f())
 }
 
-/// A page in a browser has no threads and one stack, which its maker chose.
+/// Runs `f` on the current stack: a page in a browser has no threads, and the size of its stack is
+/// given.
 #[cfg(target_arch = "wasm32")]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     f()
@@ -246,7 +247,7 @@ pub fn declared_at<T: Scalar>(
     }
 }
 
-/// The literal of the text that a number of an object is.
+/// The literal of the text for a number of an object.
 pub fn literal<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
@@ -264,8 +265,9 @@ pub fn literal<T: Scalar>(
     Ok((module, literal))
 }
 
-/// The numbers in the expression of the main text that a number of an object is computed by, in the order of the text, and
-/// the place of the expression; nothing for objects that share their statement with others.
+/// The numbers in the expression of the main text that determines a number of an object, in the
+/// order of the text, and the position of the expression; empty for objects declared with others in
+/// one statement.
 pub fn literals_within<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
@@ -315,8 +317,8 @@ fn expression<T: Scalar>(
     Ok((origin.module as usize, expr, origin.repeated))
 }
 
-/// Position of an object's argument in the main text, or for its insertion; `None` for objects that
-/// share their statement with others.
+/// Position of an object's argument in the main text, or for its insertion; `None` for objects
+/// declared with others in one statement.
 pub fn argument_place<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,

@@ -63,7 +63,7 @@ pub(crate) fn has_gaps(m: &Module) -> bool {
 #[derive(Clone)]
 struct Declared {
     span: Span,
-    /// None of names that are declared with several types, and of objects.
+    /// The type; `None` for objects and for names that are declared with several types.
     ty: Option<Type>,
     /// Dimensions that are numbers of the text.
     dims: Option<Vec<f64>>,
@@ -178,10 +178,10 @@ impl<'a> Semantics<'a> {
             self.say(
                 Diagnostic::warning(
                     "missing-return",
-                    format!("not every way through `{word}` returns a value"),
+                    format!("not every path through `{word}` returns a value"),
                 )
                 .at(routine.name.span)
-                .expected("`return` with a value at the end of each way")
+                .expected("`return` with a value at the end of each path")
                 .help("add one at the end of the function"),
             );
         }

@@ -11,7 +11,7 @@ pub(crate) const STEPS_OF_CODE: u64 = 16;
 pub(crate) struct Usage {
     /// Statements and calls, and the elements of values.
     pub steps: u64,
-    /// Those of them executed by compiled code, which count less.
+    /// The steps executed by compiled code, which count less.
     pub quick: u64,
     /// Nesting depth of statements, expressions and calls.
     pub depth: u32,

@@ -10,7 +10,7 @@ use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Array, Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 use std::sync::Arc;
 
-/// A mass and its centre: a part of a ship's weight.
+/// A mass with its centre: an item of a ship's weight.
 ///
 /// Masses are used as given, also in a mirrored model (`Model info(symmetry = "y")`): `images =
 /// "y"` adds the mirror image, which doubles the mass and moves the centre into the plane.
@@ -76,7 +76,8 @@ impl<T: Real> Build<T> for Weight<T> {
                 .in_field(Self::STATUS));
         }
         let unsound = || {
-            CallError::new("no-body", "the shape has places that are not finite").in_field(Self::AT)
+            CallError::new("no-body", "the shape has positions that are not finite")
+                .in_field(Self::AT)
         };
         // Size of the shape (`None` for a point), and its centre.
         let (size, centre) = match &self.at {
@@ -97,7 +98,7 @@ impl<T: Real> Build<T> for Weight<T> {
                     let found = format!("a volume of {} that is known to {error:.1e}", volume.re());
                     return Err(CallError::new(
                         "rough-volume",
-                        "the volume of the solid does not settle",
+                        "the volume of the solid does not converge",
                     )
                     .expected("a solid without kinks that run across its parameters")
                     .found(found)
@@ -196,7 +197,7 @@ fn row_of<T: Real>(mass: T, centre: Vec3<T>) -> Value<T> {
     Value::Numbers(Arc::new(Array::row(vec![mass, x, y, z])))
 }
 
-/// The mass and the centre in the value of a weight.
+/// Mass and centre of the value of a weight.
 pub fn mass_and_centre<T: Real>(value: &Value<T>) -> Option<(T, Vec3<T>)> {
     let Value::Numbers(row) = value else { return None };
     let [mass, x, y, z] = row.items[..] else { return None };

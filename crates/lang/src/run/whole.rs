@@ -58,7 +58,7 @@ pub fn body_numbers<T: Real>(
     }
 }
 
-/// The water enters: the skin encloses no volume below it.
+/// Error: the skin is open below the water, so it encloses no volume.
 pub fn open_below_water(skin: &Skin) -> Diagnostic {
     const MOST_NAMES: usize = 3;
     let named = skin.open().iter().take(MOST_NAMES).map(|name| format!("`{name}`"));
@@ -73,7 +73,7 @@ pub fn open_below_water(skin: &Skin) -> Diagnostic {
                (`--keep-going`, `Model.partial = True`)")
 }
 
-/// The number of that name among those of a group.
+/// The number of that name in a group.
 pub fn one_of<T: Real>(
     numbers: Vec<(&'static str, Value<T>)>,
     group: &str,
@@ -96,7 +96,7 @@ struct Skins(Mutex<HashMap<Vec<Arc<str>>, Arc<(Panelling, Skin)>>>);
 const MOST_SKINS: usize = 64;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// `hydrostatics.volume` and the like; `None` where the name means something else.
+    /// `hydrostatics.volume` and similar members; `None` where the name has another meaning.
     pub fn whole_member(
         &mut self,
         m: &Module,

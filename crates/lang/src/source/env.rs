@@ -11,7 +11,7 @@ use moldloft_syntax::sdl::StmtId;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Gives the number of that name its derivatives.
+/// Gives the derivatives of the number of that name.
 pub type Seed<'a, T> = &'a (dyn Fn(&str, T) -> T + Sync);
 
 /// A design parameter.
@@ -23,9 +23,9 @@ pub struct Param {
     pub value: f64,
     /// The value in the text.
     pub default: f64,
-    /// Its range, when it has one.
+    /// Its range, if it has one.
     pub range: Option<(f64, f64)>,
-    /// True when it takes whole numbers only.
+    /// True if its value must be an integer.
     pub is_int: bool,
     /// Position of the declaration.
     pub span: Span,
@@ -42,7 +42,7 @@ pub struct DeclarationOrigin {
     pub repeated: bool,
 }
 
-/// A graph and the environment of the run that made it.
+/// A graph and the environment after its run.
 pub struct Evaluation<T: Scalar> {
     /// The objects.
     pub graph: Graph<T>,
@@ -63,11 +63,11 @@ pub enum SolveStatus {
     Solved,
     /// The conditions do not determine the unknowns.
     Singular,
-    /// No step makes the conditions smaller.
+    /// No step reduces the conditions.
     Stuck,
     /// The solution would be outside a range.
     OutOfRange,
-    /// The steps did not suffice.
+    /// The maximum number of steps was reached.
     TooManySteps,
     /// The model could not be built for a trial value.
     NoModel,
@@ -87,20 +87,20 @@ impl SolveStatus {
     }
 }
 
-/// An unknown of a solve set: a parameter, or a number that is written in the declaration of an object.
+/// An unknown of a solve set: a parameter, or a literal in the declaration of an object.
 #[derive(Clone, Debug)]
 pub struct SolveUnknown<T> {
     /// Its name: `beam`, or `P21.y`.
     pub name: String,
     /// Its value in this run.
     pub value: T,
-    /// The range of a parameter or argument, where it has one.
+    /// The range of the parameter or argument, if it has one.
     pub range: Option<(f64, f64)>,
-    /// The object whose number it is; `None` for a parameter.
+    /// The object of the number; `None` for a parameter.
     pub object: Option<String>,
 }
 
-/// A solve set as a run found it.
+/// A solve set of a run.
 #[derive(Clone, Debug)]
 pub struct Solve<T> {
     /// The name of the set.
@@ -115,14 +115,14 @@ pub struct Solve<T> {
     pub steps: usize,
 }
 
-/// Results of a run for later expressions.
+/// Results of a run that later expressions use.
 #[derive(Debug)]
 pub struct Environment<T: Scalar> {
     /// Bindings at the end of the run.
     pub scope: Scope<T>,
     /// The design parameters, in the order of their declaration.
     pub params: Vec<Param>,
-    /// Their values, by the same numbers.
+    /// Their values, in the same order.
     pub param_values: Vec<T>,
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
@@ -132,24 +132,24 @@ pub struct Environment<T: Scalar> {
     pub numbers: IndexMap<String, T>,
     /// The solve sets, in the order of the text.
     pub solves: Vec<Solve<T>>,
-    /// Steps and status of the solve sets, once they are solved.
+    /// Steps and status of the solve sets after solving.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
     /// The lines printed.
     pub printed: Vec<String>,
     /// Files opened and written.
     pub files: RunFiles,
-    /// Loaded sketches by the name that their parts begin with.
+    /// Loaded sketches, by the prefix of their parts.
     pub sketches: Vec<String>,
-    /// The files of sketches with the units of length that they state, and where they are loaded.
+    /// The files of sketches with their stated units of length, and where they are loaded.
     pub sketch_units: Vec<(String, String, moldloft_diag::Span)>,
-    /// Finished bodies of sketches by the name of their mesh, in runs of plain numbers.
+    /// Finished bodies of sketches, by the name of their mesh, in runs of plain numbers.
     pub sketch_bodies:
         std::collections::BTreeMap<String, std::sync::Arc<moldloft_sketch::SketchSolid<f64>>>,
     /// Numbers and objects of sketches by full name, as spelled and in small letters.
     pub sketch_members: HashMap<String, Value<T>>,
     /// True when the run ended early, so that objects may be missing.
     pub stopped: bool,
-    /// The steps that were counted.
+    /// Number of steps counted.
     pub steps: u64,
 }
 

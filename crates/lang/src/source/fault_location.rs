@@ -20,7 +20,7 @@ pub fn unplaced(fault: &CallError) -> Diagnostic {
     diagnostic
 }
 
-/// The fault of a call, at the argument that it is about; `whole` when that is unknown.
+/// The fault of a call at the argument concerned, or at `whole` if that is unknown.
 pub fn diagnostic(
     m: &Module,
     args: NodeList<Arg>,

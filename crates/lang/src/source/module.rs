@@ -8,7 +8,7 @@ use moldloft_syntax::sdl::{self, Program, RoutineId, Symbol};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A name, the same number in every file of a model.
+/// A name, by number; the same number in all files of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name(pub u32);
 
@@ -21,10 +21,10 @@ pub struct RoutineAt {
     pub routine: RoutineId,
 }
 
-/// A parsed file of a model, its names resolved against the others'.
+/// A parsed file of a model, with names resolved across its files.
 #[derive(Debug)]
 pub struct Module {
-    /// The name that the world gave it.
+    /// The name of the file, as given by the world.
     pub path: String,
     /// The syntax tree.
     pub program: Program,
@@ -34,11 +34,11 @@ pub struct Module {
     pub rows: Vec<Option<Arc<Row>>>,
     /// Errors in the text of a loaded file; reported in each run.
     pub faults: Vec<Diagnostic>,
-    /// True for a library that comes with the program.
+    /// True for a built-in library.
     pub library: bool,
 }
 
-/// All files of a model: parsed once, executed often.
+/// All files of a model, parsed once and executed often.
 #[derive(Debug, Default)]
 pub struct Modules {
     modules: Vec<Arc<Module>>,
@@ -57,7 +57,7 @@ impl Modules {
         &self.modules[module]
     }
 
-    /// The module, to edit its literals; no run is active then.
+    /// The module for editing its literals, when no run is active.
     pub fn get_mut(&mut self, module: usize) -> &mut Module {
         Arc::get_mut(&mut self.modules[module]).expect("no run holds on to a module")
     }
@@ -72,7 +72,7 @@ impl Modules {
         self.modules.is_empty()
     }
 
-    /// The model-wide number of a name; a new one for a new name.
+    /// The model-wide number of a name, assigned on first use.
     pub fn name(&mut self, text: &str) -> Name {
         if let Some(&name) = self.texts.get(text) {
             return name;
@@ -94,7 +94,7 @@ impl Modules {
         self.names.len()
     }
 
-    /// Takes in a parsed program; `at` replaces the module of that number.
+    /// Adds a parsed program; `at` replaces the module of that number.
     pub fn add(
         &mut self,
         path: &str,
@@ -136,7 +136,7 @@ impl Modules {
         self.add("", program, registry, None)
     }
 
-    /// Removes the expression that came last.
+    /// Removes the expression added last.
     pub fn remove_expression(&mut self, at: usize) {
         if at + 1 == self.modules.len() {
             self.modules.pop();
@@ -156,7 +156,7 @@ impl Modules {
             .unzip()
     }
 
-    /// Looks the rows up again, after the registry has changed.
+    /// Resolves the rows again after a change of the registry.
     pub fn relink(&mut self, registry: &Registry) {
         for module in &mut self.modules {
             let module = Arc::get_mut(module).expect("no run holds on to a module");
@@ -166,8 +166,8 @@ impl Modules {
         }
     }
 
-    /// The module that `load "path"` in module `from` means, read and parsed when it is new. The
-    /// diagnostics of its text are pushed once.
+    /// The module for `load "path"` in module `from`, read and parsed on first use, with the
+    /// diagnostics of its text reported once.
     pub fn load(
         &mut self,
         from: usize,
@@ -183,7 +183,7 @@ impl Modules {
         outcome
     }
 
-    /// The sketch file that `load "path"` in module `from` means, run when it is new.
+    /// The sketch file for `load "path"` in module `from`, run on first use.
     pub fn load_sketch(
         &mut self,
         from: usize,
@@ -289,5 +289,5 @@ pub struct Loader<'a> {
     pub converted: Convert,
 }
 
-/// Makes a program of a model file: its name and text are given.
+/// Converts a model file, given by name and text, to a program.
 pub type Convert = fn(&str, &str, &Registry) -> Result<String, Diagnostic>;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Binding of a name.
 #[derive(Clone, Debug)]
 pub enum Binding<T: Scalar> {
-    /// A variable of a type; `fixed` when its dimensions were declared.
+    /// A variable of a type; `fixed` if its dimensions were declared.
     Variable {
         /// The declared type.
         ty: Type,
@@ -21,44 +21,45 @@ pub enum Binding<T: Scalar> {
         value: Value<T>,
         /// True when the dimensions were declared.
         fixed: bool,
-        /// The elements that have a value, and whether edges meet.
+        /// The elements that have a value, and whether edges are closed.
         known: Known,
     },
     /// A part of a variable of a caller, passed by reference.
     Reference(Place),
-    /// The arguments that a multiple argument takes.
+    /// The arguments of a multiple argument.
     Multiple(Box<Multiple<T>>),
     /// A design parameter, by its number.
     Param(usize),
     /// An object.
     Object(Key),
-    /// Something made in loops: in the turn `turn` it means `now`, afterwards all of them.
+    /// An object or variable made in a loop: `now` in the iteration `turn`, afterwards the list of
+    /// all.
     Turn {
-        /// The object of the turn.
+        /// The object of this iteration.
         now: Key,
-        /// The turn, by its number.
+        /// The iteration, by its number.
         turn: u64,
-        /// The name of all turns' objects.
+        /// The name of the list of all iterations.
         family: Arc<str>,
     },
-    /// A named call of a subroutine: the family of the objects in it.
+    /// A named call of a subroutine: the list of its objects.
     Instance(Arc<str>),
-    /// A routine of a program that was passed as an argument.
+    /// A routine of a program passed as an argument.
     Routine(RoutineAt),
-    /// A function of the registry that was passed as an argument.
+    /// A function of the registry passed as an argument.
     Function(Arc<Row>),
-    /// Its declaration failed and was reported; its uses are not reported.
+    /// The declaration failed and was reported; uses are not reported.
     Poisoned,
 }
 
 impl<T: Scalar> Binding<T> {
-    /// A variable whose dimensions are those of the assigned value.
+    /// A variable with the dimensions of the assigned value.
     pub fn variable(ty: Type, value: Value<T>) -> Self {
         Binding::Variable { ty, value, fixed: false, known: Known::default() }
     }
 }
 
-/// A multiple argument, read one after the other.
+/// A multiple argument, read item by item.
 #[derive(Clone, Debug)]
 pub struct Multiple<T: Scalar> {
     /// The declared type of every argument.
@@ -69,16 +70,16 @@ pub struct Multiple<T: Scalar> {
     pub read: usize,
 }
 
-/// An argument as it was passed.
+/// An argument as passed.
 #[derive(Clone, Debug)]
 pub enum Passed<T: Scalar> {
     /// A value, copied.
     Value(Value<T>),
-    /// A variable of the caller, by reference.
+    /// A variable of the caller, passed by reference.
     Place(Place),
 }
 
-/// A binding and where it was made.
+/// A binding with its origin.
 #[derive(Clone, Debug)]
 pub struct ScopedBinding<T: Scalar> {
     /// The span of the declaration.
@@ -94,7 +95,7 @@ pub struct CallFrame<T: Scalar> {
     pub locals: Vec<(Name, ScopedBinding<T>)>,
     /// True at file level, where names are global.
     pub global: bool,
-    /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
+    /// Prefix of the names of objects: "fore." in the call `leg fore(...)`.
     pub prefix: Arc<str>,
     /// The active loops, outermost first.
     pub loops: Vec<LoopIteration>,
@@ -107,7 +108,7 @@ pub struct CallFrame<T: Scalar> {
 pub struct LoopIteration {
     /// The loop variable's value as used in names; `None` in a `while`.
     pub label: Option<f64>,
-    /// Unique among the turns of a run.
+    /// Unique among the iterations of a run.
     pub id: u64,
 }
 
@@ -132,7 +133,7 @@ pub struct RecordAt {
     pub stmt: StmtId,
 }
 
-/// All that a file has of its own while it runs: a component runs in another scope than its user.
+/// The state of one file during a run: a component runs in another scope than its user.
 #[derive(Debug)]
 pub struct Scope<T: Scalar> {
     /// Bindings at file level, by number of the name.
@@ -145,9 +146,9 @@ pub struct Scope<T: Scalar> {
     pub frames: Vec<CallFrame<T>>,
     /// The modules that were run.
     pub executed: HashSet<usize>,
-    /// Sketch files that were brought in.
+    /// Sketch files already loaded.
     pub sketches_done: HashSet<String>,
-    /// The names that the user of a component has given.
+    /// The names given by the user of a component.
     pub given: HashSet<Name>,
 }
 
@@ -158,8 +159,8 @@ impl<T: Scalar> Default for Scope<T> {
 }
 
 impl<T: Scalar> Scope<T> {
-    /// The scope of a file before its run: `prefix` is the prefix of its objects, and `names` are
-    /// known.
+    /// The scope of a file before its run, with the prefix of its objects and the number of known
+    /// names.
     pub fn of_file(prefix: Arc<str>, names: usize) -> Self {
         let mut globals = Vec::new();
         globals.resize_with(names, || None);
@@ -191,7 +192,7 @@ impl<T: Scalar> Scope<T> {
         self.frames.last().expect("there is always a frame")
     }
 
-    /// The innermost frame, to change.
+    /// The innermost frame, mutable.
     pub fn frame_mut(&mut self) -> &mut CallFrame<T> {
         self.frames.last_mut().expect("there is always a frame")
     }
@@ -248,7 +249,8 @@ impl<T: Scalar> Scope<T> {
         }
     }
 
-    /// The whole variable of a name, as a place; that of the caller for one passed by reference.
+    /// The whole variable of a name, as a place; for one passed by reference, the caller's
+    /// variable.
     pub fn place_of(&self, name: Name) -> Option<Place> {
         let at = self.frames.len() - 1;
         let (bound, frame) = match self.frames[at].local(name) {
@@ -261,7 +263,7 @@ impl<T: Scalar> Scope<T> {
         })
     }
 
-    /// True for a name at file level that the user of a component has given.
+    /// True for a name at file level given by the user of a component.
     pub fn is_given(&self, name: Name) -> bool {
         !self.given.is_empty() && self.frame().global && self.given.contains(&name)
     }

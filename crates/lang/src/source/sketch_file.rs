@@ -18,7 +18,7 @@ const MOST_FILES: usize = 32;
 /// More refused commands than this are not reported one by one.
 const MOST_FAULTS: usize = 100;
 
-/// A file of sketches after its commands were run.
+/// A file of sketches after its commands have run.
 #[derive(Debug)]
 pub struct SketchFile {
     /// The name that the world gave it.
@@ -31,14 +31,14 @@ pub struct SketchFile {
     pub faults: Vec<Diagnostic>,
 }
 
-/// A sketched object with the data that depend on its drawing alone.
+/// A sketched object with the data that depend on its drawing only.
 #[derive(Debug)]
 pub struct Drawn {
     /// The object.
     pub object: SketchObject,
     /// Its dimensioning planes.
     pub planes: Planes,
-    /// True if it is a result of the file, not only an operand.
+    /// True if it is a result of the file and not only an operand.
     pub result: bool,
     estimate: OnceLock<Option<Estimate>>,
 }
@@ -52,8 +52,8 @@ impl Drawn {
         self.estimate.get_or_init(compute).clone()
     }
 
-    /// The numbers that are parameters of the model, as key, name, value and range: driving dimensions
-    /// and variables that are plain numbers.
+    /// The numbers that become parameters of the model (driving dimensions, and variables that are
+    /// plain numbers), as key, name, value and range.
     pub fn parameters(&self) -> impl Iterator<Item = (&String, &String, f64, Option<[f64; 2]>)> {
         let variables = (self.object.variables.iter())
             .filter_map(|(key, v)| Some((key, &v.name, v.value.literal()?, v.range)));
@@ -91,7 +91,7 @@ impl Files for ShelfFiles {
 }
 
 impl SketchFile {
-    /// Runs the commands of a text. Other files are read through `world`, as seen from this one.
+    /// Runs the commands of a text. Other files are read through `world`, relative to this one.
     pub fn open(path: &str, text: &str, file: FileId, world: &dyn World) -> SketchFile {
         let shelf = Arc::new(Mutex::new(Shelf::default()));
         let whole = Span::new(file, 0, text.find('\n').unwrap_or(text.len()) as u32);
@@ -166,14 +166,14 @@ impl SketchFile {
         SketchFile { path: path.into(), file, objects: Vec::new(), faults: vec![fault] }
     }
 
-    /// The unit of length of the objects, as models spell it; `None` if not stated.
+    /// The unit of length of the objects, spelled as in models; `None` if not stated.
     pub fn unit(&self) -> Option<String> {
         let stated = self.objects.iter().find_map(|drawn| drawn.object.units.as_ref())?;
         Some(stated.to_ascii_lowercase())
     }
 
-    /// The name of an object in the model: how the file is called when it has this one object of that
-    /// name, else the object's own.
+    /// The name of an object in the model: the name of the file if it has only this object of that
+    /// name, otherwise the object's name.
     pub fn prefix(&self, drawn: &Drawn) -> String {
         let base = self.path.rsplit(['/', '\\']).next().unwrap_or(&self.path);
         let stem = base.split('.').next().unwrap_or(base);

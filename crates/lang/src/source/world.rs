@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
-/// Access of a run to the outside. The core opens no files: the host does, in the permitted
-/// folders.
+/// Access of a run to files. The core opens none: the host does, in the permitted folders.
 pub trait World: Send + Sync {
     /// The text at `path`, named in the text of `from` (or by the user when `None`).
     ///
@@ -13,7 +12,7 @@ pub trait World: Send + Sync {
     fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError>;
 }
 
-/// A text and where it came from.
+/// A text and its origin.
 #[derive(Clone, Debug)]
 pub struct ReadText {
     /// The displayed name, the same for each spelling of a path.
@@ -22,7 +21,7 @@ pub struct ReadText {
     pub bytes: Arc<[u8]>,
 }
 
-/// Why a text cannot be read.
+/// Reason why a text cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextReadError {
     /// The error, in one line.
@@ -50,8 +49,8 @@ impl<W: World + ?Sized> World for Box<W> {
 /// A file that was read: the path as requested, the requesting text, and the content.
 pub type ReadAs = (String, Option<String>, ReadText);
 
-/// Texts that count in place of the files of their names, such as those that an editor has not
-/// saved; and the files that were read.
+/// Texts that replace the files of their names, such as unsaved texts of an editor; and the files
+/// that were read.
 #[derive(Debug, Default)]
 pub struct OpenTexts {
     texts: RwLock<HashMap<String, Arc<[u8]>>>,
@@ -59,7 +58,7 @@ pub struct OpenTexts {
 }
 
 impl OpenTexts {
-    /// The text counts in place of the file; `None` gives the file back.
+    /// Replaces the file by a text; `None` ends the replacement.
     pub fn put(&self, name: &str, text: Option<&str>) {
         let mut texts = self.texts.write().unwrap_or_else(PoisonError::into_inner);
         match text {
@@ -79,14 +78,14 @@ impl OpenTexts {
     }
 }
 
-/// A world in which open texts count in place of files, and which records what is read.
+/// A world in which open texts replace files, and which records the files read.
 pub struct OpenFiles<W> {
     world: W,
     texts: Arc<OpenTexts>,
 }
 
 impl<W: World> OpenFiles<W> {
-    /// The files of `world`, but for those whose texts are open.
+    /// The files of `world`, except those with open texts.
     pub fn new(world: W, texts: Arc<OpenTexts>) -> Self {
         Self { world, texts }
     }

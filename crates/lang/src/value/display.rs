@@ -4,7 +4,7 @@ use moldloft_num::Real;
 use moldloft_registry::{ArrayShape, Value};
 use moldloft_syntax::number;
 
-/// The value on one line, numbers in their shortest exact spelling. It can be read again in an
+/// The value on one line, with numbers in their shortest exact spelling. It can be read back in an
 /// array context.
 pub fn plain<T: Real>(value: &Value<T>) -> String {
     spelled(value, ", ")

@@ -161,7 +161,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
     }
 }
 
-/// The area, the centre of the area, or the enclosed volume of a surface; the volume of a solid.
+/// The area, the centroid of the area, or the enclosed volume of a surface; the volume of a solid.
 pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
     if let Value::Solid(solid) = object.value()? {
         return (name == "volume").then(|| solid_volume(solid, object).map(Value::Number));
@@ -187,7 +187,10 @@ pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Valu
 
 /// The fault of a surface whose positions are not finite.
 pub fn not_finite() -> Diagnostic {
-    Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
+    Diagnostic::error(
+        "no-body",
+        "a surface has positions that are not finite, so it has no measures",
+    )
 }
 
 /// Maximum integral of the normal of a closed surface, relative to its area.
@@ -219,14 +222,14 @@ fn is_closed<T: Scalar>(surface: &dyn Surface<T>) -> bool {
 /// Number of points of an edge, between its ends, at which it is compared with others.
 const EDGE_PLACES: usize = 24;
 
-/// An error of a volume that is refused, relative to it.
+/// Relative error above which a volume is refused.
 pub const ROUGH: f64 = 1e-6;
 
 /// The volume of a solid by quadrature on its shape, negative when it is left-handed: the figure that weights take, too.
 fn solid_volume<T: Scalar>(solid: &SolidRef<T>, object: &Object<T>) -> Result<T, Diagnostic> {
     let (volume, _, error) = solid_measures(&**solid).ok_or_else(not_finite)?;
     if error > ROUGH * volume.re().abs() {
-        let message = format!("the volume of `{}` does not settle", object.name);
+        let message = format!("the volume of `{}` does not converge", object.name);
         return Err(Diagnostic::error("rough-volume", message)
             .expected("a solid without kinks that run across its parameters")
             .found(format!("a volume of {} that is known to {error:.1e}", volume.re())));

@@ -122,8 +122,8 @@ struct Rules<T> {
     dot: bool,
 }
 
-/// The exponent, when it is a small whole number: such powers go by multiplication, exact for whole
-/// numbers and defined for negative bases.
+/// The exponent, if it is a small integer: such powers are computed by multiplication, exact for
+/// integers and defined for negative bases.
 pub(crate) fn whole_power<T: Real>(b: T) -> Option<i32> {
     let k = b.re();
     (b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0).then_some(k as i32)

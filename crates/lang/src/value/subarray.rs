@@ -6,7 +6,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_registry::ArrayShape;
 use smallvec::SmallVec;
 
-/// Part of a dimension that a subscript selects: `count` positions from `start`, `step` apart,
+/// Part of a dimension selected by a subscript: `count` positions from `start`, `step` apart,
 /// counted from 0; and whether the dimension is kept (a range) or dropped (an index).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection {
@@ -16,7 +16,7 @@ pub struct Selection {
     pub step: isize,
     /// The number of positions.
     pub count: usize,
-    /// True of ranges, which keep their dimension; false of single positions.
+    /// True for a range, which keeps its dimension; false for a single position.
     pub keeps: bool,
 }
 
@@ -31,7 +31,7 @@ impl Selection {
         Self { start: position, step: 1, count: 1, keeps: false }
     }
 
-    /// The positions from one to another, both counted from 0; `None` when there is none.
+    /// The positions between two ends, both included and counted from 0; `None` if empty.
     pub fn range(from: usize, to: usize, step: f64) -> Option<Self> {
         let length = to as f64 - from as f64;
         if step.fract() != 0.0 || step == 0.0 || length * step < 0.0 {
@@ -132,7 +132,7 @@ impl ArraySection {
         })
     }
 
-    /// The extents of the selection; none for a single element.
+    /// The extents of the selection; empty for a single element.
     pub fn extents(self) -> ([usize; 3], usize) {
         let mut extents = ([0; 3], 0);
         for part in self.parts().into_iter().filter(|s| s.keeps) {
@@ -164,7 +164,7 @@ impl ArraySection {
         Self::of_parts(&parts)
     }
 
-    /// True when some element is in both.
+    /// True when the selections have a common element.
     pub fn meets(self, o: ArraySection) -> bool {
         let (a, b) = (self.parts(), o.parts());
         a.len() != b.len() || a.into_iter().zip(b).all(|(a, b)| a.meets(b))

@@ -10,7 +10,7 @@ use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use moldloft_syntax::sdl::{ItemType, Type};
 use std::sync::Arc;
 
-/// Ints are smaller: from here on neighbours share their digits.
+/// Bound on integers: from here on, not all integers are representable.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
 
 /// The variable that a value is stored into.
@@ -23,7 +23,7 @@ pub struct Taken<'a> {
     pub name: &'a str,
 }
 
-/// The type that holds a value as it is.
+/// The type of variable that holds a value unchanged.
 pub fn type_of<T: Real>(value: &Value<T>) -> Type {
     match value {
         Value::Text(_) => Type::String,
@@ -64,7 +64,7 @@ impl<T: Real> Called for Value<T> {
     }
 }
 
-/// The name of a type and its content.
+/// Name of a type and description of its content.
 pub fn described(ty: Type) -> &'static str {
     match ty {
         Type::Int => "a whole number",
@@ -99,7 +99,7 @@ pub fn described(ty: Type) -> &'static str {
     }
 }
 
-/// The value as a variable of type `ty` holds it.
+/// The value converted to a variable of type `ty`.
 ///
 /// # Errors
 /// When the type holds no such value.
@@ -139,9 +139,7 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
             return Err(Diagnostic::error("int-overflow", "an int holds whole numbers below 2^53")
                 .expected("a whole number between -9007199254740991 and 9007199254740991")
                 .found(moldloft_syntax::number::plain(x.re()))
-                .help(
-                    "beyond them not every whole number has its own digits; a float is rounded",
-                ));
+                .help("beyond them not every integer can be represented; a float is rounded"));
         }
         (Type::Block, value @ Value::Block(_)) | (Type::Record, value @ Value::Record(_)) => value,
         (Type::Block, value @ Value::List(_)) => match blocks::spelled_by(value) {
@@ -277,7 +275,7 @@ pub fn has_room<T>(ty: Type, count: f64, budget: &Budget) -> Result<u64, Diagnos
     }
 }
 
-/// The first value of a variable with declared dimensions `dims`.
+/// The initial value of a variable with declared dimensions `dims`.
 ///
 /// # Errors
 /// When dimensions, type and value do not match. The caller has checked the memory.
@@ -326,9 +324,8 @@ pub fn initial<T: Real>(
     Ok(filled)
 }
 
-/// Stores a value into a variable or a part of it: the whole right side is known before anything is
-/// stored. Gives back the array that was replaced, when a whole one was, so that its memory can be
-/// used again.
+/// Stores a value into a variable or a part of it; the whole right side is evaluated first. Returns
+/// a whole array that was replaced, so that its memory can be reused.
 ///
 /// # Errors
 /// When type or shape differ.
@@ -622,7 +619,7 @@ pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
     })
 }
 
-/// The value inside of lists and records that a path leads to.
+/// The value inside lists and records at the end of a path.
 pub fn inside<'v, T: Real>(root: &'v Value<T>, path: &ValuePath) -> Option<&'v Value<T>> {
     path.steps().iter().try_fold(root, |value, step| match (value, step) {
         (Value::List(items), PathStep::Item(k)) => items.get(*k as usize),
@@ -631,7 +628,7 @@ pub fn inside<'v, T: Real>(root: &'v Value<T>, path: &ValuePath) -> Option<&'v V
     })
 }
 
-/// The same, to change.
+/// The value inside lists and records at the end of a path, for changes.
 pub fn inside_mut<'v, T: Real>(
     root: &'v mut Value<T>,
     path: &ValuePath,
@@ -694,7 +691,7 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
     }
 }
 
-/// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
+/// A type with the extents of a value: `curve[60]`, `surface[60,25]`, `number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SizedType {
     /// Numbers, and their extents.
@@ -705,7 +702,7 @@ pub enum SizedType {
     Block([usize; 3]),
     /// A list, and its length.
     List(usize),
-    /// A value of another class.
+    /// A value of another class, without extents.
     Other(Class),
 }
 
@@ -735,7 +732,7 @@ pub fn shape_of<T: Real>(value: &Value<T>) -> SizedType {
     }
 }
 
-/// The same in words.
+/// The type and extents of a value as text.
 pub fn shape_text<T: Real>(value: &Value<T>) -> String {
     shape_of(value).to_string()
 }

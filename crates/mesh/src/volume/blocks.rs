@@ -4,7 +4,7 @@ use super::{Boundary, Hexahedron, Interface};
 use crate::MeshError;
 use moldloft_num::{Real, Vec3};
 
-/// A face of a block that a solver must know by name when it is not an interface.
+/// A face of a block with the name of a boundary.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockFace {
     /// The name of its boundary; several faces may have one name.
@@ -21,8 +21,8 @@ pub struct HexBlock {
     pub name: String,
     /// Vertices along u, v and w, two or more each.
     pub size: [usize; 3],
-    /// Vertex of (i, j, k) at `[(i * size[1] + j) * size[2] + k]`. Vertices recur at collapsed
-    /// edges and faces.
+    /// Vertex of (i, j, k) at `[(i * size[1] + j) * size[2] + k]`. Vertices are repeated at
+    /// collapsed edges and faces.
     pub vertices: Vec<u32>,
     /// The six faces.
     pub faces: [BlockFace; 6],
@@ -57,7 +57,7 @@ impl HexBlock {
         (0..nu).flat_map(move |i| (0..nv).flat_map(move |j| (0..nw).map(move |k| [i, j, k])))
     }
 
-    /// The axes (0: u, 1: v, 2: w) of the parameters of face 0..6, and its own axis last.
+    /// The axes (0: u, 1: v, 2: w) of the parameters of face 0..6, and the axis normal to it last.
     pub fn face_axes(face: usize) -> [usize; 3] {
         match face / 2 {
             0 => [1, 2, 0],
@@ -66,7 +66,7 @@ impl HexBlock {
         }
     }
 
-    /// The indices (i, j, k) of (a, b) on face 0..6.
+    /// The indices (i, j, k) of the point (a, b) of face 0..6.
     pub fn on_face(&self, face: usize, [a, b]: [usize; 2]) -> [usize; 3] {
         let [p, q, own] = Self::face_axes(face);
         let mut place = [0; 3];
@@ -82,9 +82,9 @@ impl HexBlock {
         [self.size[p], self.size[q]]
     }
 
-    /// The panels of face 0..6, counter-clockwise seen from outside of a right-handed block; a
-    /// panel with two corners in one is a triangle that repeats its last. Those without area,
-    /// where a face is a line or a point, are left out.
+    /// The panels of face 0..6, counter-clockwise seen from outside a right-handed block. A panel
+    /// with two equal corners is a triangle that repeats its last. Panels without area, on a face
+    /// that is a line or a point, are omitted.
     pub fn face_panels(&self, face: usize) -> Vec<[u32; 4]> {
         let [m, n] = self.face_size(face);
         // u x v = w, v x w = u, but u x w = -v.
@@ -111,8 +111,8 @@ impl HexBlock {
     }
 }
 
-/// Structured blocks that share vertices: a vertex that two blocks have in common has one number,
-/// by identity and not because positions look alike.
+/// Structured blocks that share vertices by identity: a common vertex of two blocks has one number;
+/// equal positions alone do not share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blocks<T = f64> {
     positions: Vec<Vec3<T>>,
@@ -164,7 +164,7 @@ impl<T: Real> Blocks<T> {
         Hexahedron(self.blocks[block].cell(cell).map(|v| self.positions[v as usize]))
     }
 
-    /// The volume of a block: the sum of its cells', negative where they are left-handed.
+    /// The volume of a block: the sum over its cells, negative for left-handed ones.
     pub fn block_volume(&self, block: usize) -> T {
         let mut sum = T::zero();
         for cell in self.blocks[block].cells() {
@@ -182,8 +182,8 @@ impl<T: Real> Blocks<T> {
         sum
     }
 
-    /// Interfaces of blocks, by the identity of their vertices, ordered by the first sides; and the
-    /// parts of faces that bound the whole.
+    /// Interfaces of blocks, by the identity of their vertices, ordered by their first sides; and
+    /// the parts of faces on the boundary.
     pub fn interfaces(&self) -> (Vec<Interface>, Vec<Boundary>) {
         super::interface::find(&self.blocks)
     }

@@ -7,8 +7,8 @@ use moldloft_num::{Real, Vec3};
 /// An edge shorter than this, relative to its cell, has collapsed.
 const COLLAPSED: f64 = 1e-12;
 
-/// The corners of a hexahedron: the trilinear map of the unit cube, u, v, w of corner c being its
-/// bits 0, 1 and 2.
+/// The corners of a hexahedron: the trilinear map of the unit cube; bits 0, 1 and 2 of a corner's
+/// number are its u, v and w.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexahedron<T>(pub [Vec3<T>; 8]);
 
@@ -17,8 +17,8 @@ const FACES: [[usize; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
 impl<T: Real> Hexahedron<T> {
-    /// The volume of the trilinear map, exactly: the cones over its six bilinear faces. Neighbours
-    /// share their faces, so volumes of cells add up to that of the whole.
+    /// The exact volume of the trilinear map: the cones over its six bilinear faces. Neighbours
+    /// share faces, so the volumes of cells add up to that of the whole.
     pub fn volume(&self) -> T {
         // About a corner, for the sake of cells far from the origin; three faces have it.
         let about = self.0[0];
@@ -64,8 +64,8 @@ impl Hexahedron<f64> {
     }
 
     /// The smallest scaled Jacobian det(X_u, X_v, X_w) / (|X_u| |X_v| |X_w|) at the corners and the
-    /// Gauss points, with its position: 1 for a brick, 0 or less for a folded cell. Corners at
-    /// which an edge has no length, as at a pole, do not count; a cell without any volume has 0.
+    /// Gauss points, with its position: 1 for a brick, 0 or less for a folded cell. Corners at an
+    /// edge of zero length, as at a pole, are ignored; a cell of zero volume has 0.
     pub fn scaled_jacobian(&self) -> (f64, [f64; 3]) {
         let size = self.0.iter().map(|p| p.distance(self.0[0])).fold(0.0, f64::max);
         let mut worst = (f64::INFINITY, [0.5; 3]);
@@ -91,7 +91,7 @@ impl Hexahedron<f64> {
         low.lerp(x[4].lerp(x[5], u).lerp(x[6].lerp(x[7], u), v), w)
     }
 
-    /// The longest edge over the shortest one that has length.
+    /// The ratio of the longest edge to the shortest of nonzero length.
     pub fn aspect(&self) -> f64 {
         let (mut short, mut long) = (f64::INFINITY, 0.0_f64);
         for axis in 0..3 {

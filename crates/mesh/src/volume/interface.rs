@@ -3,7 +3,8 @@
 use super::HexBlock;
 use std::collections::{HashMap, HashSet};
 
-/// A rectangle of a block's face that is a rectangle of another's, or of its own, vertex by vertex.
+/// A rectangle of a block's face that coincides, vertex by vertex, with a rectangle of another
+/// block's face or of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
     /// The two faces: (block, face 0..6), the earlier first.
@@ -12,12 +13,12 @@ pub struct Interface {
     pub from: [[usize; 3]; 2],
     /// End in each block; in the first no index is less than in `from`.
     pub to: [[usize; 3]; 2],
-    /// For each axis u, v, w of the first block, the corresponding axis of the second, and whether
-    /// it is reversed. The axis through the face continues into the second block.
+    /// For each axis u, v, w of the first block, the corresponding axis of the second, and true if
+    /// reversed. The axis normal to the face continues into the second block.
     pub axes: [(usize, bool); 3],
 }
 
-/// A rectangle of a face that meets no other.
+/// A rectangle of a face without a neighbour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Boundary {
     /// The block.

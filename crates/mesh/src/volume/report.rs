@@ -10,7 +10,7 @@ pub struct BadCell {
     pub cell: [usize; 3],
     /// The scaled Jacobian, 1 for a brick, negative where the cell is folded.
     pub scaled_jacobian: f64,
-    /// The Jacobian of the cell's trilinear map there, in units of volume.
+    /// The Jacobian of the cell's trilinear map at that position, in units of volume.
     pub jacobian: f64,
     /// Position in space.
     pub at: [f64; 3],
@@ -42,7 +42,7 @@ pub struct BlockQuality {
 pub struct BlocksReport {
     /// Each block.
     pub blocks: Vec<BlockQuality>,
-    /// Number of vertices that the cells use.
+    /// Number of vertices used by cells.
     pub vertices: usize,
     /// Number of cells.
     pub cells: usize,
@@ -89,8 +89,8 @@ impl VolumeTally {
 }
 
 impl Blocks<f64> {
-    /// Counts, volumes and the quality of all cells, their Jacobians checked at the 8 corners and
-    /// the 2 x 2 x 2 Gauss points.
+    /// Counts, volumes and the quality of all cells, with Jacobians at the 8 corners and the 2 x 2
+    /// x 2 Gauss points.
     pub fn report(&self) -> BlocksReport {
         let blocks: Vec<BlockQuality> = (0..self.blocks().len()).map(|b| self.quality(b)).collect();
         let mut used = vec![false; self.positions().len()];

@@ -103,7 +103,7 @@ impl Blocking {
     }
 
     /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a solid has
-    /// no value there.
+    /// no value in that graph.
     pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
         let mut positions = vec![Vec3::zero(); self.vertices];
         // Backwards, so that the first block has the last word.

@@ -2,16 +2,17 @@
 
 use moldloft_num::Vec3;
 
-/// Something about the joins of blocks that the user may want to know.
+/// A note to the user about the joins of blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BlockNote {
-    /// The cells of one block along a part of another's edge do not fit, so they are not joined.
+    /// Cell counts along a part of a block's edge contradict those of the neighbour, so the blocks
+    /// are not joined there.
     Divisions {
-        /// The block whose edge has several parts, and the other one along one of them.
+        /// The block whose edge has several parts, and the neighbour along one of them.
         blocks: [String; 2],
         /// Cells along the edge of the first.
         divisions: usize,
-        /// Cells of the other along the part.
+        /// Cells of the neighbour along the part.
         along: f64,
         /// The part as a fraction of the edge.
         share: f64,
@@ -28,7 +29,7 @@ pub enum BlockNote {
 }
 
 impl BlockNote {
-    /// A stable word for its kind.
+    /// A stable word for the type of note.
     pub fn id(&self) -> &'static str {
         match self {
             BlockNote::Divisions { .. } => "divisions-contradict",

@@ -381,7 +381,7 @@ impl Web {
     }
 }
 
-/// What a network has to have, and how each condition is called.
+/// The conditions of a network, each with its name.
 fn network_conditions(
     network: &Network,
     named: NamedCurves<'_>,

@@ -43,7 +43,7 @@ impl<T: Real> Build<T> for XCurve<T> {
         };
         if let Some(k) = (1..points.len()).find(|k| !runs_on(k)) {
             let name = ["x", "y", "z"][axis];
-            let message = format!("{name} does not run on from point {k} to point {}", k + 1);
+            let message = format!("{name} is not monotone from point {k} to point {}", k + 1);
             return Err(CallError::new("not-monotone", message)
                 .expected(format!("{name} ascending from point to point, or descending"))
                 .found(format!("{} after {}", points[k][axis].re(), points[k - 1][axis].re()))

@@ -8,8 +8,8 @@ use moldloft_registry::{
 };
 use moldloft_spline::{SplineError, SplineWithKnotDerivatives};
 
-/// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
-/// curve, and the least sum of squared distances at equal parameters.
+/// A B-spline fitted to a curve by least squares, with clamped uniform knots and the same ends:
+/// minimises the sum of squared distances at equal parameters.
 ///
 /// The number of control points determines the accuracy. The member `residual` is the greatest
 /// distance between curve and fit at equal parameters; a residual above `accuracy` is an error.
@@ -21,7 +21,7 @@ use moldloft_spline::{SplineError, SplineWithKnotDerivatives};
                CCurve c({A, B, C, D}); BFitCurve fit(c, 3, 6, 0.05);"
 )]
 pub struct BFitCurve<T: Real> {
-    /// The curve to come near to.
+    /// The curve to approximate.
     curve: CurveRef<T>,
     /// Polynomial degree.
     #[field(default = 3, min = 1, max = 25)]
@@ -29,7 +29,7 @@ pub struct BFitCurve<T: Real> {
     /// Number of control points, more than the degree.
     #[field(default = 8, min = 2, max = 10_000)]
     points: usize,
-    /// The greatest distance allowed between the two at equal parameters.
+    /// Maximum distance between the two curves at equal parameters.
     #[field(min = 0)]
     accuracy: Option<T>,
 }
@@ -41,7 +41,7 @@ impl<T: Real> Build<T> for BFitCurve<T> {
     }
 }
 
-/// A B-spline fitted to a curve as by BFitCurve, with knots of one's own.
+/// A B-spline fitted to a curve as in BFitCurve, with given knots.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -55,7 +55,7 @@ pub struct NUBFitCurve<T: Real> {
     /// Polynomial degree.
     #[field(default = 3, min = 1, max = 25)]
     degree: usize,
-    /// The parameters where pieces meet, from 0 to 1, each once.
+    /// The parameters of the joints between pieces, from 0 to 1, each once.
     #[field(min_items = 2)]
     knots: Vec<T>,
     /// The greatest distance allowed between the two at equal parameters.
@@ -108,8 +108,8 @@ pub fn no_fit(error: SplineError) -> CallError {
     let fault = CallError::new("no-fit", error.to_string());
     match error {
         SplineError::Count { .. } => fault
-            .expected("knots with room between them")
-            .found("a control point that no point of the original determines"),
+            .expected("knots farther apart")
+            .found("a control point that the original does not determine"),
         _ => fault.expected("ascending knots, and more points than the degree"),
     }
 }
@@ -123,7 +123,7 @@ pub fn near_enough<T: Real>(
     match accuracy {
         // Written so that NaN is refused.
         Some(accuracy) if residual.is_nan() || residual > accuracy.re() => {
-            let message = format!("the fit does not come near enough to the {noun}");
+            let message = format!("the fit does not approximate the {noun} within the accuracy");
             Err(CallError::new("no-fit", message)
                 .expected(format!("a distance of at most {}", accuracy.re()))
                 .found(format!("{residual}"))

@@ -6,8 +6,8 @@ use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 foil_kind!(
-    /// A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
-    /// between 3, 4 or 5 points.
+    /// A foil section between 3, 4 or 5 points: the thickness form and mean line of a NACA family,
+    /// or given ordinates.
     ///
     /// Three points: nose, thickness point and tail of half a section, from nose to tail. Four:
     /// tail, thickness point, nose and lower tail of a symmetric section. Five: a lower thickness

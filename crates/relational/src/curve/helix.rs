@@ -19,7 +19,7 @@ pub struct Helix<T: Real> {
     point: Point<T>,
     /// Its axis, from the line's first end to its last.
     line: Axis<T>,
-    /// Angle by which it turns.
+    /// Total angle of rotation.
     #[field(angle)]
     angle: T,
     /// Advance per turn.

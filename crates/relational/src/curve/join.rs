@@ -7,8 +7,8 @@ use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, DeclaredJoin, FieldId, Kind, Value};
 use std::sync::Arc;
 
-/// A declared join: two coincident edges of patches count as one edge in meshes, though they come
-/// from different objects. The result is the first edge.
+/// A declared join: two coincident edges of patches count as one edge in meshes, although they are
+/// different objects. The result is the first edge.
 ///
 /// Edges are given as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`.
 /// Curves and snakes along edges are accepted too; the directions may be opposite. One edge may be on a part

@@ -5,9 +5,9 @@ use crate::third_derivatives::{direction, standstill};
 use moldloft_num::{Curve, CurveFormula, Jet, Order, Plane, Real, Uni1, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
-/// A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
-/// the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
-/// positive side, if d is positive.
+/// A curve at a distance from another in a plane: C(t) = c(t) + d T x n / |T x n|, with T the
+/// tangent and n the normal of the plane. A positive d is to the right of the direction of travel,
+/// seen from the positive side of the plane.
 ///
 /// At an end of zero speed, such as a double control point, T is the limit from inside. Zero speed
 /// inside, or a distance beyond the radius of curvature on that side (a cusp of the offset), is an
@@ -99,7 +99,7 @@ impl<T: Real> ParallelCurve<T> {
             .expected(format!("a distance less than {} on that side", digits(radius)))
             .found(format!("{} where t = {}", d.abs(), parameter(t)))
             .help("offset by less, or to the other side, or only a part of the curve")
-            .related(self.curve.key, "is bent too much there")
+            .related(self.curve.key, "has too large a curvature there")
             .in_field(OffsetCurve::<T>::DISTANCE))
     }
 

@@ -105,7 +105,7 @@ impl<T: Real> Curve<T> for Moved<T> {
 pub struct CopyCurve<T: Real> {
     /// The curve to copy.
     curve: CurveRef<T>,
-    /// A point that is moved to `to`.
+    /// The reference point that is moved to `to`.
     from: Point<T>,
     /// The image of `from`.
     to: Point<T>,

@@ -80,7 +80,7 @@ impl<T: Real> Build<T> for BSubCurve<T> {
     }
 }
 
-/// A snake reparametrised by a B-spline; the counterpart of a B-sub-curve on a surface.
+/// A snake reparametrised by a B-spline; the counterpart of a B-sub-curve.
 #[derive(Kind)]
 #[kind(
     class = Snake,

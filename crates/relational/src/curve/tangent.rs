@@ -4,8 +4,8 @@ use crate::third_derivatives::{standstill, tangent};
 use moldloft_num::{Curve, CurveFormula, Jet, Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
-/// The curve of the points on the tangents of another at a distance from where they touch:
-/// C(t) = c(t) + d c'(t) / |c'(t)|, which is that of TanPoint for all beads.
+/// The curve of points on the tangents of another curve, at a distance from the point of contact:
+/// C(t) = c(t) + d c'(t) / |c'(t)|; the TanPoint of all beads.
 ///
 /// A corner of the curve, where the tangent jumps, is an error.
 #[derive(Kind)]

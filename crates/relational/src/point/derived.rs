@@ -224,7 +224,7 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                 Value::Solid(solid) => ("solids", of_solid(solid)),
                 Value::Body(body) => {
                     let m = body.measures().ok_or_else(|| {
-                        CallError::new("no-body", "the shape has places that are not finite")
+                        CallError::new("no-body", "the shape has positions that are not finite")
                             .in_item(k)
                             .in_field(Self::OBJECTS)
                     })?;

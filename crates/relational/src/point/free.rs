@@ -55,7 +55,7 @@ impl<T: Real> Build<T> for RelPoint<T> {
 }
 
 /// The mirror image of a point: X = 2 F - P, with F the foot of the perpendicular from P to the
-/// plane or line, or the point to mirror in.
+/// plane or line, or the centre of a point reflection.
 #[derive(Kind)]
 #[kind(
     class = Point,

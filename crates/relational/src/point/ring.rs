@@ -16,7 +16,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
                AbsRing r(s, 0.5);"
 )]
 pub struct AbsRing<T: Real> {
-    /// The snake it lives on.
+    /// The snake of the ring.
     snake: Snake<T>,
     /// Its parameter.
     t: T,

@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// Slope of a law below which its inverse has no derivative.
 const NO_SLOPE: f64 = 1e-9;
 
-/// A redistribution by length: R is the inverse of s(t) / L, with s the length along a curve and L
-/// all of it, so that equal steps of t are equal lengths.
+/// A redistribution by arc length: R is the inverse of s(t) / L, with s the arc length along a
+/// curve and L its total, so that equal steps of t are equal lengths.
 ///
 /// Intended as the relabel of a curve of the same shape: a copy, a neighbour, or a curve on the
 /// same points. The curve must have non-zero speed everywhere.
@@ -182,8 +182,8 @@ impl<T: Real> Reparametrization<T> for ByLength<T> {
     }
 }
 
-/// The reparametrisation of another curve, so that neighbours match: the identity for a curve
-/// without one, that of the original for an image.
+/// A copy of the reparametrisation of another curve, so that neighbours match: the identity for a
+/// curve without one, that of the original for an image.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -205,8 +205,8 @@ impl<T: Real> Build<T> for CopyRelabel<T> {
     }
 }
 
-/// The inverse of a relabel, which undoes it: R(t) is the parameter at which the other has the value
-/// t. The other must have a slope at both ends.
+/// The inverse of a relabel: R(t) is the parameter at which the other has the value t. The other
+/// must have a nonzero slope at both ends.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -280,7 +280,7 @@ impl<T: Real> Reparametrization<T> for Inverse<T> {
     example = "CosRelabel cosine(); GeoRelabel growth(3); ComposeRelabel r({growth, cosine});"
 )]
 pub struct ComposeRelabel<T: Real> {
-    /// Relabels, the one that sees t first.
+    /// Relabels in order of application.
     #[field(min_items = 1)]
     relabels: Vec<ReparametrizationRef<T>>,
 }

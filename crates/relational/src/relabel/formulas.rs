@@ -68,8 +68,8 @@ fn law<T: Real>(
     }
 }
 
-/// A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
-/// clamped uniform knots (as a B-sub-curve has its beads' parameters).
+/// A redistribution by a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with clamped
+/// uniform knots, as in a B-sub-curve.
 ///
 /// The values increase from 0 to 1. With `partial = 1` they increase between any two values, and
 /// the law covers a part of the curve or its continuation beyond the ends. For N values the degree
@@ -89,7 +89,7 @@ pub struct Relabel<T: Real> {
     /// Polynomial degree.
     #[field(default = 3, min = 1, max = 25)]
     degree: usize,
-    /// 1 when the values may begin and end elsewhere than at 0 and 1.
+    /// 1 when the values may start and end at other numbers than 0 and 1.
     #[field(default = 0, min = 0, max = 1)]
     partial: u32,
 }
@@ -136,8 +136,8 @@ impl<T: Real> Build<T> for CosRelabel<T> {
     }
 }
 
-/// A geometric redistribution: R(t) = (q^t - 1) / (q - 1). Of many equal steps of t the last becomes q
-/// times the first; q = 1 changes nothing.
+/// A geometric redistribution: R(t) = (q^t - 1) / (q - 1). For many equal steps of t, the last is q
+/// times the first; q = 1 is the identity.
 #[derive(Kind)]
 #[kind(class = Relabel, columns = "ratio", example = "GeoRelabel r(4);")]
 pub struct GeoRelabel<T: Real> {
@@ -164,7 +164,7 @@ impl<T: Real> Build<T> for GeoRelabel<T> {
     example = "TanhRelabel r(3); TanhRelabel s(2.5, \"end\");"
 )]
 pub struct TanhRelabel<T: Real> {
-    /// Strength d, 0 to 100; 0 changes nothing.
+    /// Strength d, 0 to 100; 0 is the identity.
     #[field(min = 0, max = 100)]
     strength: T,
     /// Dense end: "both", "start" or "end".

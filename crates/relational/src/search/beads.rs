@@ -194,7 +194,7 @@ macro_rules! bead_and_ring {
 
         #[doc = $what]
         ///
-        /// The same on a snake, as a ring.
+        /// A ring is such a point on a snake.
         #[derive(Kind)]
         #[kind(class = Ring, columns = $ring_columns, example = $ring_example)]
         pub struct $ring<T: Real> {
@@ -247,7 +247,7 @@ bead_and_ring!(
     [
         /// The coordinate: "x", "y" or "z".
         axis: Arc<str>,
-        /// Its value.
+        /// Value of the coordinate.
         value: T,
     ],
     "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \

@@ -63,7 +63,7 @@ impl<T: Real> PlainSecond<'_, T> {
     }
 }
 
-/// Points of a piece that its polynomials go through.
+/// Number of points interpolated by the polynomial of a piece.
 pub(super) const NODES: usize = 8;
 
 /// Powers of the length along a piece.
@@ -286,7 +286,8 @@ impl<T: Real> Both<T> {
         self.along_on(0, q, d, order)
     }
 
-    /// The same, with the parameters of the first (0) or the second surface (1).
+    /// The derivatives of [`Self::along`], with those of the parameters of the first (0) or the
+    /// second surface (1).
     fn along_on(
         &self,
         side: usize,
@@ -407,7 +408,7 @@ pub(super) struct CutView<T: Real> {
 }
 
 impl<T: Real> CutView<T> {
-    /// The surface that it is on; the first where the second shape is none.
+    /// Its surface; the first one if the second shape is not a surface.
     pub fn surface(&self) -> &SurfaceRef<T> {
         let second = self.cut.both.second.surface().filter(|_| self.side == 1);
         second.unwrap_or(&self.cut.both.first)

@@ -55,8 +55,8 @@ pub struct GeoSnake<T: Real> {
     m1: Magnet<T>,
     /// End, on the same surface.
     m2: Magnet<T>,
-    /// Number of forward crossings of the seam u = 0; negative: backward. Default: the shortest
-    /// path with 0, 1 or -1.
+    /// Number of crossings of the seam u = 0, forwards if positive, backwards if negative. Default:
+    /// the shortest path with 0, 1 or -1.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,
     /// Number of forward crossings of the seam v = 0; see `turns_u`.

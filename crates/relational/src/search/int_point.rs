@@ -13,7 +13,7 @@ use moldloft_registry::{
     Build, CallError, Context, FieldRef, Kind, Point, SearchReport, SurfaceRef, Value,
 };
 
-/// The point that three planes, surfaces or zero sets of fields have in common.
+/// The common point of three planes, surfaces or zero sets of fields.
 ///
 /// With magnets instead of surfaces it is the point found by Newton's method from there. Without
 /// them all points are searched: the result is the one nearest to `near`, by default to the middle

@@ -21,7 +21,7 @@ use moldloft_registry::{
 use std::sync::Arc;
 
 /// The intersection of two surfaces, or of a surface with a plane or the zero set of a field: one
-/// curve, whichever surface it is used on. Its parameter is the fraction of its length.
+/// curve, the same on either surface. Its parameter is the fraction of its length.
 ///
 /// `IntSnake(a, x)` is the intersection `x` as a snake on its surface `a`. The snakes on both surfaces
 /// are `x` itself from end to end, so panels on both sides share its vertices.

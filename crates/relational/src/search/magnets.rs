@@ -142,8 +142,8 @@ impl<T: Real> Build<T> for ProjMagnet<T> {
     }
 }
 
-/// The point of a surface nearest to a given point, of the whole surface and edges included.
-/// Equally near ones are reported.
+/// The point of a surface nearest to a given point, among all points of the surface and its edges.
+/// Equally near points are reported.
 #[derive(Kind)]
 #[kind(
     class = Magnet,
@@ -152,7 +152,7 @@ impl<T: Real> Build<T> for ProjMagnet<T> {
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 2, 4); ProxMagnet m1(P, S);"
 )]
 pub struct ProxMagnet<T: Real> {
-    /// The point to be near to.
+    /// The given point.
     point: Point<T>,
     /// The surface.
     surface: Onto<T>,
@@ -177,9 +177,9 @@ impl<T: Real> Build<T> for ProxMagnet<T> {
                Line n(P, Q); IntMagnet hit(n, S);"
 )]
 pub struct IntMagnet<T: Real> {
-    /// The curve, or a bead of it.
+    /// The curve, or a bead on it.
     curve: Along<T>,
-    /// The surface, or a magnet of it.
+    /// The surface, or a magnet on it.
     surface: Onto<T>,
 }
 
@@ -204,11 +204,11 @@ pub struct XYZMagnet<T: Real> {
     surface: Onto<T>,
     /// The first coordinate: "x", "y" or "z".
     axis1: Arc<str>,
-    /// Its value.
+    /// Value of the first coordinate.
     value1: T,
-    /// The second coordinate, another one.
+    /// The second coordinate, different from the first.
     axis2: Arc<str>,
-    /// Its value.
+    /// Value of the second coordinate.
     value2: T,
 }
 
@@ -236,9 +236,9 @@ impl<T: Real> Build<T> for XYZMagnet<T> {
     }
 }
 
-/// The point of a surface near another magnet, at distances measured in the tangent plane there:
-/// the foot on the surface of S + a e1 + b e2, with e1 the direction of S_u and e2 the one
-/// perpendicular to it towards S_v.
+/// The point of a surface near another magnet, at distances measured in its tangent plane: the foot
+/// on the surface of S + a e1 + b e2, with e1 the direction of S_u and e2 the one perpendicular to
+/// it towards S_v.
 #[derive(Kind)]
 #[kind(
     class = Magnet,

@@ -33,10 +33,12 @@ pub fn no_intersection(report: &LocateReport, one: &str, other: &str) -> CallErr
     if report.status == LocateStatus::Unfinished {
         return CallError::new(
             "search-unfinished",
-            format!("the search for where the {one} meets the {other} ran into its limit"),
+            format!(
+                "the search for the intersection of the {one} and the {other} reached its limit"
+            ),
         )
         .expected(format!("a {one} and another shape that do not run along each other"))
-        .found(format!("a gap of {:.6e} at best, and parts not looked at", report.residual))
+        .found(format!("a smallest gap of {:.6e}, and parts not searched", report.residual))
         .help("start from a bead or a magnet near the intended point");
     }
     let at: Vec<String> = report.last.iter().map(|x| format!("{x:.6}")).collect();

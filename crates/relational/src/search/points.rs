@@ -30,8 +30,8 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
     }
 }
 
-/// The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field; for a
-/// mirror that is a point, that point.
+/// The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field;
+/// if the target is a point, that point.
 ///
 /// On the zero set of a field it is the foot found by descent along the field.
 ///

@@ -43,7 +43,7 @@ const ASIDE: f64 = 1e-7;
 /// Maximum error of positions from a table, relative to the size.
 const TABLE_ACCURACY: f64 = 1e-13;
 
-/// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
+/// The projection of a curve onto a surface, point by point, as a snake: along the surface's
 /// normals, along a direction, or away from a point.
 ///
 /// The foot of the start of the curve is found first, near the magnet if one is given; the
@@ -62,12 +62,12 @@ const TABLE_ACCURACY: f64 = 1e-13;
 pub struct ProjSnake<T: Real> {
     /// The curve to project.
     curve: CurveRef<T>,
-    /// The surface, or a magnet of it near the projection of the start of the curve.
+    /// The surface, or a magnet on it near the projection of the start of the curve.
     surface: Onto<T>,
     /// Direction of projection: a plane's normal, a line's direction, or rays from a point.
     /// Default: the surface's own normals.
     mirror: Option<MirrorArgument<T>>,
-    /// Magnets at the two ends, which other snakes end in too, so that patches join there.
+    /// Magnets at the two ends, shared with other snakes so that patches join there.
     #[field(default)]
     ends: Option<Vec<Magnet<T>>>,
 }
@@ -572,7 +572,7 @@ impl<T: Real> ProjectedPath<T> {
         jet
     }
 
-    /// The same without the step at a seam.
+    /// The parameters (u, v, 0) at `t` with derivatives, continued over a seam without a step.
     fn run_on(&self, t: T, order: Order) -> CurveJet<T> {
         let q = self.unknowns(t.re());
         let plain = || Vec3::new(T::from(q[0]), T::from(q[1]), T::zero());

@@ -5,7 +5,8 @@ use crate::alias::AliasCurve;
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
+/// The contact line of a fillet with one of its two surfaces: a snake on that surface and an edge
+/// of the fillet.
 ///
 /// Its parameter is the fillet's u. A part of the surface bounded by it (`SubSurf`, `TrimSurf`)
 /// shares the fillet's vertices, which are the rings at t = 0 and 1. It crosses the seam of a

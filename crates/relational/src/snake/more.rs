@@ -143,10 +143,10 @@ pub struct NURBSnake<T: Real> {
     degree: usize,
     /// Knots, end knots included, ascending.
     knots: Option<Vec<T>>,
-    /// Weights of the magnets, positive; those of `places` between those of the two magnets.
+    /// Weights of the magnets, positive; those of `places` are between those of the two magnets.
     weights: Option<Vec<T>>,
-    /// Control points that are no objects, as u, v, u, v, ...: they are between the first magnet and the second, and there
-    /// are no other magnets.
+    /// Control points between the first and the second magnet that are not objects, as u, v, u, v,
+    /// ...; there are no other magnets then.
     places: Option<Vec<T>>,
 }
 

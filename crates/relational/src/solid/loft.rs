@@ -38,8 +38,8 @@ impl<T: Real> Build<T> for RuledSolid<T> {
     }
 }
 
-/// A solid attracted by its surfaces: X(u, v, w) = sum N_i(w) S_i(u, v), with N_i the B-splines of
-/// clamped uniform knots. It has the first and the last surface as faces.
+/// A solid that approximates its surfaces: X(u, v, w) = sum N_i(w) S_i(u, v), with N_i the
+/// B-splines of clamped uniform knots. It has the first and the last surface as faces.
 ///
 /// With N surfaces the degree is at most N - 1: a higher one is lowered to that.
 #[derive(Kind)]
@@ -72,7 +72,7 @@ impl<T: Real> Build<T> for BLoftSolid<T> {
     }
 }
 
-/// A solid that passes through its surfaces: at each u and v the interpolating spline through their
+/// A solid that interpolates its surfaces: at each u and v the interpolating spline through their
 /// points there, with knots at chord lengths, evaluated at w.
 ///
 /// Two surfaces give rulings, three parabolas, four or more cubic splines. Neighbouring surfaces must

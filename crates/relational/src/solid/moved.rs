@@ -6,7 +6,7 @@ use moldloft_num::trace::{Face, Faces, LayerLaw, Layers, Turn};
 use moldloft_num::{Jet, Real, SolidFormula, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SolidRef, SurfaceRef, Value};
 
-/// A surface moved along a curve without turning: X(u, v, w) = S(u, v) + C(w) - C(0).
+/// A surface translated along a curve: X(u, v, w) = S(u, v) + C(w) - C(0).
 #[derive(Kind)]
 #[kind(
     class = Solid,
@@ -52,9 +52,8 @@ impl<T: Real> SolidFormula for TranslationSolid<T> {
     }
 }
 
-/// A surface carried along a path by a frame that moves with it: X(u, v, w) = path(w) + F(w)
-/// (S(u, v) - path(0)), with F(0) = 1, so that the face w = 0 is the surface. The frames are those
-/// of `SweepSurf`.
+/// A surface swept along a path by a moving frame: X(u, v, w) = path(w) + F(w) (S(u, v) - path(0)),
+/// with F(0) = 1, so that the face w = 0 is the surface. The frames are those of `SweepSurf`.
 #[derive(Kind)]
 #[kind(
     class = Solid,

@@ -26,11 +26,11 @@ use std::sync::Arc;
                Blister cone(ring, c, -0.2, \"sharp\", \"pointed\");"
 )]
 pub struct Blister<T: Real> {
-    /// The closed snake round the bump.
+    /// The closed snake around the bump.
     snake: Snake<T>,
-    /// The magnet under its top.
+    /// The magnet below the top.
     centre: Magnet<T>,
-    /// Its height, on the side of the natural normal if positive.
+    /// The height, on the side of the natural normal if positive.
     height: T,
     /// At the snake: "sharp", "tangent" or "curvature".
     #[field(default = "tangent")]

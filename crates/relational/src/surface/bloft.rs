@@ -7,8 +7,8 @@ use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::KnotVector;
 
-/// A surface attracted by its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the B-splines
-/// of clamped uniform knots. It passes through the first and the last master only.
+/// A surface that approximates its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the
+/// B-splines of clamped uniform knots. It interpolates only the first and the last master.
 ///
 /// With N masters the degree is at most N - 1: a higher one is lowered to that (Letcher and Shook
 /// 1995).

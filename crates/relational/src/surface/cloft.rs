@@ -10,8 +10,8 @@ use moldloft_num::{Axis, Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Un
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
-/// A surface that passes through its master curves: S(u, v) is the interpolating spline through
-/// the points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
+/// A surface that interpolates its master curves: S(u, v) is the interpolating spline through the
+/// points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
 ///
 /// Two masters give rulings, three parabolas, four or more cubic splines, as for a C-curve (Letcher
 /// and Shook 1995). Neighbouring masters must not meet, unless all meet in one point.
@@ -37,17 +37,17 @@ pub struct CLoftSurf<T: Real> {
     /// End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
     #[field(default = "notaknot")]
     ends: EndRule,
-    /// Slope dX/dv at the first master, the same all along it, for clamped ends.
+    /// Slope dX/dv at the first master, constant along it, for clamped ends.
     start: Option<Vec3<T>>,
-    /// Slope dX/dv at the last master, the same all along it, for clamped ends.
+    /// Slope dX/dv at the last master, constant along it, for clamped ends.
     end: Option<Vec3<T>>,
-    /// A line about which the loft is made in cylinder coordinates, r, theta (within half a turn from master
-    /// to master) and the length along it, as for blades.
+    /// A line for lofting in cylindrical coordinates: r, theta (less than half a turn between
+    /// masters) and the length along the line, as for blades.
     about: Option<Axis<T>>,
 }
 
-/// A surface that passes through its master curves, as an explicit spline at each u: one coordinate
-/// is the independent variable and linear in v, the others are cubic splines of it.
+/// A surface that interpolates its master curves by an explicit spline at each u: one coordinate is
+/// linear in v, the others are cubic splines of that coordinate.
 ///
 /// Unlike those of a C-loft its knots are that coordinate of the masters, which must increase or
 /// decrease from master to master at every u.

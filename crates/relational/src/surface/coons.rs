@@ -36,8 +36,8 @@ impl<T: Real> Build<T> for BlendSurf<T> {
     }
 }
 
-/// A patch between four curves that passes through a point in its middle: the Coons patch plus
-/// 16 u (1 - u) v (1 - v) times the vector from its own middle to the point.
+/// A patch between four curves that passes through a given centre point: the Coons patch plus 16 u
+/// (1 - u) v (1 - v) times the vector from its centre to the point.
 #[derive(Kind)]
 #[kind(
     class = Surface,

@@ -11,9 +11,9 @@ use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Order, Real, Vec3, find_root, lift_reparametrization};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// A developable surface between two curves, a plate bent without stretching: straight
-/// rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
-/// = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
+/// A developable surface between two curves, a plate bent without stretching: straight rulings from
+/// C1(s) to C2(t) with a constant tangent plane, det[C1'(s), C2'(t), C2(t) - C1(s)] = 0; S(u, v) =
+/// (1 - v) C1(s(u)) + v C2(t(u)).
 ///
 /// The rulings extend from the ruling of both starts to that of both ends; cones about an end of a
 /// curve (fans) complete the surface if those two are not rulings. By default u = (s + t) / 2 and

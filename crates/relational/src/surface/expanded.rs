@@ -8,8 +8,8 @@ use moldloft_num::trace::Edges;
 use moldloft_num::{Frame, Jet, Order, Real, Vec3, gauss_points};
 use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
-/// A developable surface unrolled: the plate before bending, with lengths and angles of the
-/// surface, at equal parameters.
+/// A developable surface unrolled: the plate before bending, which preserves lengths and angles, at
+/// equal parameters.
 ///
 /// Its lines u = const must be straight with one tangent plane along each, like those of DevSurf,
 /// cones and cylinders. The plate is in the xy plane of `frame` (default: world), its normal along
@@ -25,7 +25,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
                AbsPoint O(0, 0, 5); RPYFrame table(O, 0.2, 0, 0.5); ExpandedSurf there(hull, table);"
 )]
 pub struct ExpandedSurf<T: Real> {
-    /// The surface to lay flat.
+    /// The surface to unroll.
     surface: SurfaceRef<T>,
     /// Frame whose xy plane contains the plate; default: world axes.
     frame: Option<Frame<T>>,

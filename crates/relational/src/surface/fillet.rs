@@ -34,13 +34,13 @@ pub struct FilletSurf<T: Real> {
     snake1: Snake<T>,
     /// Edge v = 1.
     snake2: Snake<T>,
-    /// Length of the tangent at v = 0, in chords between the snakes.
+    /// Length of the tangent at v = 0, relative to the chord between the snakes.
     #[field(default = 1, min = 0)]
     m1: T,
-    /// Length of the tangent at v = 1, in chords between the snakes.
+    /// Length of the tangent at v = 1, relative to the chord between the snakes.
     #[field(default = 1, min = 0)]
     m2: T,
-    /// 1: common tangent planes; 2: common curvature across the edges too.
+    /// 1: common tangent planes; 2: also common curvature across the edges.
     #[field(default = 1, min = 1, max = 2)]
     continuity: usize,
     /// Direction at the first surface: "perpendicular", "chord", "u" or "v".
@@ -49,7 +49,7 @@ pub struct FilletSurf<T: Real> {
     /// Direction at the second surface: "perpendicular", "chord", "u" or "v".
     #[field(default = "perpendicular")]
     direction2: Direction,
-    /// 1 when the edges u = 0 and u = 1 are one line.
+    /// 1 when the edges u = 0 and u = 1 coincide.
     #[field(default = 0, min = 0, max = 1)]
     closed: usize,
 }

@@ -7,8 +7,8 @@ use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, SurfaceRef, Value};
 use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
 
-/// A B-spline surface fitted to another by least squares: with clamped uniform knots and the corners
-/// of the surface.
+/// A B-spline surface fitted to another by least squares, with clamped uniform knots and the
+/// corners of the surface.
 ///
 /// The lines v = const are fitted first, then their control points across, which is the fit of the
 /// tensor product; each edge is the fit of the surface's edge. The member `residual` is the
@@ -23,7 +23,7 @@ use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
                RuledSurf S(l, m); BFitSurf fit(S, 3, 2, 5, 3, 0.05);"
 )]
 pub struct BFitSurf<T: Real> {
-    /// The surface to come near to.
+    /// The surface to approximate.
     surface: SurfaceRef<T>,
     /// Polynomial degree in u.
     #[field(default = 3, min = 1, max = 25)]
@@ -58,7 +58,7 @@ impl<T: Scalar> Build<T> for BFitSurf<T> {
     }
 }
 
-/// A B-spline surface fitted to another as by BFitSurf, with knots of one's own.
+/// A B-spline surface fitted to another as in BFitSurf, with given knots.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -76,10 +76,10 @@ pub struct NUBFitSurf<T: Real> {
     /// Polynomial degree in v.
     #[field(default = 3, min = 1, max = 25)]
     degree_v: usize,
-    /// The parameters u where pieces meet, from 0 to 1, each once.
+    /// The parameters u of the joints between pieces, from 0 to 1, each once.
     #[field(min_items = 2)]
     knots_u: Vec<T>,
-    /// The parameters v where pieces meet, from 0 to 1, each once.
+    /// The parameters v of the joints between pieces, from 0 to 1, each once.
     #[field(min_items = 2)]
     knots_v: Vec<T>,
     /// The greatest distance allowed between the two at equal parameters.

@@ -9,8 +9,8 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, V
 use moldloft_spline::foil::Profile;
 
 foil_kind!(
-    /// Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
-    /// laid between the points of the curves at u. A wing, a keel, a blade.
+    /// Foil sections between points of three, four or five curves: at each u a section, as in
+    /// `FoilCurve`. A wing, a keel, a blade.
     ///
     /// With three curves (nose, thickness, tail) v goes from nose to tail; with four (upper tail,
     /// thickness, nose, lower tail) or five (a lower thickness before the lower tail) from the

@@ -219,7 +219,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
     }
 }
 
-/// A surface projected to a plane along its normal: each point maps to the foot of its
+/// A surface projected onto a plane along its normal: each point maps to the foot of its
 /// perpendicular.
 ///
 /// The image of a surface perpendicular to the plane degenerates; panels overlap there.
@@ -234,7 +234,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
 pub struct ProjSurf<T: Real> {
     /// The surface to project.
     surface: SurfaceRef<T>,
-    /// The plane to project it to.
+    /// The plane of projection.
     mirror: MirrorArgument<T>,
 }
 

@@ -8,8 +8,8 @@ use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3, line_crossings};
 use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
-/// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
-/// n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
+/// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with n = S_u
+/// x S_v / |S_u x S_v|; a negative distance is on the other side.
 ///
 /// At a pole the normal is the limit along the parameter line that ends there. Errors: a distance
 /// beyond a radius of curvature on that side, which would fold the offset; a surface without a
@@ -102,7 +102,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallErro
                     parameter(v)
                 ))
                 .help("offset by less, or to the other side, or only a part of the surface")
-                .related(surface.key, "is bent too much there")
+                .related(surface.key, "has too large a curvature there")
                 .in_field(OffsetSurf::<T>::DISTANCE))
         }
         _ => Ok(()),

@@ -27,7 +27,7 @@ pub struct PolySurf<T: Real> {
     /// The surfaces, in order.
     #[field(min_items = 1)]
     surfaces: Vec<SurfaceRef<T>>,
-    /// The parameter along which they follow one another: "u" or "v".
+    /// The parameter along which the pieces are joined: "u" or "v".
     #[field(default = "u")]
     along: NamedOption,
     /// Parameters of the seams, ascending between 0 and 1; default: equal intervals.

@@ -20,8 +20,8 @@ use moldloft_registry::{
 use moldloft_spline::{BSplineCurve, CircularArc};
 use std::sync;
 
-/// The fillet of a ball that rolls along two surfaces: circular arcs from its contact with the
-/// first, at v = 0, to its contact with the second, at v = 1; tangent to both.
+/// The fillet of a ball rolling along two surfaces: circular arcs from the contact line on the
+/// first, at v = 0, to that on the second, at v = 1; tangent to both.
 ///
 /// The centre of the ball is on the intersection of both surfaces offset by `radius`, which extends
 /// from edge to edge or is closed; u is the fraction of its length. The direction and the selection

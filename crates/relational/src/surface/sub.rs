@@ -96,7 +96,7 @@ enum SideLayout<T: Real> {
 pub struct SubPatch<T: Real> {
     surface: SurfaceRef<T>,
     layout: SideLayout<T>,
-    /// The ends of the edges v = 0 and v = 1, first those of the one.
+    /// The corners of the patch: the ends of the edge v = 0, then those of v = 1.
     corners: [Vec3<T>; 4],
 }
 

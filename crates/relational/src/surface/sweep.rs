@@ -10,8 +10,8 @@ use moldloft_registry::{
 };
 use moldloft_spline::{BSplineCurve, KnotVector};
 
-/// A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
-/// path(0)), with F(0) = 1, so that edge v = 0 is the profile.
+/// A curve swept along a path by a moving frame: S(u, v) = path(v) + F(v) (profile(u) - path(0)),
+/// with F(0) = 1, so that edge v = 0 is the profile.
 ///
 /// Frames: "minimal" does not rotate about the tangent of the path (rotation-minimising; Wang,
 /// Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed"
@@ -31,7 +31,7 @@ use moldloft_spline::{BSplineCurve, KnotVector};
                SweepSurf moved(profile, path, \"fixed\", scale = {1, 0.5});"
 )]
 pub struct SweepSurf<T: Real> {
-    /// The curve that is carried: edge v = 0.
+    /// The curve to sweep: edge v = 0.
     profile: CurveRef<T>,
     /// Path of the profile.
     path: CurveRef<T>,
@@ -40,10 +40,10 @@ pub struct SweepSurf<T: Real> {
     frame: std::sync::Arc<str>,
     /// Upright direction of frame = "up"; default: z.
     up: Option<Vec3<T>>,
-    /// Angles about the tangent along v, in radians.
+    /// Angles of rotation about the tangent along v, in radians.
     #[field(angle)]
     twist: Option<Vec<T>>,
-    /// Factors of the profile's size along v.
+    /// Scale factors of the profile along v.
     scale: Option<Vec<T>>,
 }
 
@@ -100,7 +100,7 @@ impl<T: Real> FrameMode<T> {
 pub struct MovingFrame<T: Real> {
     pub path: CurveRef<T>,
     mode: FrameMode<T>,
-    /// For the minimal frame: r at parameters of the path.
+    /// For the minimal frame: its reference vector r at parameters of the path.
     nodes: Vec<(f64, Vec3<T>)>,
     /// The frame at v = 0.
     pub first: [Vec3<T>; 3],

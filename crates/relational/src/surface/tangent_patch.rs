@@ -7,8 +7,8 @@ use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Real, SurfaceFormula, Uni1, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing parameter,
-/// that is tangent to the surfaces of those that are snakes, unless they are listed as `free`.
+/// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
+/// parameter, tangent to the surfaces of the curves that are snakes, except those listed as `free`.
 ///
 /// It is the bicubically blended Coons patch (Coons 1967) of the curves and of slopes across them,
 /// with the twists of Gregory (1974), which need not agree at the corners. The slope across a snake
@@ -32,7 +32,7 @@ pub struct TanBoundary<T: Real> {
     /// The four (or three) boundary curves; snakes for the edges that are tangent to a surface.
     #[field(min_items = 3)]
     sides: Vec<CurveRef<T>>,
-    /// The numbers (from 1) of sides that are left free though they are snakes.
+    /// The numbers (from 1) of sides without tangency although they are snakes.
     free: Option<Vec<usize>>,
 }
 

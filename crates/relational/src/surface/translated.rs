@@ -5,7 +5,7 @@ use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Rational, Real, SurfaceFormula, Vec3, Weight};
 use moldloft_registry::{CurveRef, Kind};
 
-/// A curve moved along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
+/// A curve translated along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -15,9 +15,9 @@ use moldloft_registry::{CurveRef, Kind};
                AbsPoint E(1, 1, 3); BCurve l({A, B, C}); BCurve m({A, D, E}); TranSurf S(l, m);"
 )]
 pub struct TranSurf<T: Real> {
-    /// The curve that is moved: edge v = 0.
+    /// The curve to translate: edge v = 0.
     c1: CurveRef<T>,
-    /// Path of the first curve.
+    /// The path.
     c2: CurveRef<T>,
 }
 

@@ -49,11 +49,11 @@ pub struct TrimSurf<T: Real> {
     /// Snakes on it, loop after loop.
     #[field(min_items = 1)]
     loops: Vec<Snake<T>>,
-    /// 1 when the whole surface is kept but for holes.
+    /// 1 when the whole surface is kept except for holes.
     #[field(default = 0, min = 0, max = 1)]
     whole: u32,
-    /// Divisions of each snake; default: by its curvature and that of the surface, and at least
-    /// those of its neighbours.
+    /// Divisions of each snake; default: by its curvature and that of the surface, with the
+    /// neighbours' as a minimum.
     #[field(min = 1, max = 10_000)]
     rim: Option<usize>,
     /// Divisions along u of the surface's grid inside the border; default: by the curvature of the

@@ -137,7 +137,7 @@ fn a_file_comes_with_remarks_about_it() {
     let [remark] = &reply.head["remarks"].as_array().unwrap()[..] else {
         panic!("{}", reply.head["remarks"])
     };
-    assert_eq!(remark["message"], "a model file has no place for an assertion");
+    assert_eq!(remark["message"], "a model file cannot hold an assertion");
     assert!(remark["help"][0].as_str().unwrap().contains("in the program"), "{remark}");
     assert_eq!(remark["severity"], "warning");
     let mut s = session("AbsPoint P(2, 0, 0);");

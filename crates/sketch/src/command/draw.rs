@@ -317,7 +317,7 @@ impl SketchSession {
             self.known(&name)?;
             let key = name.to_lowercase();
             self.state.objects.shift_remove(&key);
-            // What follows it keeps it as a part, with its numbers.
+            // Objects that follow it keep it as a part, with its numbers.
             let before = self.state.clone();
             self.follow(&before);
             for (reader, names) in self.readers(&name) {

@@ -5,8 +5,8 @@ use super::subject::ReplySubject;
 /// A refused command. It has changed nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandError {
-    /// The number of the 1983 table (manual, appendix E), or one of ours from 310, 701-703; 0 for
-    /// faults of the text.
+    /// The number in the 1983 table (manual, appendix E), or a later one from 310, 701 to 703; 0
+    /// for faults of the text.
     pub code: u16,
     /// Fault and position.
     pub text: String,
@@ -17,7 +17,7 @@ pub struct CommandError {
 }
 
 impl CommandError {
-    /// A fault with its next step.
+    /// A fault with a remedy.
     pub fn new(code: u16, text: impl Into<String>, next: impl Into<String>) -> CommandError {
         let about = Box::new(ReplySubject::of(kind(code)));
         CommandError { code, text: text.into(), next: next.into(), about }
@@ -29,7 +29,7 @@ impl CommandError {
         CommandError { about: Box::new(about), ..self }
     }
 
-    /// A fault of the text of a command.
+    /// A fault in the text of a command.
     pub fn text(text: impl Into<String>, next: impl Into<String>) -> CommandError {
         CommandError::new(0, text, next)
     }

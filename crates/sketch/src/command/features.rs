@@ -342,7 +342,7 @@ impl SketchSession {
         if object.drawing.section.is_some() {
             return Err(CommandError::new(
                 114,
-                format!("{} is a cross section; only solids are placed anywhere", object.name),
+                format!("{} is a cross section; this placement is only for solids", object.name),
                 "EXTRUDE it first, or turn it by 90, 180 or 270",
             )
             .about(ReplySubject::of("cross-section").names([&object.name])));

@@ -104,7 +104,7 @@ impl SketchSession {
         if let Some(new) = into {
             let added: Vec<String> =
                 self.state.objects.keys().filter(|k| !before.contains(k)).cloned().collect();
-            // What it is made of keeps its names.
+            // Its operands keep their names.
             let objects: Vec<&SketchObject> =
                 added.iter().filter_map(|key| self.object(key)).collect();
             let made: Vec<&String> = (added.iter().zip(crate::results(&objects)))

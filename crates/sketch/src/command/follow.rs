@@ -124,8 +124,8 @@ impl SketchSession {
         }
     }
 
-    /// Where a number that is not the active object's own is: the folded name of the object that has it, and the
-    /// number's name there.
+    /// Owner of a number that does not belong to the active object: the folded name of the owner,
+    /// and the name of the number there.
     pub(super) fn followed_number(&self, name: &str) -> Option<(String, String)> {
         let mut at = (self.state.active.clone()?, name.to_owned());
         let here = at.clone();

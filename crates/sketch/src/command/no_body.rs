@@ -8,7 +8,7 @@ use crate::solid::combine::CombineError;
 use crate::solid::feature::{MAX_COPIES, NoBody};
 use crate::solid::validity::SolidDefect;
 
-/// The reason why an object has no body, with the position and the next step.
+/// The reason why an object has no body, with the position and a remedy.
 pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
     let name = &object.name;
     match why {

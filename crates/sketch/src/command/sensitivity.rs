@@ -5,7 +5,7 @@ use crate::{DimensionFault, Estimate, Planes, SolidGradient, Swept, gradient, so
 use std::collections::BTreeMap;
 
 impl SketchSession {
-    /// The body at each of the values of a dimension or variable; the session stays as it is.
+    /// The body at each value of a dimension or variable; the session is unchanged.
     ///
     /// # Errors
     /// When there is no such object or number.

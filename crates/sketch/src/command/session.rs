@@ -554,8 +554,8 @@ impl SketchSession {
         }
     }
 
-    /// The commands that made the present state, for a journal. A host appends new ones to its file
-    /// after each line; running them again restores the session.
+    /// The commands that led to the present state, for a journal. A host appends new ones to its
+    /// file after each line; running them again restores the session.
     pub fn journal(&self) -> &[String] {
         &self.journal[..self.settled()]
     }
@@ -597,7 +597,7 @@ impl SketchSession {
         objects.chain(inner).filter(|n| starts(n)).collect()
     }
 
-    /// The object of a name.
+    /// The object of that name.
     pub fn object(&self, name: &str) -> Option<&SketchObject> {
         self.state.objects.get(&name.to_lowercase()).map(|o| &**o)
     }
@@ -607,8 +607,8 @@ impl SketchSession {
         self.state.objects.values().map(|o| o.name.clone()).collect()
     }
 
-    /// Dimensions and variables of an object with value and range, in the order of entry, then those of the objects
-    /// that it follows, as `object.number`.
+    /// Dimensions and variables of an object with value and range, in the order of entry, followed
+    /// by those of the objects that it follows, as `object.number`.
     pub fn numbers(&mut self, name: &str) -> Option<Vec<(String, Option<f64>, Option<[f64; 2]>)>> {
         let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
         let worked = self.worked(&object);
@@ -638,7 +638,7 @@ impl SketchSession {
         self.object(self.state.active.as_deref()?)
     }
 
-    /// Adds an object, or replaces its namesake; it becomes active.
+    /// Adds an object, or replaces the one of the same name, and makes it active.
     pub fn insert(&mut self, object: SketchObject) {
         let key = object.name.to_lowercase();
         self.state.objects.insert(key.clone(), Arc::new(object));

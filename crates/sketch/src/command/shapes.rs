@@ -12,7 +12,7 @@ use moldloft_num::Real;
 use moldloft_syntax::number::plain;
 use std::f64::consts::TAU;
 
-/// Coordinates below this share of a polygon's diameter are equal.
+/// Relative difference of coordinates of a polygon below which they are equal.
 const LEVEL: f64 = 1e-12;
 
 /// The corners of a polygon are at most these.
@@ -87,7 +87,7 @@ impl SketchSession {
         let points: Vec<PointId> = (0..corners).map(|k| PointId(first + k)).collect();
         let numbers = names.iter().cloned().zip(drawn.iter().copied()).collect();
         let mut outline = SectionOutline { text, points, axes: normal.others(), numbers };
-        // What has a centre is placed by it.
+        // Shapes with a centre are placed by it.
         let at = match verb {
             "CIRCLE" => shifted(at, ["-0.5", "-0.5"], &names[0])?,
             "POLYGON" => shifted(at, ["+0.5", "+0"], &names[0])?,
@@ -207,7 +207,7 @@ fn now(e: &DimensionExpr, known: &dyn Fn(&str) -> Option<f64>) -> Result<f64, Co
     })
 }
 
-/// Coordinates moved by shares of a number.
+/// Coordinates shifted by multiples of a number.
 fn shifted(
     at: [DimensionExpr; 2],
     shares: [&str; 2],

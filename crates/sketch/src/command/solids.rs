@@ -317,9 +317,9 @@ impl SketchSession {
         }
     }
 
-    /// The body of an object as far as the picture and its dimensions say: missing dimensions are those
-    /// that the picture suggests, missing faces those of the likeliest solid. With it the dimensions
-    /// that were guessed.
+    /// The body of an object as far as the picture and its dimensions determine it, with the
+    /// suggested values of missing dimensions and the faces of the likeliest solid. Returns also
+    /// the guessed dimensions.
     pub fn preview(
         &mut self,
         name: &str,

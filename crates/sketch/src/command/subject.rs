@@ -2,7 +2,7 @@
 
 use crate::{CoordinateAxis, FaceId, LineId, PointId};
 
-/// Subject of a reply: its kind, and the parts of the object that it names.
+/// Subject of a reply: its kind, and the parts of the object concerned.
 ///
 /// ```
 /// use moldloft_sketch::{PointId, SketchSession};
@@ -18,7 +18,7 @@ pub struct ReplySubject {
     /// Kind of the reply, a stable word such as `missing-dimension`; every error has one, plain
     /// text is "".
     pub kind: &'static str,
-    /// Points, in the order of the sentence; of a chain from its start to its end.
+    /// Points, in the order of the text; those of a chain from its start to its end.
     pub points: Vec<PointId>,
     /// Lines.
     pub lines: Vec<LineId>,
@@ -28,7 +28,7 @@ pub struct ReplySubject {
     pub names: Vec<String>,
     /// The axis.
     pub axis: Option<CoordinateAxis>,
-    /// The number of the sentence: a distance, a coordinate, a confidence from 0 to 1.
+    /// The number in the text: a distance, a coordinate, or a confidence from 0 to 1.
     pub value: Option<f64>,
     /// The position in space.
     pub place: Option<[f64; 3]>,
@@ -36,14 +36,14 @@ pub struct ReplySubject {
     pub suggestion: Option<Suggestion>,
 }
 
-/// A dimension that the picture suggests.
+/// A dimension suggested by the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suggestion {
     /// Its axis.
     pub axis: CoordinateAxis,
     /// From.
     pub p: PointId,
-    /// To, on the positive side.
+    /// End point, on the positive side.
     pub q: PointId,
     /// The distance, to three digits.
     pub value: f64,

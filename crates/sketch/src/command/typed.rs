@@ -30,11 +30,11 @@ pub enum SketchCommand {
         /// The axis.
         section: Option<CoordinateAxis>,
     },
-    /// A point drawn, or moved on the page.
+    /// A point, drawn or moved on the page.
     Point {
-        /// Its label; the next free one when `None`.
+        /// Its label; `None` for the next free one.
         id: Option<PointId>,
-        /// The point of the page.
+        /// The position on the page.
         at: [f64; 2],
     },
     /// A line drawn.
@@ -43,19 +43,19 @@ pub enum SketchCommand {
         p: PointId,
         /// To.
         q: PointId,
-        /// Its type; as its slope says when `None`.
+        /// Its type; `None` to derive it from the slope.
         free: Option<Free>,
     },
     /// The type of a line.
     Type {
         /// The line.
         line: LineId,
-        /// Coordinates that change along it.
+        /// Coordinates that vary along it.
         free: Free,
     },
     /// A dimension.
     Dimension {
-        /// Its name; a new one when `None`.
+        /// Its name; `None` for a new one.
         name: Option<String>,
         /// Measured quantity.
         measure: MeasuredQuantity,
@@ -69,7 +69,7 @@ pub enum SketchCommand {
         /// Its value.
         value: DimensionExpr,
     },
-    /// Another value of a dimension or variable.
+    /// Changes the value of a dimension or variable.
     Set {
         /// Its name.
         name: String,
@@ -80,13 +80,13 @@ pub enum SketchCommand {
     DeletePoint(PointId),
     /// A line removed.
     DeleteLine(LineId),
-    /// A dimension or variable removed.
+    /// Removes a dimension or variable.
     DeleteDimension(String),
     /// The faces found.
     GenerateFaces,
-    /// A cross section made a solid.
+    /// Makes a solid of a cross section.
     Extrude(DimensionExpr),
-    /// The last step taken back.
+    /// Takes back the last step.
     Undo,
     /// It is done again.
     Redo,
@@ -137,21 +137,21 @@ impl std::fmt::Display for SketchCommand {
 pub struct ObjectChange {
     /// Its name.
     pub name: String,
-    /// True if it is new.
+    /// True if the object is new.
     pub added: bool,
-    /// True if it was deleted.
+    /// True if the object was deleted.
     pub removed: bool,
-    /// Points that are new or elsewhere on the page.
+    /// Points that are new or have moved on the page.
     pub drawn: Vec<PointId>,
-    /// Points whose coordinates are others, or known now, or not any more.
+    /// Points whose coordinates have changed, become known or become unknown.
     pub moved: Vec<PointId>,
     /// Points that are gone.
     pub removed_points: Vec<PointId>,
-    /// Lines that are new, changed or gone.
+    /// Lines that are new, changed or removed.
     pub lines: Vec<LineId>,
-    /// Dimensions, variables and curves that are new, changed or gone.
+    /// Dimensions, variables and curves that are new, changed or removed.
     pub numbers: Vec<String>,
-    /// Faces that are new, gone, or whose corners moved.
+    /// Faces that are new, removed, or have moved corners.
     pub faces: Vec<FaceId>,
     /// True if the finished body changed.
     pub body: bool,
@@ -189,8 +189,8 @@ impl SketchSession {
         CommandReport { replies, changes }
     }
 
-    /// Begins a run of edits that count as one step of UNDO and one line of the journal, such as the moves of
-    /// a drag.
+    /// Begins a series of edits that count as one step of UNDO and one line of the journal, such as
+    /// the moves of a drag.
     ///
     /// # Errors
     /// One that has begun is not ended; a question is open.
@@ -230,7 +230,7 @@ impl SketchSession {
         changes
     }
 
-    /// Ends a run of edits as if it had not been.
+    /// Ends a series of edits and reverts it.
     pub fn rollback(&mut self) {
         if let Some(Transaction { before, journal }) = self.transaction.take() {
             self.state = before;

@@ -17,7 +17,7 @@ pub struct Verb {
 }
 
 impl Verb {
-    /// Its forms in one line.
+    /// Its forms, on one line.
     pub fn usage(&self) -> String {
         self.forms.join(" | ")
     }
@@ -55,7 +55,7 @@ fn table() -> Vec<Verb> {
     rows
 }
 
-/// The row of a verb.
+/// The row of a verb, with its usage.
 pub fn row(name: &str) -> Option<&'static Verb> {
     VERBS.iter().find(|v| v.name == name)
 }

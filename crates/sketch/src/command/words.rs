@@ -56,11 +56,11 @@ pub struct TextCommand {
     pub last: bool,
 }
 
-/// The commands of a text in order, without those that cannot be read.
+/// The commands of a text in order, without invalid ones.
 pub fn text_commands(text: &str) -> Vec<TextCommand> {
     let mut found = Vec::new();
     let mut joined = String::new();
-    // Where parts of the joined line come from: position there and in the text.
+    // Origin of the parts of a joined line: position in the line and in the text.
     let mut parts = Vec::new();
     let mut start = 0;
     for piece in text.split_inclusive('\n') {
@@ -215,7 +215,7 @@ fn token(text: &str, longest: Option<usize>) -> Result<CommandToken, CommandErro
     Ok(CommandToken { kind: CommandTokenKind::Word, text })
 }
 
-/// A number with an optional unit; the errors are those that LSUCMD caught.
+/// A number with an optional unit; the errors are those of LSUCMD.
 pub fn number(text: &str) -> Result<(f64, Option<String>), CommandError> {
     let bytes = text.as_bytes();
     let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));

@@ -5,7 +5,8 @@ use moldloft_num::{Real, log10, modulo, whole_quotient};
 use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
 use std::fmt;
 
-/// The functions an expression may call: those of the model language that make a number of numbers, and `ln`.
+/// The functions that an expression may call: those of the model language from numbers to a number,
+/// and `ln`.
 pub const FUNCTIONS: [&str; 27] = [
     "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "log", "log10",
     "sinh", "cosh", "tanh", "sign", "floor", "ceil", "round", "atan2", "hypot", "mod", "div",
@@ -34,7 +35,7 @@ enum ExprOp {
     Call(usize, usize),
 }
 
-/// An expression in the grammar of SDL, of numbers only; angles are in degrees, as in all of this
+/// A numeric expression in the grammar of SDL, with angles in degrees as everywhere in this
 /// language. It is parsed once and evaluated over any scalar.
 ///
 /// ```
@@ -66,7 +67,7 @@ impl DimensionExpr {
         }
     }
 
-    /// The number of a name.
+    /// The value of a name, as an expression.
     pub fn name(name: &str) -> DimensionExpr {
         DimensionExpr { text: name.to_owned(), ops: vec![ExprOp::Name(name.to_ascii_lowercase())] }
     }
@@ -94,7 +95,7 @@ impl DimensionExpr {
         &self.text
     }
 
-    /// The number, when the expression is nothing else.
+    /// The number, if the expression is only a number.
     pub fn literal(&self) -> Option<f64> {
         match self.ops.as_slice() {
             [ExprOp::Number(x)] => Some(*x),
@@ -103,7 +104,7 @@ impl DimensionExpr {
         }
     }
 
-    /// The same plus a number.
+    /// The expression plus a number.
     pub fn plus(&self, shift: f64) -> DimensionExpr {
         match self.literal() {
             Some(x) => DimensionExpr::number(x + shift),
@@ -111,7 +112,7 @@ impl DimensionExpr {
         }
     }
 
-    /// The same times a number.
+    /// The expression times a number.
     pub fn times(&self, factor: f64) -> DimensionExpr {
         match self.literal() {
             Some(x) => DimensionExpr::number(x * factor),
@@ -132,7 +133,7 @@ impl DimensionExpr {
         })
     }
 
-    /// The same with every name changed by `rename` (given and giving lower case).
+    /// The expression with every name changed by `rename` (lower case in and out).
     pub fn renamed(&self, rename: &dyn Fn(&str) -> Option<String>) -> DimensionExpr {
         let mut names: Vec<&str> = self.names().filter(|n| rename(n).is_some()).collect();
         names.sort_unstable();
@@ -158,7 +159,7 @@ impl DimensionExpr {
         DimensionExpr::parse(&out).unwrap_or_else(|_| self.clone())
     }
 
-    /// The value, with names looked up in lower case.
+    /// The value; names are looked up in lower case.
     ///
     /// # Errors
     /// The first name without a value.

@@ -15,17 +15,17 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, VecDeque};
 
-/// A dimension that does not hold.
+/// A dimension that is not satisfied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DimensionFault {
-    /// The others determine it already; it agrees.
+    /// The others determine it already, consistently.
     Redundant {
         /// Its name.
         name: String,
         /// The dimensions that determine it.
         path: Vec<String>,
     },
-    /// The others determine it already, to another value.
+    /// The others determine it already, with another value.
     Contradictory {
         /// Its name.
         name: String,
@@ -36,7 +36,7 @@ pub enum DimensionFault {
         /// The dimensions that determine it.
         path: Vec<String>,
     },
-    /// Its expression reads an unknown or unset name.
+    /// Its expression reads an undefined name or one without a value.
     NoValue {
         /// Its name.
         name: String,
@@ -71,7 +71,7 @@ pub enum DimensionFault {
     },
 }
 
-/// Planes of an axis that are connected, but not to the reference.
+/// Planes of an axis that are connected to each other but not to the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loose {
     /// The axis.
@@ -82,7 +82,7 @@ pub struct Loose {
     pub points: Vec<PointId>,
 }
 
-/// The account of one axis.
+/// Number of dimensions, required and given, of one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
     /// Planes less one.
@@ -98,7 +98,7 @@ pub struct Count {
 pub struct DimensionLayout<T> {
     /// The coordinate of each plane of each axis, as far as determined.
     pub coordinates: [Vec<Option<T>>; 3],
-    /// The account of each axis.
+    /// The numbers of dimensions of each axis.
     pub counts: [Count; 3],
     /// Parts that are not connected to the reference.
     pub loose: Vec<Loose>,

@@ -38,19 +38,19 @@ pub enum MeasuredQuantity {
     Equal(LineId, LineId),
 }
 
-/// Part of a dimension in the account of its axis.
+/// Role of a dimension on its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DimensionRole {
     /// It does.
     Driving,
-    /// It shows the result of the others.
+    /// It shows a value that the others determine.
     Reference,
 }
 
 /// A dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimension {
-    /// As the user wrote it.
+    /// The name as written by the user.
     pub name: String,
     /// The quantity.
     pub measure: MeasuredQuantity,
@@ -58,7 +58,7 @@ pub struct Dimension {
     pub value: Option<DimensionExpr>,
     /// Driving or measuring.
     pub role: DimensionRole,
-    /// The values that make sense, for sliders and studies.
+    /// The valid range, for sliders and studies.
     pub range: Option<[f64; 2]>,
 }
 
@@ -69,6 +69,6 @@ pub struct Variable {
     pub name: String,
     /// Its value.
     pub value: DimensionExpr,
-    /// The values that make sense.
+    /// The valid range.
     pub range: Option<[f64; 2]>,
 }

@@ -70,7 +70,7 @@ impl Free {
         Free(7 & !(1 << axis.index()))
     }
 
-    /// The set of the axes for which `test` holds; `None` when it is empty.
+    /// The axes for which `test` holds; `None` if there are none.
     pub fn those(mut test: impl FnMut(CoordinateAxis) -> bool) -> Option<Free> {
         let bits =
             CoordinateAxis::ALL.into_iter().filter(|&a| test(a)).map(|a| 1 << a.index()).sum();

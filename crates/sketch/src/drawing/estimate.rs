@@ -9,15 +9,15 @@ use crate::drawing::planes::Planes;
 use crate::{CoordinateAxis, Drawing, PointId};
 use moldloft_num::Vec3;
 
-/// More planes than this are not estimated (the work grows with the cube).
+/// Maximum number of planes for an estimate (the work grows with the cube).
 pub const MAX_PLANES: usize = 1500;
 
-/// A depth that the picture does not show: planes that can move together without changing it.
+/// A depth that the picture does not determine: planes that can move together without changing it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeDepth {
     /// The planes with their relative motion.
     pub planes: Vec<(CoordinateAxis, usize, f64)>,
-    /// The points in them that move.
+    /// The points on these planes.
     pub points: Vec<PointId>,
 }
 

@@ -13,8 +13,8 @@ pub const NAMING_TOLERANCE: f64 = 0.05;
 /// Relative tolerance of equal coordinates in an exact drawing.
 const AS_DRAWN: f64 = 1e-12;
 
-/// Confidence below which a type should be checked: of lines drawn within ±1, ±2 and ±4 on 400,
-/// 0.6, 1.6 and 4 % are below, and with them half of the wrong ones.
+/// Confidence below which a type should be checked. Of lines drawn with errors of ±1, ±2 and ±4 on
+/// 400, 0.6, 1.6 and 4 % are below it, including half of the wrong ones.
 pub const DOUBTFUL: f64 = 0.97;
 
 /// The confidence of a line that is inclined only because it would leave others no length.
@@ -95,10 +95,11 @@ impl Drawing {
         self.lines.iter().map(|(id, line)| (*id, of(id, line))).collect()
     }
 
-    /// Types every line that the user has not typed: by its stroke and those parallel to it in space,
-    /// judged by the noise of the pen; then by the planes that ends share already, to a fixed point.
-    /// Lines whose ends share nothing are proposed as oblique: that they are inclined is as sure as their strokes say, but
-    /// not that all three coordinates change along them. Returns the lines so proposed.
+    /// Types every line that the user has not typed: by its stroke and those parallel to it in
+    /// space, given the noise of the pen; then by the planes that its ends already share, until
+    /// nothing changes. Lines whose ends share no plane are proposed as oblique: their strokes
+    /// determine the confidence that they are inclined, but not that all three coordinates vary.
+    /// Returns the proposed lines.
     pub fn type_all(&mut self) -> Vec<LineId> {
         let ids: Vec<LineId> = self.lines.keys().copied().collect();
         let verdicts = self.verdicts();

@@ -86,7 +86,7 @@ pub struct DrawnLine {
 }
 
 impl DrawnLine {
-    /// True if it is inclined as drawn, and taken as oblique because nothing determines the
+    /// True for a line that is inclined as drawn and taken as oblique because nothing determines a
     /// constant coordinate.
     pub fn proposed(&self) -> bool {
         self.source == LineTypeSource::Inferred && self.free == Some(Free::OBLIQUE)
@@ -118,12 +118,12 @@ pub enum DrawingHit {
     },
 }
 
-/// A point of the page to which a pointer snaps.
+/// A position on the page to which a pointer snaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// The point.
     pub at: [f64; 2],
-    /// The element there, or the point whose extension it is on.
+    /// The element at that position, or the point whose extension line it is on.
     pub hit: Option<DrawingHit>,
     /// The axis of the extension.
     pub axis: Option<CoordinateAxis>,
@@ -135,7 +135,7 @@ pub struct Drawing {
     /// For a cross section, the axis it is perpendicular to.
     pub section: Option<CoordinateAxis>,
     /// True if positions on the page of a section are its coordinates: types and suggested
-    /// dimensions are then as drawn.
+    /// dimensions are as drawn.
     pub exact: bool,
     /// Directions of the axes.
     pub projection: Projection,
@@ -145,7 +145,7 @@ pub struct Drawing {
     pub points: BTreeMap<PointId, DrawnPoint>,
     /// The lines by label.
     pub lines: BTreeMap<LineId, DrawnLine>,
-    /// Common planes of points beyond those from lines.
+    /// Common planes of points in addition to those of lines.
     pub aligns: Vec<Align>,
 }
 
@@ -180,7 +180,7 @@ impl Drawing {
         Some(if first == Some(axis) { at.u } else { at.v })
     }
 
-    /// `3-7 (X)`: a line for people.
+    /// `3-7 (X)`: a line in text form.
     pub fn line_text(&self, id: LineId) -> String {
         match self.lines.get(&id) {
             Some(l) => match l.free {
@@ -316,7 +316,7 @@ impl Drawing {
         best.map(|b| b.1)
     }
 
-    /// Makes `gone` the same point as `kept`: its lines are moved, doubled ones dropped.
+    /// Merges the point `gone` into `kept`: its lines are moved, duplicates are removed.
     pub fn weld(&mut self, kept: PointId, gone: PointId) {
         self.points.remove(&gone);
         let mut seen = std::collections::BTreeSet::new();

@@ -8,7 +8,7 @@ use crate::{Align, CoordinateAxis, Drawing, Free, LineId, PointId};
 use moldloft_num::union_find::UnionFind;
 use std::collections::VecDeque;
 
-/// Why two points share a coordinate.
+/// Reason why two points share a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// The type of a line.
@@ -30,19 +30,20 @@ impl Reason {
     }
 }
 
-/// Something wrong with the types of lines.
+/// A fault in the types of lines.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TypeFault {
-    /// Error 400: a line cannot have its type, as the path makes its ends coincide along the axis.
+    /// Error 400: a line cannot have its type, because the constraints of the path make its ends
+    /// coincide along the axis.
     Contradiction {
-        /// The line that would have no length.
+        /// The line that would have zero length.
         line: LineId,
-        /// The axis along which it should run.
+        /// The axis along which its ends should differ.
         axis: CoordinateAxis,
-        /// Constraints that connect its ends there.
+        /// The constraints that connect its ends along this axis.
         path: Vec<Reason>,
     },
-    /// The planes say that a line is less inclined than its type.
+    /// By its planes, a line varies along fewer axes than its type.
     Degraded {
         /// The line.
         line: LineId,
@@ -60,12 +61,12 @@ pub enum TypeFault {
         /// The second.
         q: PointId,
     },
-    /// Error 401: a point is in no line.
+    /// Error 401: a point without a line.
     Loose {
         /// The point.
         point: PointId,
     },
-    /// Error 402: a line has no type yet.
+    /// Error 402: a line without a type.
     Untyped {
         /// The line.
         line: LineId,
@@ -124,7 +125,7 @@ impl Planes {
         self.count
     }
 
-    /// Dimensions needed on an axis: one less than its planes.
+    /// Number of dimensions needed on an axis: the number of planes less one.
     pub fn required(&self, axis: CoordinateAxis) -> usize {
         self.count[axis.index()].saturating_sub(1)
     }
@@ -156,7 +157,7 @@ impl Planes {
         self.plane(axis, p).is_some() && self.plane(axis, p) == self.plane(axis, q)
     }
 
-    /// Everything wrong with the types, contradictions first.
+    /// All faults of the types, contradictions first.
     pub fn faults(&self, drawing: &Drawing) -> Vec<TypeFault> {
         let mut faults = Vec::new();
         let mut later = Vec::new();

@@ -88,8 +88,8 @@ impl Projection {
         at
     }
 
-    /// The sight vector, whose image is a point, on the side of `up`. Two points have the same
-    /// image iff their difference is parallel to it.
+    /// The sight vector, on the side of `up`: its image is a single point. Two points have the same
+    /// image if and only if their difference is parallel to it.
     pub fn sight(&self, up: CoordinateAxis) -> Vec3 {
         let [a, b, c] = CoordinateAxis::ALL.map(|axis| self.unit(axis));
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];

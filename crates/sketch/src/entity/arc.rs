@@ -25,7 +25,7 @@ pub struct ConjugateArc<T: Real> {
     quarter: Point<T>,
     /// The angle swept from t = 0 to 1, in radians; negative turns away from Q.
     sweep: T,
-    /// The point object at t = 1, where there is one.
+    /// The point object at t = 1, if any.
     #[field(default)]
     end: Option<Point<T>>,
 }

@@ -4,7 +4,7 @@ use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};
 
-/// A face by its corners, as a surface for magnets, snakes and projections.
+/// A face given by its corners, as a surface for magnets, snakes and projections.
 ///
 /// Four corners P1 to P4 make the bilinear patch with P1 at (0, 0), P2 at (1, 0), P3 at (1, 1) and P4
 /// at (0, 1); with three, P3 is the whole side v = 1. More corners make the rectangle around them in

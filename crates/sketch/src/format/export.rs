@@ -270,7 +270,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// DXF (release 12): facets as 3DFACE, edges as LINE on a layer of their own.
+/// DXF (release 12): facets as 3DFACE, edges as LINE on a separate layer.
 pub fn dxf(mesh: &IndexedTriangles, solid: &SketchSolid<f64>, tolerance: f64) -> String {
     let mut out = String::from("0\nSECTION\n2\nENTITIES\n");
     let point = |out: &mut String, k: u32, p: Vec3| {

@@ -19,18 +19,18 @@ const STRAIGHT: f64 = 1e-6;
 pub struct PageShapes {
     /// Straight lines.
     pub strokes: Vec<Stroke>,
-    /// Arcs of at most a quarter: start, where the tangents at both ends meet, end, radius.
+    /// Arcs of at most a quarter circle: start, intersection of the end tangents, end, radius.
     pub arcs: Vec<([[f64; 2]; 3], f64)>,
     /// Circles and ellipses: the centre and two conjugate half-diameters.
     pub rounds: Vec<[[f64; 2]; 3]>,
-    /// The unit of length that the drawing states.
+    /// The stated unit of length of the drawing.
     pub unit: Option<&'static str>,
-    /// Numbers of entities that are not drawn, by kind.
+    /// Numbers of omitted entities, by kind.
     pub left_out: BTreeMap<String, usize>,
 }
 
 impl PageShapes {
-    /// Counts a shape that cannot be drawn.
+    /// Counts an omitted shape.
     pub fn leave_out(&mut self, kind: &str) {
         *self.left_out.entry(kind.to_owned()).or_default() += 1;
     }
@@ -129,14 +129,14 @@ impl PageShapes {
         all.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()))
     }
 
-    /// Maximum number of lines that it draws.
+    /// Maximum number of lines drawn.
     pub fn line_count(&self) -> usize {
         self.strokes.len() + 2 * self.arcs.len() + 4 * self.rounds.len()
     }
 
     /// Draws the shapes into an object, with ends within `tolerance` merged: an arc that continues
-    /// two lines is a round of their corner. Returns the numbers of new points and lines, and the
-    /// names of new curves.
+    /// two lines becomes a rounding of their corner. Returns the numbers of new points and lines,
+    /// and the names of new curves.
     pub fn draw(&self, object: &mut SketchObject, tolerance: f64) -> (usize, usize, Vec<String>) {
         let near =
             |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= tolerance;

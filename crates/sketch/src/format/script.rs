@@ -57,12 +57,13 @@ fn edge_text(edge: &EdgeChoice) -> String {
     }
 }
 
-/// The commands that make an object, after those of the objects that it follows. Running them gives the same object.
+/// The commands that make an object, after those of the objects that it follows. Running them makes
+/// an identical object.
 pub fn script(object: &SketchObject) -> String {
     scripts(&[object]).into_iter().map(|(_, text)| text).collect()
 }
 
-/// Objects, and those that they follow, each after what it is made of, with the commands that make it.
+/// Objects and those that they follow, each after its operands, with the commands that make it.
 pub fn scripts<'a>(objects: &[&'a SketchObject]) -> Vec<(&'a SketchObject, String)> {
     fn add<'a>(
         object: &'a SketchObject,

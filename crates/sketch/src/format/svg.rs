@@ -427,8 +427,8 @@ fn text_width(text: &str) -> f64 {
     13.0 * 0.56 * text.chars().count() as f64
 }
 
-/// Position for a text at `at` clear of those before it: there, else the nearest of up to four
-/// lines lower or higher; without a free one, there.
+/// Position for a text near `at` that overlaps no earlier text: `at`, or the nearest free one up to
+/// four lines lower or higher, or `at` if there is none.
 pub fn apart(at: [f64; 2], text: &str, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
     const LINE: f64 = 15.0;
     let width = text_width(text);

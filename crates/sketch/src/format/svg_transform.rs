@@ -7,7 +7,7 @@ use crate::format::page_shapes::PageShapes;
 pub struct SvgTransform(pub [f64; 6]);
 
 impl SvgTransform {
-    /// The transform that changes nothing.
+    /// The identity transform.
     pub const NONE: SvgTransform = SvgTransform([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
 
     /// First `inner`, then this.
@@ -23,7 +23,7 @@ impl SvgTransform {
         ])
     }
 
-    /// This one with the transforms of an attribute within it.
+    /// This transform followed by those of a nested attribute.
     ///
     /// # Errors
     /// A text that is not a list of transforms.
@@ -62,8 +62,8 @@ impl SvgTransform {
         Ok(out)
     }
 
-    /// Adds shapes, whose v is up, transformed. Arcs become parts of ellipses under a stretch and
-    /// are left out.
+    /// Adds shapes (v up), transformed. Arcs become parts of ellipses under a non-uniform scale and
+    /// are omitted.
     pub fn put(self, shapes: PageShapes, into: &mut PageShapes) {
         let [a, b, c, d, e, f] = self.0;
         let way = |[u, v]: [f64; 2]| [a * u - c * v, -(b * u - d * v)];

@@ -9,12 +9,13 @@ use crate::feature::{Feature, FeatureKind};
 use crate::{DimensionLayout, Planes, SketchObject};
 use moldloft_num::Real;
 
-/// A body, or bodies by an operation.
+/// A body, or an operation on bodies.
 #[derive(Clone, Debug)]
 pub enum BodyTree<T> {
-    /// One with plane faces and those between arcs and their copies, or others that are bounded by their own edges.
+    /// A body with plane faces and faces between arcs and their copies, or others bounded by their
+    /// own edges.
     Plain(Box<SketchSolid<T>>),
-    /// The first with each of the others.
+    /// The first body combined with each of the others.
     Combined(Operation, Vec<BodyTree<T>>),
 }
 

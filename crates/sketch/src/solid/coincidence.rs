@@ -14,14 +14,15 @@ use crate::solid::arrangement::SurfaceCoincidence;
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 
-/// A state in which measures have two one-sided derivatives by one number.
+/// A state in which measures have different one-sided derivatives with respect to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink {
     /// The part of the scalar.
     pub part: usize,
     /// The place.
     pub at: Vec3,
-    /// True if the volume has no derivative either: faces separate, not an edge from a face.
+    /// True if the volume has no derivative either, because faces separate and not an edge from a
+    /// face.
     pub volume: bool,
 }
 

@@ -22,27 +22,27 @@ use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Why bodies cannot be combined.
+/// Reason why bodies cannot be combined.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CombineError {
     /// A body is open, or surfaces nearly coincide, at this position.
     Open(Vec3),
-    /// Round surfaces touch without crossing, or nearly so, at this position.
+    /// Round surfaces are tangent or nearly so at this position.
     Touching(Vec3),
-    /// Facets do not determine which of several nearly intersecting surfaces come first, at these
-    /// positions: one or more.
+    /// Facets do not determine the order of several nearly intersecting surfaces at these
+    /// positions, one or more.
     Coarse(Vec<Vec3>),
-    /// The faces of the body do not close within rounding; worst at this position.
+    /// The faces of the body do not close within rounding; the largest gap is at this position.
     Unbalanced(Vec3),
-    /// One of these, for all that is known of the facets.
+    /// One of these reasons, found on facets.
     AtFacets(Box<FacetAttempt>),
-    /// There are too many pieces.
+    /// The number of pieces exceeds the limit.
     TooLarge,
     /// Nothing is left.
     Empty,
 }
 
-/// A combination that failed with its facets.
+/// A combination that failed on facets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FacetAttempt {
     facets: usize,
@@ -119,8 +119,8 @@ pub fn combined_with<T: Real>(
     build(&bodies, &operands, [true; 2], &rule).map(|b| b.0)
 }
 
-/// The body that a surface encloses where it winds around once or more: for one that crosses itself.
-/// The flag says whether that is another than the surface bounds.
+/// The region around which a self-intersecting surface winds once or more. The flag is true if it
+/// differs from the body that the surface bounds.
 ///
 /// # Errors
 /// [`CombineError`], with the position.

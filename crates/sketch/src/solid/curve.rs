@@ -52,13 +52,13 @@ pub struct SketchCurve {
     pub name: String,
     /// Kind.
     pub kind: CurveKind,
-    /// The points it depends on: for a corner the ends of the lines with the corner in the middle.
+    /// Its defining points: for a corner, the corner between the ends of its lines.
     pub points: Vec<PointId>,
     /// Radius of an arc or circle.
     pub radius: Option<DimensionExpr>,
     /// Distances along the two lines of an ellipse.
     pub semi: Option<[DimensionExpr; 2]>,
-    /// Chords to draw it with; by tolerance when `None`.
+    /// Number of chords for drawing; `None` to derive it from the tolerance.
     pub steps: Option<u32>,
     /// True if it replaces lines in the solid.
     pub replaces: bool,
@@ -66,7 +66,7 @@ pub struct SketchCurve {
     pub centripetal: bool,
 }
 
-/// A smooth piece, run through by s in [0, 1].
+/// A smooth piece with parameter s in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SmoothPiece<T> {
     /// `centre + a cos(s sweep) + b sin(s sweep)`
@@ -159,7 +159,7 @@ impl<T: Real> SmoothPiece<T> {
     }
 }
 
-/// Why a curve cannot be drawn.
+/// Reason why a curve cannot be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveFault {
     /// A size has no value.
@@ -174,7 +174,7 @@ pub enum CurveFault {
     },
     /// 300: the lines of the corner are parallel, or two of its points coincide.
     Degenerate,
-    /// 310: the tangent point falls beyond the end of a line.
+    /// 310: the tangent point is beyond the end of a line.
     TooLarge {
         /// The greatest radius or distance that fits.
         largest: f64,
@@ -186,7 +186,7 @@ pub enum CurveFault {
 /// A curve in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traced<T> {
-    /// Its pieces, end to start.
+    /// Its pieces in order, joined end to start.
     pub pieces: Vec<SmoothPiece<T>>,
     /// For a corner: the tangent points on the first and on the second line.
     pub tangents: Option<[Vec3<T>; 2]>,
@@ -314,8 +314,8 @@ fn overhauser<T: Real>(p: [Vec3<T>; 4], centripetal: bool) -> Option<SmoothPiece
     Some(SmoothPiece::Cubic([p[1], p[1] + m1 * third, p[2] - m2 * third, p[2]]))
 }
 
-/// The semi-axes of an ellipse of conjugate half-diameters `a` and `b`, longer first: the singular
-/// values of [a b].
+/// The semi-axes of an ellipse with conjugate half-diameters `a` and `b`, longer first: the
+/// singular values of [a b].
 pub fn semi_axes(a: Vec3, b: Vec3) -> [f64; 2] {
     let (trace, area) = (a.norm_sq() + b.norm_sq(), a.cross(b).norm());
     let (sum, difference) =

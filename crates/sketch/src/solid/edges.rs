@@ -9,7 +9,7 @@ use crate::{LineId, SketchObject};
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Reason why edges or faces cannot be treated.
+/// Reason why a treatment of edges or faces fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreatmentFault {
     /// Fault.

@@ -21,10 +21,10 @@ use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Why an object has no body.
+/// Reason why an object has no body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoBody {
-    /// It has no faces, or misses dimensions.
+    /// It has no faces, or dimensions are missing.
     Unfinished,
     /// It is not valid.
     Flaw(SolidDefect),
@@ -41,22 +41,23 @@ pub enum NoBody {
     },
     /// A number of the feature has no value.
     NoValue(String),
-    /// A number of copies that is not whole, or out of range.
+    /// A number of copies that is not an integer, or out of range.
     Copies(f64),
     /// Edges or faces cannot be treated.
     Treatment(TreatmentFault),
-    /// An operand that is a cross section, or is none.
+    /// An operand is a cross section but should not be, or the reverse.
     Section {
         /// Its name.
         name: String,
-        /// True if it should be one.
+        /// True if a cross section is required.
         wanted: bool,
     },
     /// The section is on both sides of the axis of rotation, or the axis has zero length.
     Axis,
 }
 
-/// Components of a normal below this are zero, and coordinates within this share of the extent equal.
+/// Components of a normal below this are zero, and coordinates within this fraction of the extent
+/// are equal.
 const SQUARE: f64 = 1e-9;
 
 /// More copies than this are refused.
@@ -73,9 +74,8 @@ const ROUNDS: u32 = 12;
 /// Maximum number of facets of all attempts of a combination.
 const MAX_TRIED_FACETS: usize = 40_000;
 
-/// The valid body of an object. If its facets are too coarse to determine the intersecting
-/// surfaces, they are refined there. If its measures may lack derivatives, both one-sided ones are
-/// compared.
+/// The valid body of an object. Facets too coarse to determine intersecting surfaces are refined.
+/// If measures may lack derivatives, the two one-sided derivatives are compared.
 ///
 /// # Errors
 /// [`NoBody`], with the position.
@@ -272,7 +272,7 @@ pub(super) fn body_at<T: Real>(
 }
 
 impl Feature {
-    /// An object of this feature. The numbers of its operands become its variables.
+    /// An object defined by this feature. The numbers of its operands become its variables.
     pub fn object(self, name: &str) -> SketchObject {
         let mut out = SketchObject::new(name, None);
         if let Some(first) = self.operands.first() {
@@ -306,7 +306,8 @@ impl Feature {
         out
     }
 
-    /// The operands of objects, each with true if it is followed, with the prefixes that keep their names apart.
+    /// The operands of objects, each true if it is another object of the session, with prefixes
+    /// that keep their names distinct.
     pub fn operands(objects: Vec<(Arc<SketchObject>, bool)>) -> Vec<FeatureOperand> {
         let own = |object: &SketchObject| -> Vec<String> {
             object.own_numbers().map(|n| n.0.to_ascii_lowercase()).collect()
@@ -778,7 +779,7 @@ fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
     size > 0.0 && arms.iter().all(|a| a.dot(*farthest) >= -1e-9 * size)
 }
 
-/// The names of numbers of other objects that the expressions of one read, folded.
+/// The folded names of numbers of other objects in its expressions.
 pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let values = object.variables.values().map(|v| &v.value);
     let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));

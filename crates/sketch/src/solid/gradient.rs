@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// Directions of one pass.
 const WIDTH: usize = 4;
 
-/// Exact derivatives with respect to one number each, in the given order; NaN if not defined, and
-/// where a vertex splits into several.
+/// Exact derivatives with respect to one number each, in the given order; NaN if undefined, and at
+/// a vertex that splits into several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidGradient {
     /// Derivatives of the volume; zero for a flat figure.
@@ -26,8 +26,8 @@ pub struct SolidGradient {
 }
 
 /// Derivatives with respect to dimensions and variables (any case). A number computed by an
-/// expression is varied as an independent value. `others` gives the numbers of other objects that this one reads, with
-/// some of them replaced; they are named with the object's name and a dot.
+/// expression is varied as an independent value. `others` replaces numbers of other objects that
+/// this one reads, named `object.number`.
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.

@@ -15,24 +15,24 @@ use std::sync::Arc;
 pub struct Placed<'a> {
     /// The object.
     pub object: &'a SketchObject,
-    /// Its points and where they are.
+    /// Its points with their positions.
     pub at: BTreeMap<PointId, Vec3>,
 }
 
 /// Result of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MergeReport {
-    /// Points that were there twice.
+    /// Points that occurred twice.
     pub shared: usize,
-    /// Lines that were there twice.
+    /// Lines that occurred twice.
     pub lines: usize,
-    /// Dimensions that contradict others; they only measure now.
+    /// Dimensions that contradicted others; they are reference dimensions now.
     pub contradictory: Vec<String>,
 }
 
-/// Unites objects under a name, the first one's names unchanged when `keep_first`, all others
-/// prefixed by their object. Equal points (within `tolerance`) and lines become one; dimensions
-/// of all survive.
+/// Unites objects under a name, with names prefixed by their object, except those of the first if
+/// `keep_first`. Equal points (within `tolerance`) and equal lines are merged; all dimensions are
+/// kept.
 pub fn merge(
     name: &str,
     parts: &[Placed],
@@ -283,8 +283,8 @@ pub fn clean(
     out
 }
 
-/// Makes a solid wireframe of a cross section: a second copy along its normal, `name` being the
-/// dimension between the two.
+/// Makes a solid wireframe of a cross section: a second copy along its normal, with the dimension
+/// `name` between the two.
 pub fn extrude(section: &SketchObject, name: &str, value: DimensionExpr) -> Option<SketchObject> {
     let normal = section.drawing.section?;
     let mut out = section.clone();
@@ -341,7 +341,7 @@ pub fn extrude(section: &SketchObject, name: &str, value: DimensionExpr) -> Opti
     Some(out)
 }
 
-/// Every length times a positive factor.
+/// The object with every length multiplied by a positive factor.
 pub fn scaled(object: &SketchObject, factor: f64) -> SketchObject {
     let mut out = object.clone();
     for d in out.dimensions.values_mut() {
@@ -401,7 +401,7 @@ pub fn mirrored(object: &SketchObject, axis: CoordinateAxis) -> SketchObject {
     out
 }
 
-/// Turned by a quarter about an axis, right-handed: exchange the two other axes, then mirror.
+/// Rotated by a quarter turn about an axis, right-handed: exchange the two other axes, then mirror.
 pub fn quarter_turned(object: &SketchObject, about: CoordinateAxis) -> SketchObject {
     let (a, b) = match about {
         CoordinateAxis::X => (CoordinateAxis::Y, CoordinateAxis::Z),
@@ -440,7 +440,7 @@ pub fn quarter_turned(object: &SketchObject, about: CoordinateAxis) -> SketchObj
     mirrored(&out, a)
 }
 
-/// The picture redrawn from positions.
+/// The picture redrawn from the positions.
 pub fn redrawn(object: &SketchObject, at: &BTreeMap<PointId, Vec3>) -> SketchObject {
     let mut out = object.clone();
     if let Some(normal) = out.drawing.section {

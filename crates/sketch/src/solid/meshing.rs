@@ -34,8 +34,8 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// A mesh of triangles and quads within `tolerance` of curves and round faces, which are its
-    /// patches. Curves with a given number of steps have that.
+    /// A mesh of triangles and quads within `tolerance` of curves and round faces; the faces are
+    /// its patches. Curves with a given number of steps keep it.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
         if let Some(facets) = &self.facets {
             return self.mesh_from_facets(&self.finer(facets, tolerance));
@@ -50,8 +50,8 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&|piece| piece.chords(share), true))
     }
 
-    /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so
-    /// that the number of triangles does not depend on sizes.
+    /// As `mesh`, with a chord for each 5° of a round curve and 20 for each cubic, as in 1983: the
+    /// number of triangles is independent of size.
     pub fn faceted(&self) -> Mesh<T> {
         self.mesh_of(self.chords(&by_angle, true))
     }

@@ -54,7 +54,7 @@ use surface::FaceSurface;
 /// A vertex of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex<T> {
-    /// The label: a point's, or the next free one for a tangent point.
+    /// The label of the point, or the next free one for a tangent point.
     pub id: PointId,
     /// Position.
     pub at: Vec3<T>,
@@ -69,13 +69,13 @@ pub struct SolidEdge<T> {
     pub piece: Option<SmoothPiece<T>>,
     /// The curve's index in the object.
     pub curve: Option<usize>,
-    /// Its points, where it has no closed form: the edge of a body that was combined.
+    /// Its points, if it has no closed form: the edge of a combined body.
     pub trace: Option<IntersectionEdge<T>>,
     /// Its ends as its own two surfaces move them, where more surfaces meet at a vertex than fix it.
     pub(crate) own_ends: Option<[Vec3<T>; 2]>,
 }
 
-/// An edge that two surfaces make.
+/// An edge at the intersection of two surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntersectionEdge<T> {
     /// Points along it, its ends included.
@@ -89,7 +89,7 @@ pub struct IntersectionEdge<T> {
     pub(crate) carrier: Option<SmoothPiece<T>>,
 }
 
-/// A round face that is not bounded by its own parameter lines alone.
+/// A round face with borders that are not all parameter lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trim<T> {
     /// Its surface.
@@ -106,8 +106,9 @@ pub(crate) struct CombinedMesh<T> {
     pub faces: Vec<Vec<[u32; 3]>>,
     /// The points along each edge.
     pub chains: Vec<Vec<u32>>,
-    /// The points where the facets meet that the combination was found with, and by face the parts of those facets:
-    /// facets of one surface stay in their planes through all combinations. Empty where they are the triangles.
+    /// The vertices of the facets used in the combination, and for each face its parts of these
+    /// facets: facets of one surface stay in their planes through all combinations. Empty if they
+    /// are the triangles.
     pub flat: Vec<Vec3>,
     pub parts: Vec<Vec<FacetPart>>,
 }
@@ -133,13 +134,15 @@ impl FacetPart {
 pub struct SolidFace {
     /// The face of the object; `None` for the patch of a curve.
     pub id: Option<FaceId>,
-    /// True for a ruled patch: its first edge against its third (a point if there are three).
+    /// True for a ruled patch from its first edge to its third (to a point if there are three).
     pub ruled: bool,
     /// Directed edges, counter-clockwise from outside: outer cycle, then holes.
     pub loops: Vec<Vec<(usize, bool)>>,
-    /// For a round face that is not a ruled patch between its edges, its index in [`SketchSolid::trims`].
+    /// For a round face other than a ruled patch between its edges, its index in
+    /// [`SketchSolid::trims`].
     pub trim: Option<usize>,
-    /// Its names in a feature, which outlast changes of dimensions: those of the faces that it is a part of.
+    /// Its names in a feature, which are stable under changes of dimensions: the names of the faces
+    /// that it is a part of.
     pub names: Vec<Arc<str>>,
 }
 
@@ -152,27 +155,27 @@ pub struct UnbuiltCurve {
     pub why: UnbuiltReason,
 }
 
-/// Why a curve was not built in.
+/// Reason why a curve was not built in.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnbuiltReason {
     /// It cannot be drawn at all.
     Curve(CurveFault),
     /// Its corner has more than three lines or faces.
     Crowded(PointId),
-    /// Another curve takes the same corner or line.
+    /// Another curve uses the same corner or line.
     Taken(PointId),
-    /// A face that is not flat with it and has not four edges.
+    /// A face is not in the curve's plane and has not four edges.
     Face(FaceId),
-    /// Its lines are no edges of the solid.
+    /// Its lines are not edges of the solid.
     NoEdge,
-    /// Two tangent points on one line pass each other.
+    /// Two tangent points on one line are in the wrong order.
     Overlap(PointId, PointId),
 }
 
 /// A body bounded by faces, or the faces of a flat figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SketchSolid<T> {
-    /// Its vertices; those without edges are left out.
+    /// Its vertices, without those that have no edges.
     pub vertices: Vec<Vertex<T>>,
     /// Its edges.
     pub edges: Vec<SolidEdge<T>>,
@@ -211,8 +214,8 @@ struct RoundedCorner<T> {
     ids: [PointId; 2],
 }
 
-/// The valid body of an object; `None` while positions are undetermined, there are no faces, or it is
-/// not valid ([`feature::body`] says why).
+/// The valid body of an object; `None` while positions are undetermined, faces are missing, or it
+/// is not valid ([`feature::body`] gives the reason).
 pub fn solid<T: Real>(
     object: &SketchObject,
     planes: &Planes,
@@ -814,7 +817,7 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Points along an edge: its ends, and of a curve also `chords - 1` between them.
+    /// Points along an edge: its ends, and for a curve also `chords - 1` points between them.
     pub fn polyline(&self, edge: usize, chords: usize) -> Vec<Vec3<T>> {
         let e = &self.edges[edge];
         if let Some(trace) = &e.trace {

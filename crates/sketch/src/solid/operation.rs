@@ -5,7 +5,7 @@
 pub enum Operation {
     /// In one of them.
     Union,
-    /// In the first and not in the second.
+    /// The first without the second.
     Cut,
     /// In both.
     Common,

@@ -54,7 +54,7 @@ struct EdgeDivision {
     parts: u64,
     /// In order.
     at: Vec<u64>,
-    /// Their shares of the edge, with those at rulings, if there are any.
+    /// Their parameters on the edge, with those at rulings, if there are any.
     ruled: Option<Vec<f64>>,
 }
 

@@ -30,7 +30,7 @@ impl<T: Real> Similarity<T> {
         Similarity { shift: by, ..Self::identity() }
     }
 
-    /// Turned about an axis through a point, right-handed, by an angle in radians.
+    /// Rotation about an axis through a point, right-handed, by an angle in radians.
     pub fn turned(axis: usize, through: Vec3<T>, angle: T) -> Self {
         let mut direction = [T::zero(); 3];
         direction[axis] = T::one();
@@ -40,7 +40,7 @@ impl<T: Real> Similarity<T> {
         Similarity { shift: through - linear.vector(through), ..linear }
     }
 
-    /// Mirrored in the plane where the coordinate on an axis is `at`.
+    /// Reflection in the plane with coordinate `at` on an axis.
     pub fn mirrored(axis: usize, at: T) -> Self {
         let mut image = Self::identity();
         image.columns[axis] = -image.columns[axis];

@@ -15,9 +15,9 @@ pub struct RoundFace<T> {
     pub profile: [Vec3<T>; 3],
     /// The angle of the arc in radians; 0 for a parabola.
     pub sweep: T,
-    /// Displacement of the arc's centre or start to that of its copy.
+    /// Displacement from the arc's centre or start to that of its copy.
     pub shift: Vec3<T>,
-    /// The size of the copy: 1 for a cylinder, 0 for a cone that ends in its apex.
+    /// Relative size of the copy: 1 for a cylinder, 0 for a cone that ends at its apex.
     pub scale: T,
 }
 
@@ -25,8 +25,8 @@ pub struct RoundFace<T> {
 const SAME: f64 = 1e-9;
 
 impl<T: Real> SketchSolid<T> {
-    /// The faces that are parts of cylinders and cones. Other ruled faces, such as those between two
-    /// cubics, are not among them.
+    /// The faces that are parts of cylinders and cones, without other ruled faces such as those
+    /// between two cubics.
     pub fn rounds(&self) -> Vec<RoundFace<T>> {
         let ruled = self.faces.iter().enumerate().filter(|(_, f)| f.ruled);
         ruled.filter_map(|(k, f)| self.round(k, &f.loops[0])).collect()

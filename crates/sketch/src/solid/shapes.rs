@@ -8,10 +8,10 @@ use super::surface::FaceSurface;
 use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceShape};
 use moldloft_num::{Axis as Line, Vec3};
 
-/// Why a body has no exact boundary representation.
+/// Reason why a body has no exact boundary representation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeFault {
-    /// A face is not a plane, cylinder, cone, sphere or torus: its name and a point of it.
+    /// A face is not a plane, cylinder, cone, sphere or torus: its name and a point on it.
     Surface(String, Vec3),
     /// An edge or corner is not found.
     Facets(FacetFault),
@@ -26,9 +26,13 @@ impl std::fmt::Display for ShapeFault {
             ShapeFault::Facets(fault) => {
                 let what = match fault.kind {
                     FacetFaultKind::NotClosed => "the body does not close",
-                    FacetFaultKind::Seam => "a face closes around its axis, and no seam fits on it",
-                    FacetFaultKind::Edge => "faces meet, or touch, in an edge that is not found",
-                    FacetFaultKind::Vertex => "faces meet in a corner that is not found",
+                    FacetFaultKind::Seam => {
+                        "a face closes around its axis, and no seam avoids its vertices"
+                    }
+                    FacetFaultKind::Edge => {
+                        "faces meet or touch along an edge that could not be computed"
+                    }
+                    FacetFaultKind::Vertex => "faces meet in a corner that could not be computed",
                     FacetFaultKind::Surface => "a face is on no surface that such files hold",
                     FacetFaultKind::Patch => "no patch comes near enough to a face",
                     FacetFaultKind::Many => "a face takes too many patches",
@@ -41,7 +45,7 @@ impl std::fmt::Display for ShapeFault {
 }
 
 impl SketchSolid<f64> {
-    /// The surface of a face, where it is a plane, cylinder, cone, sphere or torus.
+    /// The surface of a face, if it is a plane, cylinder, cone, sphere or torus.
     pub fn face_shape(&self, face: usize) -> Option<SurfaceShape> {
         match (self.form(face), self.surface(face)) {
             (FaceForm::Plane { at, normal }, _) => {

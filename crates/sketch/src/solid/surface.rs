@@ -7,7 +7,7 @@ use moldloft_num::{Real, Vec3, solve_dense};
 /// The surface of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FaceSurface<T> {
-    /// The plane through a point with a normal, outward where a face has it.
+    /// The plane through a point with a normal, which points outward on a face.
     Plane {
         /// A point of it.
         at: Vec3<T>,
@@ -21,7 +21,7 @@ pub enum FaceSurface<T> {
         /// The curve v = 1.
         far: SmoothPiece<T>,
     },
-    /// A profile turned about an axis, right-handed, by u `sweep`.
+    /// A profile rotated about an axis, right-handed, by u `sweep`.
     Turned {
         /// A point of the axis.
         centre: Vec3<T>,
@@ -133,10 +133,10 @@ pub(crate) enum Carrier<'a, T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Met<T> {
     pub at: Vec3<T>,
-    /// By constraint: u and v, or s and nothing.
+    /// For each constraint: u and v, or s and nothing.
     pub parameters: Vec<[T; 2]>,
-    /// The derivatives of point and parameters as the last plane of the constraints moves along its
-    /// normal by one.
+    /// The derivatives of point and parameters for a unit motion of the constraints' last plane
+    /// along its normal.
     pub moved: Vec3<T>,
     pub moved_parameters: Vec<[T; 2]>,
 }

@@ -18,7 +18,7 @@ const CONTACT: f64 = 1e-9;
 /// Maximum sine between parallel axes.
 const PARALLEL: f64 = 1e-9;
 
-/// Difference of shares of an arc below which they are one.
+/// Difference of parameters on an arc below which they are equal.
 const ONE_SHARE: f64 = 1e-9;
 
 /// Half the angle of a chord, in radians.
@@ -41,11 +41,11 @@ pub struct TangentRuling {
 /// An end of chords of an arc at a ruling.
 #[derive(Clone, Copy)]
 pub(super) struct ChordEnd {
-    /// Its share of the arc.
+    /// Its parameter on the arc.
     share: f64,
     /// Divisions of the chords around it into three; none of the narrower cylinder's.
     thirds: u32,
-    /// How far they are divided to either side, as a share of the arc.
+    /// Extent of the divisions to either side, as a parameter range on the arc.
     reach: f64,
 }
 
@@ -142,7 +142,7 @@ impl ChordEnd {
     }
 }
 
-/// The share of an arc at a point that is on it.
+/// The parameter on an arc of a point that is on it.
 fn share_at<T: Real>(piece: &SmoothPiece<T>, p: Vec3, tolerance: f64) -> Option<f64> {
     let s = along(piece, p);
     let on = piece.at(T::from(s)).re().distance(p) <= tolerance;

@@ -14,12 +14,12 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Why a body has no volume.
+/// Reason why a body has no volume.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolidDefect {
-    /// Its faces do not close: edges that have not one face on each side, by their ends.
+    /// Its faces do not close: edges without exactly one face on each side, by their ends.
     Open(Vec<[PointId; 2]>),
-    /// The cycle of one face crosses itself there: lines have passed each other.
+    /// The cycle of a face crosses itself at this position: lines have passed each other.
     Crossed {
         /// The face.
         face: Option<FaceId>,
@@ -28,7 +28,7 @@ pub enum SolidDefect {
         /// The crossing.
         at: Vec3,
     },
-    /// A hole of a face of a section is not inside of the face's border.
+    /// A hole in a face of a section is outside the face's border.
     Outside {
         /// The face.
         face: Option<FaceId>,
@@ -37,14 +37,14 @@ pub enum SolidDefect {
     },
     /// It intersects itself and could not be reconstructed.
     Unresolved(CombineError),
-    /// A coordinate is not finite, or so large that volumes or their derivatives are not.
+    /// A coordinate is not finite, or so large that volumes or their derivatives overflow.
     NotFinite,
 }
 
 /// The largest coordinate of a body.
 const MAX_COORDINATE: f64 = 1e60;
 
-/// The body itself if it is valid, the reconstructed one if it intersects itself.
+/// The body itself if it is valid, otherwise its reconstruction if it intersects itself.
 ///
 /// # Errors
 /// [`SolidDefect`], with the position.

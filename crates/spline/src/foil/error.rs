@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Why there is no such foil.
+/// Reason why there is no such foil.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FoilError {
     /// There is no thickness form of this name.
@@ -33,16 +33,16 @@ pub enum FoilError {
         /// Description of the fault.
         what: &'static str,
     },
-    /// A foil is laid between 3, 4 or 5 points.
+    /// A foil requires 3, 4 or 5 points.
     Points {
         /// The number given.
         actual: usize,
     },
     /// Nose and tail coincide.
     NoChord,
-    /// The metric measures some lengths as nothing or less.
+    /// The metric is not positive definite.
     Metric,
-    /// The section has no slope of its mean line, which offsets along the normal need.
+    /// The mean line of the section has no slope, which offsets along the normal need.
     NoSlope,
     /// A coordinate is NaN or infinite.
     NotFinite {
@@ -61,9 +61,9 @@ impl fmt::Display for FoilError {
             }
             Self::Ordinates { index, what } => write!(f, "ordinate {} {what}", index + 1),
             Self::Points { actual } => {
-                write!(f, "a foil is laid between 3, 4 or 5 points, found {actual}")
+                write!(f, "expected 3, 4 or 5 points of a foil, found {actual}")
             }
-            Self::NoChord => write!(f, "the nose and the tail of the foil coincide"),
+            Self::NoChord => write!(f, "the leading and the trailing edge of the foil coincide"),
             Self::Metric => write!(f, "the metric of the foil is not positive"),
             Self::NoSlope => {
                 write!(f, "a section given by ordinates cannot be set off along the normal")

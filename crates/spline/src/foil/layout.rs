@@ -7,7 +7,7 @@ use moldloft_num::{Jet, Real, Vec3};
 /// Direction of thickness from the mean line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Offset {
-    /// Along the direction of the thickness point, whatever the camber: an affine map of the
+    /// Along the direction of the thickness point, independent of the camber: an affine map of the
     /// section, linear in the points.
     #[default]
     Affine,
@@ -47,7 +47,7 @@ impl<T: Real> Metric<T> {
     }
 }
 
-/// Position of a section, from its points.
+/// Position of a section, determined by its points.
 ///
 /// Three points are nose, thickness point and tail of a half section. Four are upper tail,
 /// thickness point, nose and lower tail of a symmetric one; five have a lower thickness point
@@ -110,8 +110,8 @@ impl<T: Real> Layout<T> {
         })
     }
 
-    /// The foil of size zero whose points all coincide, such as the tip of a loft: with the
-    /// derivatives of the points.
+    /// A foil of zero size whose points coincide, such as the tip of a loft, with the derivatives
+    /// of the points.
     ///
     /// # Errors
     /// [`FoilError::Points`] for another number of points than 3, 4 or 5.

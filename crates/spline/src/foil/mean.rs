@@ -7,7 +7,7 @@ use moldloft_num::{Jet, Real, find_root};
 pub enum MeanLine<T> {
     /// No camber.
     Flat,
-    /// The camber comes with the ordinates of the thickness.
+    /// The camber is given with the ordinates of the thickness.
     InOrdinates,
     /// Two parabolas that meet at the greatest height (four-digit).
     Parabolic {
@@ -18,20 +18,20 @@ pub enum MeanLine<T> {
     Cubic {
         /// Position of the junction.
         r: f64,
-        /// The ratio k2 / k1: 0 for a straight tail.
+        /// The ratio k2 / k1: 0 for a straight aft part.
         k: f64,
-        /// One over the greatest height.
+        /// The reciprocal of the greatest height.
         scale: f64,
     },
-    /// The line of a load that is uniform to x = a and falls to zero at the tail.
+    /// The line of a load that is uniform to x = a and decreases to zero at the trailing edge.
     Load(Load<T>),
-    /// The line with a = 0.8 and a straight tail, for the 6A-series.
+    /// The line with a = 0.8 and a straight aft part, for the 6A-series.
     Straightened {
         /// The line with a = 0.8.
         load: Load<T>,
-        /// Slope added so that the tail ends at 0.
+        /// Slope added so that the trailing edge is at height 0.
         tilt: f64,
-        /// The slope of the tail.
+        /// The slope of the straight part.
         slope: f64,
         /// One over the greatest height.
         scale: f64,
@@ -95,7 +95,7 @@ impl<T: Real> Load<T> {
         if x.re() < HOLD || self.a.re() == 1.0 {
             return (self.at(x), self.slope(held(x)));
         }
-        // As by themselves, to the bit, with each logarithm made once.
+        // As for the separate functions, to the bit, with each logarithm computed once.
         let (a, b) = (J::fixed(self.a), J::fixed(-self.a + 1.0));
         let (w, z) = (a - x, -x + 1.0);
         let (ln_w, ln_z) = (ln_abs(w), ln_abs(z));
@@ -159,8 +159,8 @@ impl<T: Real> MeanLine<T> {
         MeanLine::Parabolic { at }
     }
 
-    /// The five-digit line of a name: 210 to 250 with a straight tail, 221 to 251 reflexed (Jacobs
-    /// and Pinkerton, NACA Report 537, 1935).
+    /// The five-digit line of a name: 210 to 250 with a straight aft part, 221 to 251 reflexed
+    /// (Jacobs and Pinkerton, NACA Report 537, 1935).
     #[allow(clippy::approx_constant)] // 0.318 is a figure of the table, and has nothing to do with 1/pi
     pub fn cubic(name: &str) -> Option<Self> {
         let (at, r, reflexed) = match name {
@@ -200,8 +200,8 @@ impl<T: Real> MeanLine<T> {
         MeanLine::Load(Load::new(a))
     }
 
-    /// The line of the 6A-series: that with a = 0.8, continued by its tangent from x = 0.87437 and
-    /// turned so that the tail is at 0 again (Loftin, NACA Report 903, 1948).
+    /// The line of the 6A-series: the line with a = 0.8, continued by its tangent from x = 0.87437
+    /// and rotated so that the trailing edge is at 0 again (Loftin, NACA Report 903, 1948).
     pub fn uniform_load_modified() -> Self {
         let load = Load::new(T::from(0.8));
         let slope = load.slope(T::from(STRAIGHT)).re();

@@ -31,19 +31,20 @@ use std::sync::Arc;
 pub struct SectionSpec<'a, T> {
     /// Thickness form: one of [`Section::FAMILIES`].
     pub family: &'a str,
-    /// Mean line: one of [`Section::MEANS`], or empty for that of the family.
+    /// Mean line: one of [`Section::MEANS`], or empty for the default of the family.
     pub mean: &'a str,
     /// Position x of the greatest camber of the parabolic mean line, in (0, 1).
     pub camber_at: T,
-    /// Extent a of the uniform load of the mean line "a", in [0, 1]; `None`: that of the family.
+    /// Extent a of the uniform load of the mean line "a", in [0, 1]; `None` for the default of the
+    /// family.
     pub load: Option<T>,
-    /// Nose index of the modified four-digit family: 6 is the plain nose, 0 a sharp one.
+    /// Nose index of the modified four-digit family: 6 is the standard leading edge, 0 a sharp one.
     pub nose_index: T,
     /// Position x of the greatest thickness of the modified four-digit family, in [0.2, 0.6].
     pub thickness_at: T,
-    /// Greatest thickness in chords, which the 6-series depend on.
+    /// Greatest thickness in chords; the 6-series depend on it.
     pub ratio: T,
-    /// True when the tail is closed.
+    /// True when the trailing edge is closed.
     pub closed: bool,
 }
 
@@ -156,8 +157,9 @@ impl<T: Real> Section<T> {
         Ok(Self { thickness, mean })
     }
 
-    /// The section of ordinates (x, half thickness, camber) from the nose, x = 0, to the tail,
-    /// x = 1, in units of the chord, of half the greatest thickness and of the greatest camber.
+    /// The section of ordinates (x, half thickness, camber) from the leading edge, x = 0, to the
+    /// trailing edge, x = 1, in units of the chord, of half the greatest thickness and of the
+    /// greatest camber.
     ///
     /// They are joined by a cubic spline in the square root of x.
     ///
@@ -167,19 +169,19 @@ impl<T: Real> Section<T> {
         Ok(Self { thickness: Thickness::of_ordinates(ordinates)?, mean: MeanLine::InOrdinates })
     }
 
-    /// The section that a curve of ordinates (x, half thickness, camber) gives, from nose to tail;
-    /// its own parameter is then that of the sides.
+    /// The section of a curve of ordinates (x, half thickness, camber), from leading to trailing
+    /// edge; the sides have the curve's parameter.
     pub fn of_curve(curve: Arc<dyn moldloft_num::Curve<T>>) -> Self {
         Self { thickness: Thickness::Curve(curve), mean: MeanLine::InOrdinates }
     }
 
-    /// The same section prepared for evaluation at many parameters: for a single section, not one
-    /// of a loft.
+    /// The same section, prepared for evaluation at many parameters; for a single section, not
+    /// those of a loft.
     pub fn settled(self) -> Self {
         Self { thickness: self.thickness.settled(), ..self }
     }
 
-    /// The station at `s` in [-1, 1]; outside, the natural continuation.
+    /// The station at `s` in [-1, 1]; beyond, its formula continues.
     ///
     /// The slope of the mean lines with uniform load is infinite at the nose: in front of x = 1/75
     /// the slope is taken at an x that tends smoothly to 0.005, as usual (Abbott and von Doenhoff
@@ -196,12 +198,12 @@ impl<T: Real> Section<T> {
         Station { x, thickness, camber, slope, lower }
     }
 
-    /// True when the mean line has a slope of its own.
+    /// True when the mean line has a slope.
     pub fn has_slope(&self) -> bool {
         !matches!(self.mean, MeanLine::InOrdinates)
     }
 
-    /// True when thickness and camber vanish at the tail, to rounding.
+    /// True when thickness and camber are zero at the trailing edge, up to rounding.
     pub fn is_closed(&self) -> bool {
         let tail = self.at(T::one());
         tail.thickness.re().abs() <= 1e-12 && tail.camber.re().abs() <= 1e-12
@@ -212,7 +214,7 @@ impl<T: Real> Section<T> {
         self.with_mean(self.thickness.breaks())
     }
 
-    /// The same without the parameters at which only third derivatives jump.
+    /// As `breaks`, without parameters at which only third derivatives jump.
     pub fn second_order_breaks(&self) -> Vec<f64> {
         self.with_mean(self.thickness.second_order_breaks())
     }
@@ -226,7 +228,7 @@ impl<T: Real> Section<T> {
     }
 }
 
-/// A foil in space or in a plane of parameters: a section, laid out.
+/// A section positioned in space or in a plane of parameters.
 ///
 /// On [0, 1]: from nose to tail for a half section (three points), else from the tail along the
 /// upper side to the nose, at 1/2, and back along the lower side.

@@ -4,13 +4,14 @@
 /// greatest camber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station<J> {
-    /// Distance from the nose along the chord.
+    /// Distance from the leading edge along the chord.
     pub x: J,
     /// Half thickness; negative on the lower side.
     pub thickness: J,
     /// Height of the mean line.
     pub camber: J,
-    /// Slope of the mean line, d camber / dx, held near the nose; see [`Section::at`](super::Section::at).
+    /// Slope of the mean line, d camber / dx, limited near the leading edge; see
+    /// [`Section::at`](super::Section::at).
     pub slope: J,
     /// True on the lower side.
     pub lower: bool,

@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub enum Thickness<T: Real> {
     /// Coefficients of s, s^2, s^4, s^6 and s^8.
     Polynomial([f64; 5]),
-    /// Two polynomials that meet at `at`: coefficients of s, x, x^2 and x^3 before it and of the
-    /// powers 0 to 3 of 1 - x behind it.
+    /// Two polynomials that meet at `at`: in s, x, x^2 and x^3 before it, and in the powers 0 to 3
+    /// of 1 - x behind it.
     Joined {
         /// In front of the greatest thickness.
         nose: [T; 4],
@@ -35,12 +35,12 @@ pub enum Thickness<T: Real> {
     Family(Blended<T>),
     /// A curve of (x, thickness, camber).
     Curve(Arc<dyn Curve<T>>),
-    /// Another form, less its thickness at the tail times the cube of the relative position behind
-    /// `at`.
+    /// Another form, minus its thickness at the trailing edge times the cube of the relative
+    /// position behind `at`.
     Closed {
         /// The form.
         open: Box<Thickness<T>>,
-        /// Start of the closing, as x.
+        /// Start of the correction, as x.
         at: T,
         /// Thickness at the tail.
         rest: T,
@@ -87,7 +87,7 @@ impl<T: Real> Thickness<T> {
 
     /// The modified four-digit form (Stack and von Doenhoff, NACA Report 492, 1934) with the nose
     /// index `index` and the greatest thickness at x = `m`: both polynomials have the same value,
-    /// no slope and the same curvature there.
+    /// zero slope and the same curvature there.
     pub fn modified(index: T, m: T) -> Self {
         // Nose: 0.296904 index / 6 at the thickness 0.2; index 9 means sqrt 3.
         let a0 = if index.re() > 8.0 {
@@ -116,7 +116,8 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// NACA 66 (TMB modified), a spline through its table in s, with the published nose.
+    /// NACA 66 (TMB modified): a spline through its table in s, with the published leading-edge
+    /// radius.
     pub fn tmb() -> Self {
         // thickness / s is even and tame at the nose: half thickness = (t/2) y, x = s^2, so the
         // radius of the nose is (t/2 y')^2 / 2.
@@ -147,10 +148,10 @@ impl<T: Real> Thickness<T> {
         }
         let last = ordinates.len() - 1;
         if ordinates[0].x.re() != 0.0 {
-            return wrong(0, "is not at x = 0, the nose");
+            return wrong(0, "is not at x = 0, the leading edge");
         }
         if ordinates[last].x.re() != 1.0 {
-            return wrong(last, "is not at x = 1, the tail");
+            return wrong(last, "is not at x = 1, the trailing edge");
         }
         if let Some(k) = (1..=last).find(|&k| ordinates[k].x.re() <= ordinates[k - 1].x.re()) {
             return wrong(k, "is not behind the one before");
@@ -181,7 +182,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The form with a closed tail; a form that is closed already stays as it is, to rounding.
+    /// The form with a closed trailing edge; a closed form is unchanged, up to rounding.
     pub fn closed(self) -> Self {
         let rest = self.at::<T>(T::one()).1;
         let at = match &self {
@@ -195,7 +196,7 @@ impl<T: Real> Thickness<T> {
         Thickness::Closed { open: Box::new(self), at, rest }
     }
 
-    /// x, half thickness and, where the form has one, camber at `s` >= 0.
+    /// x, half thickness and, if the form has one, camber at `s` >= 0.
     pub fn at<J: Jet<T>>(&self, s: J) -> (J, J, Option<J>) {
         let x = s * s;
         match self {
@@ -233,7 +234,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The same prepared for evaluation at many parameters.
+    /// The same form, prepared for evaluation at many parameters.
     pub fn settled(self) -> Self {
         match self {
             Thickness::Family(form) => Thickness::Family(form.settled()),

@@ -39,7 +39,7 @@ const BOUND_DEGREE: usize = 8;
 pub struct FitOptions {
     /// The largest error.
     pub accuracy: f64,
-    /// The degree where the shape is not a polynomial.
+    /// The degree for a shape that is not a polynomial.
     pub degree: usize,
 }
 
@@ -54,20 +54,20 @@ impl FitOptions {
 pub struct SampledShape<'a, const D: usize> {
     /// Positions on a grid of its parameters, the last one fastest.
     pub sample: &'a dyn Fn(&[Vec<f64>; D]) -> Vec<Vec3>,
-    /// The parameters at which one formula ends and another begins.
+    /// The parameters between different formulas.
     pub joints: [Vec<f64>; D],
     /// Its rational form.
     pub rational: Rational<D>,
 }
 
-/// Why a shape has no NURBS that is near enough.
+/// Reason why a shape has no sufficiently accurate NURBS.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotFitted {
     /// A position is not finite.
     NotFinite,
     /// The accuracy is not a positive number.
     Accuracy(f64),
-    /// The error bound that was reached, and the parameters near which it is largest.
+    /// The error bound reached, and the parameters near its maximum.
     Error {
         /// The bound.
         reached: f64,
@@ -95,7 +95,8 @@ impl fmt::Display for NotFitted {
 
 impl std::error::Error for NotFitted {}
 
-/// The NURBS of a shape: exact where it is piecewise polynomial or rational, else within the accuracy.
+/// The NURBS of a shape: exact if it is piecewise polynomial or rational, otherwise within the
+/// accuracy.
 ///
 /// # Errors
 /// [`NotFitted`].

@@ -31,11 +31,11 @@ pub struct Nurbs<const D: usize> {
     pub points: Vec<Vec3>,
     /// Weights in the order of the points; `None` if all are 1.
     pub weights: Option<Vec<f64>>,
-    /// A bound of the distance from the shape at equal parameters.
+    /// A bound on the distance from the shape at equal parameters.
     pub error: f64,
-    /// True when the shape is this NURBS but for rounding.
+    /// True when the shape equals this NURBS up to rounding.
     pub exact: bool,
-    /// The shape's own parameters as functions of those of the NURBS.
+    /// The shape's parameters as functions of those of the NURBS.
     pub paces: [Pace; D],
 }
 

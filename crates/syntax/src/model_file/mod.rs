@@ -89,7 +89,7 @@ pub enum FieldKind {
     Pair(NumberId, NumberId),
     /// A name or another word.
     Word,
-    /// `*`, the default, or a name given by the system, such as `*X=0`.
+    /// `*` (the default), or a name given by the system, such as `*X=0`.
     Star,
     /// `"…"`; the span includes the quotes.
     Text,
@@ -106,18 +106,18 @@ pub enum FieldKind {
         /// Position of the value, without the parentheses.
         value: Span,
     },
-    /// `A:Moldloft(name field)`: an argument that has no column, by its name.
+    /// `A:Moldloft(name field)`: an argument without a column, by its name.
     Argument {
         /// Position of the name.
         name: Span,
-        /// Its fields: one, where it is sound.
+        /// Its fields: one if it is valid.
         value: Fields,
     },
     /// `/`, which ends the head of an object in 1.x.
     Slash,
 }
 
-/// An object, or one of its relatives `Variable` and `Formula`.
+/// An object, or a `Variable` or `Formula`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectEntry {
     /// The entity word.
@@ -128,7 +128,7 @@ pub struct ObjectEntry {
     pub fields: Fields,
     /// The span from the entity word to the `;`.
     pub span: Span,
-    /// True if it ends properly, with all its lists closed; the errors of an incomplete one were
+    /// True if it ends correctly, with all its lists closed; the errors of an incomplete one were
     /// reported.
     pub complete: bool,
 }
@@ -140,11 +140,11 @@ pub enum ItemKind {
     Comment,
     /// An object.
     Object(ObjectEntry),
-    /// Text that could not be understood; reported.
+    /// Text that is not valid; reported.
     Unknown,
 }
 
-/// Something in the body of a file.
+/// An item in the body of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
     /// Kind.
@@ -196,12 +196,12 @@ impl ModelFile {
         &self.text
     }
 
-    /// The file that the spans name.
+    /// The file of the spans.
     pub fn file(&self) -> FileId {
         self.file
     }
 
-    /// The text a span covers.
+    /// The text of a span.
     pub fn slice(&self, span: Span) -> &str {
         self.text.get(span.range()).unwrap_or("")
     }
@@ -225,7 +225,8 @@ impl ModelFile {
         Some(self.slice(line.rest))
     }
 
-    /// The mirror planes as letters, for instance `y`: of the first line (`/y`) or of the line `Symmetry:`.
+    /// The mirror planes as letters, for instance `y`, from the first line (`/y`) or the line
+    /// `Symmetry:`.
     pub fn symmetry(&self) -> String {
         let first = self.first_line_rest.map_or("", |span| self.slice(span));
         let legacy = first.strip_prefix('/').unwrap_or("");
@@ -241,7 +242,7 @@ impl ModelFile {
         })
     }
 
-    /// Gives a number another value, without parsing again.
+    /// Changes a number, without parsing again.
     ///
     /// # Errors
     /// `not-finite` for infinities and NaN; `unknown-literal` for an id of another file.
@@ -278,7 +279,7 @@ impl ModelFile {
         ids.into_iter().map(|id| self[id]).map(|n| (n.span, number::plain(n.value))).collect()
     }
 
-    /// The text with the changed numbers, everything else byte for byte as it was.
+    /// The text with the changed numbers, otherwise identical.
     pub fn text_with_edits(&self) -> String {
         crate::splice(&self.text, &self.edits())
     }

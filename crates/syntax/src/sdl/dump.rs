@@ -6,8 +6,9 @@ use super::program::Program;
 use std::fmt::Write;
 
 impl Program {
-    /// The tree as nested lists, one top-level statement a line. Places and redundant parentheses are left out, so two
-    /// programs mean the same if and only if their dumps are equal (numbers are compared bit for bit).
+    /// The tree as nested lists, one top-level statement per line, without positions and redundant
+    /// parentheses: two programs have the same meaning if and only if their dumps are equal
+    /// (numbers are compared bit for bit).
     pub fn dump(&self) -> String {
         let mut out = String::new();
         for stmt in &self[self.body] {

@@ -16,8 +16,8 @@ const INDENT: usize = 4;
 /// Lines are broken behind a comma before they are longer than this, in characters.
 const MAX_LINE: usize = 120;
 
-/// The canonical text of a program: one statement a line, blocks indented by four blanks, single blank lines and all
-/// comments kept. Formatting canonical text changes nothing.
+/// The canonical text of a program: one statement per line, blocks indented by four blanks, with
+/// single blank lines and all comments kept. Formatting canonical text changes nothing.
 ///
 /// ```
 /// use moldloft_syntax::sdl::format;

@@ -7,13 +7,15 @@ use moldloft_diag::Span;
 /// Grouping of a chain of operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grouping {
-    /// Numbers and vectors, as in FORTRAN: `^` first and from the right, then signs, `* /`, `+ -`.
+    /// Numbers and vectors, as in FORTRAN: `^` first and right-associative, then signs, `* /`, `+
+    /// -`.
     Numbers,
-    /// As soon as a set takes part, as in C: signs first, then `* /`, `+ -`, `&`, `^`, `|`, all from the left.
+    /// With a set among the operands, as in C: signs first, then `* /`, `+ -`, `&`, `^`, `|`, all
+    /// left-associative.
     Sets,
 }
 
-/// One step of a chain in postfix order, for a machine with a stack.
+/// One step of a chain in postfix order, for a stack machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// Push the operand.
@@ -81,7 +83,7 @@ impl Grouping {
 }
 
 impl Program {
-    /// The steps of an [`ExprKind::Chain`] in postfix order under either reading.
+    /// The steps of an [`ExprKind::Chain`] in postfix order for either grouping.
     pub fn grouped(&self, chain: NodeList<ChainItem>, grouping: Grouping) -> Vec<Step> {
         let items = &self[chain];
         let mut steps = Vec::with_capacity(items.len());

@@ -7,7 +7,7 @@ use super::lexer::lex;
 use super::token::{Kind, Token};
 use moldloft_diag::FileId;
 
-/// A call or an object whose arguments are being written.
+/// A call or an object whose arguments are being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpenCall {
     /// The function, subroutine or kind.
@@ -20,10 +20,10 @@ pub struct OpenCall {
     pub name: Option<String>,
 }
 
-/// Lines that can be shown as one.
+/// Lines that can be folded into one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fold {
-    /// A byte of the line that stays.
+    /// A byte of the line that remains visible.
     pub start: u32,
     /// A byte of the last line.
     pub end: u32,
@@ -130,7 +130,7 @@ fn opened(token: Token, callee: Option<(u32, u32)>) -> OpenBracket {
     OpenBracket { kind: token.kind, callee, argument: 0, name: None }
 }
 
-/// The parts of a text that fold: brackets over several lines, and comments of several lines.
+/// The foldable parts of a text: brackets over several lines, and comments of several lines.
 pub fn folds(text: &str) -> Vec<Fold> {
     let lexed = lex(text, FileId(0));
     let mut folds = Vec::new();

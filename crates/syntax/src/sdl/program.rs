@@ -43,7 +43,7 @@ impl Program {
         self.file
     }
 
-    /// The statements of the file, loads and routines among them.
+    /// The statements of the file, including loads and routines.
     pub fn body(&self) -> NodeList<StmtId> {
         self.body
     }
@@ -83,7 +83,7 @@ impl Program {
         self.exprs.len()
     }
 
-    /// The list of no expressions.
+    /// The empty list of expressions.
     pub fn no_expressions(&self) -> NodeList<ExprId> {
         NodeList::new(0, 0)
     }
@@ -93,7 +93,7 @@ impl Program {
         self.text.get(span.range()).unwrap_or("")
     }
 
-    /// The expression without the parentheses around it.
+    /// The expression without enclosing parentheses.
     pub fn bare(&self, mut expr: ExprId) -> ExprId {
         while let ExprKind::Paren(inner) = self[expr].kind {
             expr = inner;
@@ -101,7 +101,7 @@ impl Program {
         expr
     }
 
-    /// Position of a member's name (the last part of a [`ExprKind::Member`]).
+    /// Position of a member's name (the last part of an [`ExprKind::Member`]).
     pub fn member_span(&self, member: ExprId) -> Span {
         let expr = &self[member];
         match expr.kind {
@@ -113,7 +113,7 @@ impl Program {
         }
     }
 
-    /// The name, if the expression is nothing but a name.
+    /// The name, if the expression is only a name.
     pub fn as_name(&self, expr: ExprId) -> Option<Symbol> {
         match self[self.bare(expr)].kind {
             ExprKind::Name(symbol) => Some(symbol),
@@ -121,7 +121,7 @@ impl Program {
         }
     }
 
-    /// The number, if the expression is nothing but a number: then a direct edit can change it.
+    /// The number, if the expression is only a number, which a direct edit can change.
     pub fn as_literal(&self, expr: ExprId) -> Option<LiteralId> {
         match self[self.bare(expr)].kind {
             ExprKind::Number(literal) => Some(literal),
@@ -129,8 +129,8 @@ impl Program {
         }
     }
 
-    /// Gives a number of the text another value, without parsing again. An integer that gets a broken value becomes a
-    /// float, as if it had been typed; a float stays one.
+    /// Changes a number of the text, without parsing again. An integer set to a fraction becomes a
+    /// float, as if typed; a float remains one.
     ///
     /// # Errors
     /// `not-finite` for infinities and NaN; `unknown-literal` for an id of another program.

@@ -114,7 +114,7 @@ pub fn keywords() -> impl Iterator<Item = &'static str> {
     RESERVED.iter().map(|(word, _)| *word).chain(CONTEXTUAL[..components].iter().copied())
 }
 
-/// The words that a declaration may begin with.
+/// The words that can begin a declaration.
 pub fn declaring_words() -> impl Iterator<Item = &'static str> {
     let types = RESERVED.iter().filter(|(_, kind)| *kind == TypeWord).map(|(word, _)| *word);
     types.chain(["param", "field", "set", "block", "record"])

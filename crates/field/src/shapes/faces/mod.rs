@@ -38,22 +38,22 @@ const ALL_LOOKS: usize = 30_000;
 /// Points nearer to a plane than this part of the body's diagonal are on it.
 const FLAT: f64 = 1e-9;
 
-/// A closed body of triangles, each on a side.
+/// A closed body of triangles, each assigned to a side.
 #[derive(Clone, Copy, Debug)]
 pub struct Sides<'a, T> {
     /// The vertices.
     pub points: &'a [Vec3<T>],
-    /// The triangles, counter-clockwise from outside; those of round sides are chords of these.
+    /// The triangles, counter-clockwise from outside; those of round sides are inscribed.
     pub triangles: &'a [[u32; 3]],
     /// Number of each triangle's side; `None`: coplanar triangles form a side.
     pub sides: Option<&'a [u32]>,
-    /// The round ones among them.
+    /// The round sides.
     pub rounds: &'a [Round<T>],
 }
 
-/// The set of a body whose sides are plane or round: its primitives are the half-spaces of its faces and
-/// the cylinders, cones and parabolic cylinders of its round sides, exact where triangles of round sides
-/// only come near.
+/// The set of a body with plane and round sides: its primitives are the half-spaces of its faces
+/// and the cylinders, cones and parabolic cylinders of its round sides, exact where triangles only
+/// approximate these.
 ///
 /// Sides that are neither plane nor among the rounds count as their triangles. Faces in one plane share
 /// its half-space, also when they would move apart under a change.

@@ -5,7 +5,7 @@ use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Real, Vec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A plane curve that a round side starts from.
+/// The plane curve at the start of a round side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RoundProfile<T> {
     /// `centre + a cos(s sweep) + b sin(s sweep)` for s in [0, 1]: part of an ellipse of conjugate
@@ -20,7 +20,7 @@ pub enum RoundProfile<T> {
         /// Angle in radians, up to a full turn.
         sweep: T,
     },
-    /// The parabola from the first point to the last with tangents to the middle one.
+    /// The parabola from the first point to the last, with tangents towards the middle point.
     Parabola([Vec3<T>; 3]),
 }
 
@@ -29,13 +29,14 @@ pub enum RoundProfile<T> {
 /// The profile runs so that its velocity x `shift` points out of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round<T> {
-    /// The number of the side.
+    /// Number of the side.
     pub side: u32,
     /// The near end.
     pub profile: RoundProfile<T>,
-    /// Vector from the near end to the far one: of the centre, or of a parabola's start.
+    /// Vector from the near end to the far one: between centres, or between the starts of
+    /// parabolas.
     pub shift: Vec3<T>,
-    /// The size of the far end: 1 for cylinders, 0 for a cone with its apex there.
+    /// Relative size of the far end: 1 for cylinders, 0 for a cone with its apex there.
     pub scale: T,
 }
 

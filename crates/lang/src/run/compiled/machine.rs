@@ -761,7 +761,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             _ => {
                 let diagnostic =
                     Diagnostic::error("no-value", format!("`{name}` returns no value"))
-                        .help("it came to its end: every way through it must `return` one")
+                        .help("it ended without one: every path through it must `return` a value")
                         .at(site.span);
                 self.faulty(region, machine, diagnostic)
             }
@@ -844,7 +844,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             (None, ScalarOp::ForBegin { at: k }) => {
                 let [from, to, step] = [k, k + 1, k + 2].map(|r| at(machine, r).re());
-                Diagnostic::error("endless-loop", "this loop cannot come to an end")
+                Diagnostic::error("endless-loop", "this loop cannot end")
                     .at(range.span)
                     .expected("finite ends and a step other than 0")
                     .found(format!("{from}:{to}:{step}"))

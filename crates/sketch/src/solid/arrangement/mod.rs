@@ -22,7 +22,7 @@ pub(super) use pool::overlapping;
 use pool::{Pool, bounds};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Tag of an edge that is not on an edge of the body.
+/// Tag of an edge that is not part of an edge of the body.
 pub const INNER: u32 = u32::MAX;
 
 /// An oriented plane polygon of an operand.
@@ -32,7 +32,7 @@ pub struct Facet {
     pub operand: usize,
     /// Its face in that body.
     pub tag: u32,
-    /// True if that face is plane, so that parts of it may be joined with others of the same plane.
+    /// True if the face is plane, so that its parts may be merged with others in the same plane.
     pub plane: bool,
     /// The outward unit normal.
     pub normal: Vec3,
@@ -40,7 +40,7 @@ pub struct Facet {
     pub loops: Vec<Vec<u32>>,
     /// The edge of the body that each side is part of, or [`INNER`].
     pub edges: Vec<Vec<u32>>,
-    /// The surface that its face shares with others, so that parts of them may be joined.
+    /// The surface that its face shares with others, so that their parts may be merged.
     pub side: Option<SurfaceSide>,
     bounds: [Vec3; 2],
 }
@@ -55,7 +55,7 @@ pub struct SurfaceSide {
 }
 
 impl Facet {
-    /// A facet of a face that is alone on its surface.
+    /// A facet of a face that shares its surface with no other.
     pub fn new(
         operand: usize,
         tag: u32,
@@ -75,29 +75,29 @@ fn edges_of(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
 /// A face of the result.
 #[derive(Clone, Debug)]
 pub struct ArrangedFace {
-    /// The faces that cover it: operand and tag; the first one gives its surface.
+    /// The faces that cover it: operand and tag; the surface is that of the first.
     pub sources: Vec<(usize, u32)>,
-    /// True if its outward side is the inside of the first source.
+    /// True if its outward side is the inner side of the first source.
     pub reversed: bool,
     /// True if it is plane.
     pub plane: bool,
     /// The outward normal of a plane one.
     pub normal: Vec3,
-    /// Cycles of points with the face to their left seen from outside; of a plane face the outer one
-    /// comes first.
+    /// Cycles of points, with the face to their left seen from outside; the outer cycle of a plane
+    /// face comes first.
     pub loops: Vec<Vec<u32>>,
-    /// Its plane parts, oriented alike, each with its holes.
+    /// Its plane parts with equal orientation, each with its holes.
     pub parts: Vec<Vec<Vec<u32>>>,
-    /// By part, the face that it is of.
+    /// Face of each part.
     pub owners: Vec<(usize, u32)>,
-    /// By part, the outward normal of its facet.
+    /// Outward normal of each part's facet.
     pub normals: Vec<Vec3>,
 }
 
-/// The body of a rule.
+/// The body that satisfies a rule.
 #[derive(Clone, Debug)]
 pub struct Arrangement {
-    /// All points; the given ones come first.
+    /// All points, the given ones first.
     pub points: Vec<Vec3>,
     /// The number of each given point.
     pub given: Vec<u32>,
@@ -105,13 +105,13 @@ pub struct Arrangement {
     pub faces: Vec<ArrangedFace>,
     /// The edges of the operands that each side is part of: operand and tag, by points in order.
     pub edges: HashMap<(u32, u32), Vec<(usize, u32)>>,
-    /// True if facets are left out, or a cell has windings other than 0 and 1.
+    /// True if facets are omitted, or a cell has windings other than 0 and 1.
     pub changed: bool,
     /// Coincident surfaces; also lines, if requested.
     pub shared: Vec<SurfaceCoincidence>,
 }
 
-/// A region that several faces cover, or a line in which more than two of them meet.
+/// A region covered by several faces, or a line common to more than two.
 #[derive(Clone, Debug)]
 pub struct SurfaceCoincidence {
     /// The corners of the region, or the ends of the line.
@@ -122,13 +122,13 @@ pub struct SurfaceCoincidence {
     pub region: bool,
 }
 
-/// Why there is no body.
+/// Reason why there is no body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ArrangeError {
-    /// Windings depend on the path: a surface is open or almost coincides with another at this
-    /// position.
+    /// Winding numbers depend on the path: a surface is open or nearly coincides with another at
+    /// this position.
     Inconsistent(Vec3),
-    /// There are more pieces than can be handled.
+    /// The number of pieces exceeds the limit.
     TooLarge,
 }
 
@@ -146,9 +146,10 @@ struct ArrangedRegion {
 /// More regions than this are refused.
 const MAX_REGIONS: usize = 400_000;
 
-/// Makes the body in which `solid` holds for the numbers of windings. Facets of one operand are taken
-/// not to cross each other unless `crossing`. Lines in which more than two surfaces meet are listed if `sharing`.
-/// Faces end at `seams`, edges by operand and tag, although their surface continues.
+/// Makes the body of the region where `solid` holds for the winding numbers. Facets of one operand
+/// are assumed not to cross each other unless `crossing`. Lines in which more than two surfaces
+/// meet are listed if `sharing`. Faces end at `seams`, edges by operand and tag, although their
+/// surface continues.
 ///
 /// # Errors
 /// [`ArrangeError`], with the position.
@@ -489,7 +490,7 @@ fn all_regions(
     Ok((found, other, shared))
 }
 
-/// What pieces that join have in common.
+/// The common property of pieces that join.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum JoinKey {
     /// A face, and whether the side outward is its own.

@@ -19,7 +19,7 @@ use moldloft_num::union_find::UnionFind;
 use regions::{Half, SheetRegion, SpannedPlane};
 use wire::Wireframe;
 
-/// More edges than this, after cutting, are refused.
+/// Maximum number of edges after cutting.
 pub const MAX_EDGES: usize = 20_000;
 
 /// A face as cycles of vertices, counter-clockwise from outside; holes clockwise.
@@ -31,41 +31,41 @@ pub struct Polygon {
     pub holes: Vec<Vec<usize>>,
 }
 
-/// One solid that fits the wireframe.
+/// A solid that fits the wireframe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireframeFit {
     /// Its faces, in the order of their cycles.
     pub faces: Vec<Polygon>,
-    /// Candidates that are no faces (solid or void on both sides), as outer cycles.
+    /// Candidates that are not faces (solid or void on both sides), as outer cycles.
     pub internal: Vec<Vec<usize>>,
     /// Edges with more than two faces.
     pub branching: Vec<[usize; 2]>,
-    /// Edges between two faces of one plane.
+    /// Edges between two faces in one plane.
     pub scribed: Vec<[usize; 2]>,
     /// Its volume.
     pub volume: f64,
 }
 
-/// All that was found about a wireframe.
+/// Results of the search for solids of a wireframe.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fitted {
     /// Candidate faces.
     pub candidates: usize,
-    /// The candidates as polygons, against the normals of their sheets; for choosing by hand.
+    /// The candidates as polygons, oriented against the normals of their sheets; for manual choice.
     pub polygons: Vec<Polygon>,
     /// Cells between them.
     pub cells: usize,
     /// The solids, the likeliest first.
     pub fits: Vec<WireframeFit>,
-    /// True if these are all.
+    /// True if there are no others.
     pub complete: bool,
-    /// Edges with a loose end; they were left out.
+    /// Omitted edges with a loose end.
     pub dangling: Vec<[usize; 2]>,
-    /// Edges that fewer than two candidates share: there the faces do not close.
+    /// Edges of fewer than two candidates, at which the faces do not close.
     pub open: Vec<[usize; 2]>,
-    /// The first of them: with fewer than two candidates before any was dropped.
+    /// The first of them: edges of fewer than two candidates before any candidate was dropped.
     pub first_open: Vec<[usize; 2]>,
-    /// Points at which edges cross without a vertex.
+    /// Crossings of edges without a vertex.
     pub crossings: Vec<Vec3>,
     /// True if the search was abandoned as too large.
     pub too_large: bool,
@@ -124,8 +124,8 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
 }
 
 /// The regions of a plane wireframe, counter-clockwise against `normal`: the faces of a cross
-/// section. A closed figure inside another is a hole, one inside a hole is material again. Edges
-/// with a loose end are left out. Edges that cross without a vertex are an error.
+/// section. A closed figure inside another is a hole, a figure inside a hole is material. Edges
+/// with a loose end are omitted. A crossing of edges without a vertex is an error.
 pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Fitted {
     let mut fitted = Fitted { complete: true, ..Fitted::default() };
     let mut wire = Wireframe::new(positions, edges);

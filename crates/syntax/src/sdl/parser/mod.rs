@@ -14,11 +14,11 @@ use super::token::{Comment, Kind, Token};
 use moldloft_diag::{Diagnostic, FileId, Span};
 use std::sync::Arc;
 
-/// Brackets, blocks and bodies nest at most this deep.
+/// Maximum nesting of brackets, blocks and bodies.
 pub const MAX_NESTING: u32 = 200;
-/// A syntax tree is at most this high: `1+1+…` may have this many terms.
+/// Maximum height of a syntax tree, and so of the number of terms in `1+1+…`.
 pub const MAX_HEIGHT: u16 = 1000;
-/// More faults than this are counted, not listed.
+/// Maximum number of listed faults; further ones are only counted.
 pub const MAX_DIAGNOSTICS: usize = 100;
 
 /// Parses a program. It never fails: errors are in the diagnostics, in the order of the text, and
