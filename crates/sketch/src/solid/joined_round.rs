@@ -4,7 +4,7 @@ use super::arrangement::{ArrangedFace, SurfaceSide};
 use super::coincidence::Kink;
 use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, moves};
-use super::meeting::{Meridian, RoundSurface};
+use super::meeting::{Meridian, RevolvedSurface};
 use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,10 +22,10 @@ pub(super) fn shared_surfaces<T: Real>(
     sources: &[FacetSource<T>],
     scale: f64,
 ) -> BTreeMap<(usize, u32), SurfaceSide> {
-    let mut found: Vec<(RoundSurface<T>, Vec<(usize, u32, bool)>)> = Vec::new();
+    let mut found: Vec<(RevolvedSurface<T>, Vec<(usize, u32, bool)>)> = Vec::new();
     for (operand, source) in sources.iter().enumerate() {
         for (tag, surface) in source.surfaces.iter().enumerate() {
-            let Some(own) = RoundSurface::of(surface) else { continue };
+            let Some(own) = RevolvedSurface::of(surface) else { continue };
             let half = T::from(0.5);
             let [p, du, dv] = surface.jet(half, half).map(Vec3::re);
             let away = (du.cross(dv).dot(own.away(p)) > 0.0) == source.borders[tag].1;
@@ -63,7 +63,7 @@ pub(super) fn seams<T: Real>(
 }
 
 /// True if two surfaces are one with one axis, so that both have parameters in one frame.
-fn one_surface<T: Real>(a: &RoundSurface<T>, b: &RoundSurface<T>, scale: f64) -> bool {
+fn one_surface<T: Real>(a: &RevolvedSurface<T>, b: &RevolvedSurface<T>, scale: f64) -> bool {
     let (p, d) = (a.axis.point.re(), a.axis.direction.re());
     let by = b.axis.point.re() - p;
     let turned = d.cross(b.axis.direction.re()).norm() * scale;
@@ -96,11 +96,11 @@ pub(super) fn joined_surface<T: Real>(
     }
     let surface = |&(operand, tag): &(usize, u32)| &sources[operand].surfaces[tag as usize];
     let first = surface(&face.sources[0]);
-    let base = RoundSurface::of(first)?;
+    let base = RevolvedSurface::of(first)?;
     let frame = PatchFrame::of(first, &base)?;
     let (mut extent, mut kinks) = (frame.extent(first)?, Vec::new());
     for other in face.sources[1..].iter().map(surface) {
-        let own = RoundSurface::of(other)?;
+        let own = RevolvedSurface::of(other)?;
         kinks.extend((1..T::PARTS).filter(|k| parts_from(&base, &own, *k)).map(|part| {
             let at = other.jet(T::from(0.5), T::from(0.5))[0].re();
             Kink { part, at, volume: true }
@@ -120,7 +120,7 @@ enum PatchFrame<T> {
 }
 
 impl<T: Real> PatchFrame<T> {
-    fn of(surface: &FaceSurface<T>, round: &RoundSurface<T>) -> Option<PatchFrame<T>> {
+    fn of(surface: &FaceSurface<T>, round: &RevolvedSurface<T>) -> Option<PatchFrame<T>> {
         match *surface {
             FaceSurface::Ruled { near: SmoothPiece::Conic { centre, a, b, sweep }, far } => {
                 let (end, scale) = match far {
@@ -294,7 +294,7 @@ impl PatchExtent {
 }
 
 /// True if two surfaces that are one move differently in a part.
-fn parts_from<T: Real>(a: &RoundSurface<T>, b: &RoundSurface<T>, k: usize) -> bool {
+fn parts_from<T: Real>(a: &RevolvedSurface<T>, b: &RevolvedSurface<T>, k: usize) -> bool {
     let by = b.axis.point - a.axis.point;
     let apart = b.axis.point - a.axis.foot(b.axis.point);
     let turned = a.axis.direction.cross(b.axis.direction);

@@ -31,7 +31,7 @@ pub(super) struct RoundCylinder<T> {
 }
 
 /// A cylinder, cone, sphere or torus.
-pub(super) struct RoundSurface<T> {
+pub(super) struct RevolvedSurface<T> {
     /// Its axis, through the centre of a sphere or torus.
     pub(super) axis: Axis<T>,
     pub(super) meridian: Meridian<T>,
@@ -59,8 +59,8 @@ impl<T: Real> Meridian<T> {
     }
 }
 
-impl<T: Real> RoundSurface<T> {
-    pub(super) fn of(surface: &FaceSurface<T>) -> Option<RoundSurface<T>> {
+impl<T: Real> RevolvedSurface<T> {
+    pub(super) fn of(surface: &FaceSurface<T>) -> Option<RevolvedSurface<T>> {
         match surface {
             FaceSurface::Plane { .. } => None,
             FaceSurface::Ruled { near, far } => {
@@ -77,7 +77,7 @@ impl<T: Real> RoundSurface<T> {
                     return None;
                 }
                 let slope = (other - radius) / height;
-                Some(RoundSurface { axis, meridian: Meridian::Line { radius, slope } })
+                Some(RevolvedSurface { axis, meridian: Meridian::Line { radius, slope } })
             }
             FaceSurface::Turned { centre, axis, profile, .. } => {
                 let SmoothPiece::Conic { centre: c, a, b, .. } = *profile else { return None };
@@ -92,7 +92,7 @@ impl<T: Real> RoundSurface<T> {
                 let big = if central { T::zero() } else { (c - foot).norm() };
                 let own = Axis { point: if central { c } else { foot }, direction: *axis };
                 let meridian = Meridian::Circle { big, small };
-                upright.then_some(RoundSurface { axis: own, meridian })
+                upright.then_some(RevolvedSurface { axis: own, meridian })
             }
         }
     }

@@ -12,7 +12,7 @@
 use super::arrangement::{Facet, INNER, overlapping};
 use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, along};
-use super::meeting::{Meridian, RoundSurface};
+use super::meeting::{Meridian, RevolvedSurface};
 use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -104,7 +104,7 @@ impl<T: Real> Stratum<'_, T> {
                 round.then_some(Axis { point, direction })
             }
             Stratum::Face(surface) => {
-                let round = RoundSurface::of(surface)?;
+                let round = RevolvedSurface::of(surface)?;
                 let Axis { point, direction } = round.axis;
                 let straight = matches!(round.meridian, Meridian::Line { .. });
                 straight.then(|| Axis { point: point.re(), direction: direction.re() })
