@@ -9,7 +9,7 @@
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
 use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
-use super::joined_cylinder::{joined_surface, seams, shared_cylinders};
+use super::joined_round::{joined_surface, seams, shared_surfaces};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
 use super::surface::{FaceSurface, Jet};
@@ -183,7 +183,7 @@ fn arranged<T: Real>(
         return Err(CombineError::Coarse(unclear));
     }
     let scale = extent(&plain);
-    let shared = shared_cylinders(&all.sources, scale);
+    let shared = shared_surfaces(&all.sources, scale);
     let seams = seams(&all.sources, &shared);
     let mut facets = std::mem::take(&mut all.facets);
     for facet in &mut facets {

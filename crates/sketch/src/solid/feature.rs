@@ -179,11 +179,15 @@ impl FacetPlan {
         let error = first.as_ref().err().and_then(NoBody::facet_error).cloned();
         let Some(error) = error else { return first };
         let mut failed = Some(error.clone());
-        let mut facets = 0;
+        let (mut facets, mut last) = (0, usize::MAX);
         for _ in 0..ROUNDS {
             let Some(why) = failed.take() else { break };
-            facets += why.facets();
-            if facets > MAX_TRIED_FACETS || !self.refine(&why) {
+            let own = why.facets();
+            facets += own;
+            // Finer facets along a whole contact become more by the same factor each time.
+            let next = if own / 2 > last { own.saturating_mul(own / last.max(1)) } else { 0 };
+            last = own;
+            if facets.saturating_add(next) > MAX_TRIED_FACETS || !self.refine(&why) {
                 break;
             }
             match body_at(object, planes, layout, self) {

@@ -30,6 +30,87 @@ pub(super) struct RoundCylinder<T> {
     pub(super) radius: T,
 }
 
+/// A cylinder, cone, sphere or torus.
+pub(super) struct RevolvedSurface<T> {
+    /// Its axis, through the centre of a sphere or torus.
+    pub(super) axis: Axis<T>,
+    pub(super) meridian: Meridian<T>,
+}
+
+/// The curve that is turned about the axis.
+#[derive(Clone, Copy)]
+pub(super) enum Meridian<T> {
+    /// The radius at the point of the axis, and its change along the axis.
+    Line { radius: T, slope: T },
+    /// The distance of a circle's centre from the axis, and its radius.
+    Circle { big: T, small: T },
+}
+
+impl<T: Real> Meridian<T> {
+    pub(super) fn re(&self) -> Meridian<f64> {
+        match self {
+            Meridian::Line { radius, slope } => {
+                Meridian::Line { radius: radius.re(), slope: slope.re() }
+            }
+            Meridian::Circle { big, small } => {
+                Meridian::Circle { big: big.re(), small: small.re() }
+            }
+        }
+    }
+}
+
+impl<T: Real> RevolvedSurface<T> {
+    pub(super) fn of(surface: &FaceSurface<T>) -> Option<RevolvedSurface<T>> {
+        match surface {
+            FaceSurface::Plane { .. } => None,
+            FaceSurface::Ruled { near, far } => {
+                let axis = straight_axis(near, far)?;
+                let &SmoothPiece::Conic { centre, a, .. } = near else { return None };
+                let radius = a.norm();
+                let (end, other) = match *far {
+                    SmoothPiece::Conic { centre, a: p, .. } => (centre, p.dot(a) / radius),
+                    SmoothPiece::Cubic([p, ..]) => (p, T::zero()),
+                };
+                let height = axis.direction.dot(end - centre);
+                // A plane ring, or two nappes.
+                if height.re().abs() <= ALIKE * radius.re() || other.re() < 0.0 {
+                    return None;
+                }
+                let slope = (other - radius) / height;
+                Some(RevolvedSurface { axis, meridian: Meridian::Line { radius, slope } })
+            }
+            FaceSurface::Turned { centre, axis, profile, .. } => {
+                let SmoothPiece::Conic { centre: c, a, b, .. } = *profile else { return None };
+                let normal = a.cross(b).normalized()?;
+                let own = Axis { point: *centre, direction: *axis };
+                let (small, foot) = (a.norm(), own.foot(c));
+                let size = small.re() + (c - foot).re().norm();
+                let upright = vanishes(normal.dot(*axis), 1.0)
+                    && vanishes(normal.dot(c - foot), size)
+                    && round(a, b);
+                let central = all_vanish(c - foot, small.re());
+                let big = if central { T::zero() } else { (c - foot).norm() };
+                let own = Axis { point: if central { c } else { foot }, direction: *axis };
+                let meridian = Meridian::Circle { big, small };
+                upright.then_some(RevolvedSurface { axis: own, meridian })
+            }
+        }
+    }
+
+    /// The direction from the axis, or from the centre of the section by a plane through it, to a point.
+    pub(super) fn away(&self, p: Vec3) -> Vec3 {
+        let (at, d) = (self.axis.point.re(), self.axis.direction.re());
+        let by = p - at;
+        let flat = by - d * d.dot(by);
+        match self.meridian.re() {
+            Meridian::Line { .. } => flat,
+            Meridian::Circle { big, .. } => {
+                by - flat.normalized().map_or(Vec3::zero(), |out| out * big)
+            }
+        }
+    }
+}
+
 /// True if a length is zero relative to a size, with its derivatives.
 fn vanishes<T: Real>(x: T, size: f64) -> bool {
     x.re().abs() <= ALIKE * size && (1..T::PARTS).all(|k| !moves(x.part(k), 1.0))

@@ -23,7 +23,7 @@ pub mod feature;
 mod finer_mesh;
 pub(crate) mod gradient;
 mod hole;
-mod joined_cylinder;
+mod joined_round;
 pub(crate) mod mass;
 mod meeting;
 pub mod merge;

@@ -12,15 +12,16 @@
 use super::arrangement::{Facet, INNER, overlapping};
 use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, along};
+use super::meeting::{Meridian, RevolvedSurface};
 use super::surface::FaceSurface;
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Axis, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Distance, relative to the bodies, below which two elements touch; and the same for edges known
 /// by points.
 const TOUCHING: [f64; 2] = [1e-9, 1e-6];
 
-/// Maximum distance of the ends of a common normal beyond their facets, relative to the size of
+/// Maximum distance of the ends of a common normal beyond their facets, relative to the width of
 /// these.
 const BEYOND: f64 = 0.02;
 
@@ -29,6 +30,16 @@ const SAFE: f64 = 2.0;
 
 /// Distance of positions, relative to the bodies, within which they are the same.
 const SAME: f64 = 1e-5;
+
+/// Distance, relative to the bodies, from which facets of coaxial elements are in the order of these.
+const ORDERED: f64 = 1e-6;
+
+/// Tolerance of one axis, relative to the bodies, and of one direction from it.
+const ONE_AXIS: f64 = 1e-11;
+const ONE_DIRECTION: f64 = 1e-9;
+
+/// Change of a surface's point by u, relative to that by v, below which it is at a pole.
+const POLE: f64 = 1e-5;
 
 const STEPS: usize = 24;
 
@@ -73,6 +84,33 @@ impl<T: Real> Stratum<'_, T> {
 
     fn straight(&self) -> bool {
         self.unknowns() == 0
+    }
+
+    /// True at the pole of a surface, where its directions are not known; it is a vertex, which is searched for itself.
+    fn at_pole(&self, x: &[f64]) -> bool {
+        let Stratum::Face(surface) = self else { return false };
+        let [_, du, dv] = surface.jet(T::from(x[0]), T::from(x[1])).map(Vec3::re);
+        du.norm() <= POLE * dv.norm()
+    }
+
+    /// The axis of a circle, cylinder or cone.
+    fn axis(&self) -> Option<Axis<f64>> {
+        match self {
+            Stratum::Edge(SmoothPiece::Conic { centre, a, b, .. }) => {
+                let [point, a, b] = [*centre, *a, *b].map(Vec3::re);
+                let size = a.norm_sq();
+                let round = (size - b.norm_sq()).abs().max(a.dot(b).abs()) <= ONE_AXIS * size;
+                let direction = a.cross(b).normalized()?;
+                round.then_some(Axis { point, direction })
+            }
+            Stratum::Face(surface) => {
+                let round = RevolvedSurface::of(surface)?;
+                let Axis { point, direction } = round.axis;
+                let straight = matches!(round.meridian, Meridian::Line { .. });
+                straight.then(|| Axis { point: point.re(), direction: direction.re() })
+            }
+            _ => None,
+        }
     }
 
     /// The point and its directions: one of an edge, two of a face, unit ones.
@@ -135,6 +173,8 @@ struct Element<'a, T> {
     /// Maximum angle between its normal or direction and those of its exact element.
     turn: f64,
     size: f64,
+    /// The mean width of a facet, which is often a long strip; the length of a side.
+    width: f64,
     /// The vertices of its face or edge, and a number of it.
     rim: (u32, usize),
     traced: bool,
@@ -406,13 +446,42 @@ impl<T: Real> NearMissSearch<'_, T> {
         if gap <= same || gap > reach || !self.covers(a, p) || !self.covers(b, q) {
             return None;
         }
+        let ordered = gap > ORDERED * self.scale && self.keep_order(a, b);
+        if ordered || a.stratum.at_pole(&x[..n]) || b.stratum.at_pole(&x[n..]) {
+            return None;
+        }
         // Another solution than a common normal, as at poles.
         (left <= 1e-6).then_some((p + q) * 0.5)
     }
 
+    /// True if two elements are of circles, cylinders or cones about one axis, and no corner of one is between those of
+    /// the other: at any angle the facets are then nearer to the axis than these by one factor.
+    fn keep_order(&self, a: &Element<'_, T>, b: &Element<'_, T>) -> bool {
+        let Some((axis, other)) = a.stratum.axis().zip(b.stratum.axis()) else { return false };
+        let turned = axis.direction.cross(other.direction).norm();
+        let apart = other.point.distance(axis.foot(other.point));
+        if turned > ONE_AXIS || apart > ONE_AXIS * self.scale {
+            return false;
+        }
+        let ways = |e: &Element<'_, T>| -> Vec<Vec3> {
+            let arms = e.corners.iter().map(|p| *p - axis.foot(*p));
+            arms.filter(|arm| arm.norm() > ONE_DIRECTION * self.scale)
+                .filter_map(Vec3::normalized)
+                .collect()
+        };
+        let (p, q) = (ways(a), ways(b));
+        let turn = |a: &Vec3, b: &Vec3| axis.direction.dot(a.cross(*b));
+        let between = |x: &Vec3, own: &[Vec3]| {
+            let sides = own.iter().map(|w| turn(x, w));
+            let (low, high) = sides.fold((0.0f64, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
+            low < -ONE_DIRECTION && high > ONE_DIRECTION && own.iter().all(|w| w.dot(*x) > 0.0)
+        };
+        !p.iter().any(|x| between(x, &q)) && !q.iter().any(|x| between(x, &p))
+    }
+
     /// True if a point is over a facet, side or vertex.
     fn covers(&self, e: &Element<'_, T>, p: Vec3) -> bool {
-        let margin = BEYOND * e.size + SAFE * e.off;
+        let margin = BEYOND * e.width + SAFE * e.off;
         match e.rim.0 {
             0 => {
                 let u = e.way.perpendicular().normalized().unwrap_or_default();
@@ -462,7 +531,18 @@ fn element<'a, T: Real>(
     let [low, high] = bounds(&corners);
     let traced = matches!(stratum, Stratum::Traced(_));
     let size = (high - low).norm();
-    Element { operand, stratum, corners, middle, way, off, turn, size, rim, traced, loops }
+    let width = match rim.0 {
+        0 => {
+            let (mut rest, mut twice) = (&corners[..], Vec3::zero());
+            for cycle in loops {
+                let (ring, more) = rest.split_at(cycle.len());
+                (rest, twice) = (more, twice + super::combine::newell(ring));
+            }
+            twice.norm() / (2.0 * size).max(f64::MIN_POSITIVE)
+        }
+        _ => size,
+    };
+    Element { operand, stratum, corners, middle, way, off, turn, size, width, rim, traced, loops }
 }
 
 fn bounds(points: &[Vec3]) -> [Vec3; 2] {

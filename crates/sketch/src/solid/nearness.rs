@@ -57,11 +57,11 @@ impl<T: Real> Nearness<'_, T> {
             return false;
         }
         match best.end {
-            None => best.left < 0.0,
+            None => best.left < -on,
             // The nearest is a corner: the point is outside if it is to the right of both edges.
             Some(end) => {
                 let here = |n: &&NearestOfBorder| n.end.is_some_and(|p| p.distance(end) <= on);
-                all.iter().filter(here).all(|n| n.left < 0.0)
+                all.iter().filter(here).all(|n| n.left < -on)
             }
         }
     }
@@ -86,7 +86,9 @@ impl<T: Real> Nearness<'_, T> {
             let held = s.clamp(low, high);
             let p = piece.at(T::from(held)).re();
             let way = piece.velocity(T::from(held)).re() * if from <= to { 1.0 } else { -1.0 };
-            let end = (s != held || held == low || held == high).then_some(p);
+            // Rounding may leave the foot of an end inside.
+            let ends = [low, high].map(|s| piece.at(T::from(s)).re());
+            let end = ends.into_iter().find(|end| end.distance(p) <= ON[0] * self.scale);
             return Some(NearestOfBorder {
                 distance: p.distance(at),
                 left: left(p, way),

@@ -132,7 +132,7 @@ impl<T: Real> SketchSolid<T> {
         all
     }
 
-    /// The ends of chords of each edge at rulings; opposite edges of round faces have the same.
+    /// The ends of chords of each edge at rulings; edges of round faces that are divided alike have the same.
     fn ends_at(&self, rulings: &[TangentRuling]) -> Vec<Vec<ChordEnd>> {
         let own = |e: usize| -> Vec<ChordEnd> {
             let piece = self.edges[e].piece.map(|_| self.piece((e, true)));
@@ -143,10 +143,10 @@ impl<T: Real> SketchSolid<T> {
         while changed {
             changed = false;
             for (f, face) in self.faces.iter().enumerate() {
-                if face.loops[0].len() != 4 || self.surface(f).is_none() {
+                if self.surface(f).is_none() {
                     continue;
                 }
-                for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k])) {
+                for [a, b] in opposite(&face.loops[0]) {
                     // They have opposite directions.
                     let turned = a.1 == b.1;
                     for (a, b) in [(a.0, b.0), (b.0, a.0)] {
@@ -228,7 +228,7 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Opposite edges of round faces are divided alike.
+    /// Edges of round faces that are divided alike are cut alike.
     fn share_cuts(&self, all: &[EdgeDivision], cut: &mut [BTreeSet<u64>]) {
         // Ends of chords carried over to the other edge, which may have the opposite direction.
         let carried = |from: &BTreeSet<u64>, division: &EdgeDivision, turned: bool| -> Vec<u64> {
@@ -243,10 +243,10 @@ impl<T: Real> SketchSolid<T> {
         while changed {
             changed = false;
             for (f, face) in self.faces.iter().enumerate() {
-                if face.loops[0].len() != 4 || self.surface(f).is_none() {
+                if self.surface(f).is_none() {
                     continue;
                 }
-                for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k])) {
+                for [a, b] in opposite(&face.loops[0]) {
                     // They have opposite directions.
                     let turned = a.1 == b.1;
                     for (a, b) in [(a.0, b.0), (b.0, a.0)] {
@@ -408,6 +408,15 @@ impl<T: Real> Outline<T> {
             tags.push(sides);
         }
         (points, tags)
+    }
+}
+
+/// The edges of a patch that are divided alike: opposite ones, or those that end in a point.
+fn opposite(cycle: &[(usize, bool)]) -> Vec<[(usize, bool); 2]> {
+    match *cycle {
+        [a, b, c, d] => vec![[a, c], [b, d]],
+        [_, b, c] => vec![[b, c]],
+        _ => Vec::new(),
     }
 }
 

@@ -135,14 +135,13 @@ pub fn turned<T: Real>(
         for k in 0..steps {
             let next = (k + 1) % rings;
             let (here, there) = ((copy[&(s, k)], true), (copy[&(s, next)], false));
+            // From an arc on: a cylinder or cone is a ruled patch between its arcs.
             let cycle = match poles {
                 [true, _] => vec![(arc[&(q, k)], true), there, here],
                 [_, true] => vec![(arc[&(p, k)], false), here, there],
-                _ => vec![here, (arc[&(q, k)], true), there, (arc[&(p, k)], false)],
+                _ => vec![(arc[&(q, k)], true), there, (arc[&(p, k)], false), here],
             };
-            let trim = if side.straight && across {
-                None
-            } else {
+            let trim = (!side.straight).then(|| {
                 let surface = FaceSurface::Turned {
                     centre: axis.point,
                     axis: axis.direction,
@@ -150,10 +149,11 @@ pub fn turned<T: Real>(
                     sweep: step,
                 };
                 out.trims.push(Trim { surface, face: out.faces.len() });
-                Some(out.trims.len() - 1)
-            };
+                out.trims.len() - 1
+            });
+            let ruled = side.straight && !across;
             let (loops, names) = (vec![cycle], side.name.iter().cloned().collect());
-            out.faces.push(SolidFace { id: None, ruled: false, loops, trim, names });
+            out.faces.push(SolidFace { id: None, ruled, loops, trim, names });
         }
     }
     if !full {
