@@ -56,7 +56,7 @@ class Hand:
         return self.does({"do": "run", "command": command, **more})
 
 
-#: A house whose roof falls to all four sides: no corner of the ridge is level with one of the eaves.
+#: A house whose roof falls to all four sides: no end of the ridge is level with one of the eaves.
 HIP_ROOF = """\
 SKETCH PART
 AXES 345 40 90
