@@ -52,6 +52,9 @@ MOVES = """async ([name, count, picture]) => {
     for (let k = 0; k < 6e5; k++) x = 3.9 * x * (1 - x)
     return performance.now() - from + 0 * x
   }
+  const gl = picture && document.querySelector('.view canvas').getContext('webgl2')
+  if (picture && !gl) throw new Error('the picture has no context that can be read')
+  const pixel = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
   stamps.length = 0
   const beside = [fixed()]
   const seen = []
@@ -63,8 +66,8 @@ MOVES = """async ([name, count, picture]) => {
     const end = from + 5000
     while (stamps.length === before && performance.now() < end)
       await new Promise((r) => setTimeout(r))
-    // The frame that draws it was asked for before this one.
-    if (picture) await new Promise((r) => requestAnimationFrame(() => setTimeout(r)))
+    // The frame that draws it was asked for before this one; reading a pixel waits for all of it.
+    if (picture) await new Promise((r) => requestAnimationFrame(() => r(pixel())))
     seen.push(performance.now() - from)
     beside.push(fixed())
   }
@@ -124,6 +127,8 @@ def main() -> None:
                 page.goto(file.as_uri() + quiet)
                 page.locator("body[data-engine=ready]").wait_for(timeout=120_000)
                 measured(page, options.moves, "worker", options.picture)
+            else:
+                print("  worker   not measured: `make engine` builds the engine of pages")
             command = [sys.executable, "-m", "moldloft", "view", str(model), "--no-browser"]
             server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
             try:

@@ -56,6 +56,40 @@ class Hand:
         return self.does({"do": "run", "command": command, **more})
 
 
+#: A house whose roof falls to all four sides: no end of the ridge is level with one of the eaves.
+HIP_ROOF = """\
+SKETCH PART
+AXES 345 40 90
+POINT 1 AT -1 0; POINT 2 AT 285 -77; POINT 3 AT 456 66; POINT 4 AT 169 143
+POINT 5 AT -1 156; POINT 6 AT 285 79; POINT 7 AT 456 222; POINT 8 AT 169 299
+POLYLINE 1 2 3 4 CLOSE; POLYLINE 5 6 7 8 CLOSE
+LINE 9 FROM 1 TO 5; LINE 10 FROM 2 TO 6; LINE 11 FROM 3 TO 7; LINE 12 FROM 4 TO 8
+POINT 9 AT 154 335; POINT 10 AT 302 295; LINE 13 FROM 9 TO 10
+LINE 14 FROM 5 TO 9 TYPE O; LINE 15 FROM 6 TO 10 TYPE O
+LINE 16 FROM 7 TO 10 TYPE O; LINE 17 FROM 8 TO 9 TYPE O
+"""
+
+
+def test_every_missing_dimension_has_a_place() -> None:
+    hand = Hand(HIP_ROOF)
+    base = [(0, 0), (12, 0), (12, 8), (0, 8)]
+    corners = [(x, y, z) for z in (0.0, 3.0) for x, y in base] + [(3, 4, 5.5), (9, 4, 5.5)]
+    drawn = hand.tell("board_open")
+    for _ in range(7):
+        assert len(drawn["next"]) == sum(drawn["missing"].values())
+        mark = drawn["next"][0]
+        axis, p, q = mark["axis"], mark["p"], mark["q"]
+        k = "XYZ".index(axis)
+        value = corners[q - 1][k] - corners[p - 1][k]
+        drawn = hand.run(f"DIMENSION {axis} {p} TO {q} = {value}")
+        assert drawn["kind"] == "board", drawn
+    assert not drawn["next"] and not any(drawn["missing"].values())
+    assert len(drawn["marks"]) == 7
+    solid = hand.tell("board_solid")["solid"]
+    roof = 8 * 2.5 * 6 / 2 + 2 * 3 * 8 * 2.5 / 3
+    assert solid["exact"] and solid["volume"] == pytest.approx(12 * 8 * 3 + roof, rel=1e-12)
+
+
 def test_numbers_and_types_are_written_where_they_are() -> None:
     hand = Hand(SLAB)
     hand.does({"do": "value", "name": "W", "value": "10"})
@@ -153,8 +187,11 @@ def test_random_gestures_are_the_text() -> None:
     for seed in range(rounds):
         rng = random.Random(seed)
         hand = Hand()
-        hand.run("SKETCH R\nAXES 345 40 90" if seed % 2 else "SKETCH R 2D XZ", last=True)
+        begin = "SKETCH R\nAXES 345 40 90" if seed % 2 else "SKETCH R 2D XZ"
         for _ in range(gestures):
+            if hand.tell("board_open")["object"] is None:
+                # The text is empty, at first and after every step was undone.
+                hand.run(begin, last=True)
             facts = hand.tell("board_open")
             points = [p[0] for p in facts["points"]]
             lines = [ln[0] for ln in facts["lines"]]

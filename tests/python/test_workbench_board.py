@@ -275,6 +275,69 @@ def test_one_of_several_solids_is_chosen_by_its_picture(board: Callable[..., Boa
     assert volume == pytest.approx(416 / 3, rel=1e-9)
 
 
+def test_the_drawing_lies_over_the_picture_of_the_solid(board: Callable[..., BoardHand]) -> None:
+    # The outer cube and the inner one, in a page that was moved under the picture.
+    b = board(nested(), "nested.skt")
+    solid = b.page.locator(".board-solid")
+    b.settle()
+    b.until(lambda: solid.get_attribute("data-volume"))
+    drawn = b.look()["drawn"]
+    places = {p: (u, v) for p, u, v, *_ in drawn["points"]}
+    ends = [(places[p], places[q]) for _, p, q, *_ in drawn["lines"]]
+    (p, q) = ends[0]
+    middle = ((p[0] + q[0]) / 2, (p[1] + q[1]) / 2)
+    box = solid.bounding_box()
+    assert box
+    x, y = b.at(*middle)
+    b.page.mouse.move(x, y)
+    b.page.mouse.down(button="right")
+    b.page.mouse.move(x + 20, y)
+    b.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    b.page.mouse.up(button="right")
+    b.key("v")
+    b.click(*middle)
+    number = drawn["lines"][0][0]
+    assert b.page.locator(f"[data-line='{number}'].chosen").count() == 1
+    b.key("Escape")
+    # Beside the lines it is the picture that is turned, and nothing else moves.
+    screen = [(b.at(*p), b.at(*q)) for p, q in ends]
+
+    def free(at: tuple[float, float]) -> float:
+        return min(beside(at, *line) for line in screen)
+
+    inside = [
+        (box["x"] + box["width"] * i / 12, box["y"] + box["height"] * j / 12)
+        for i in range(2, 11)
+        for j in range(2, 11)
+    ]
+    at = max((one for one in inside if not marked(b, one)), key=free)
+    assert free(at) > 12
+    text, seen = b.text(), solid.locator("canvas").screenshot()
+    b.page.mouse.move(*at)
+    b.page.mouse.down()
+    b.page.mouse.move(at[0] + 10, at[1] + 2)
+    b.page.mouse.move(at[0] + 60, at[1] + 20)
+    b.page.mouse.up()
+    b.settle()
+    assert solid.locator("canvas").screenshot() != seen
+    assert [(b.at(*p), b.at(*q)) for p, q in ends] == screen and b.text() == text
+    assert not b.faults
+
+
+def marked(b: BoardHand, at: tuple[float, float]) -> bool:
+    """True where a dimension or another control is."""
+    found = "([x, y]) => document.elementFromPoint(x, y).matches('svg.paper') ? '' : 'x'"
+    return bool(b.page.evaluate(found, list(at)))
+
+
+def beside(at: tuple[float, float], p: tuple[float, float], q: tuple[float, float]) -> float:
+    """The distance of a place from a line."""
+    u, v = q[0] - p[0], q[1] - p[1]
+    t = ((at[0] - p[0]) * u + (at[1] - p[1]) * v) / max(u * u + v * v, 1e-9)
+    t = min(1.0, max(0.0, t))
+    return math.dist(at, (p[0] + t * u, p[1] + t * v))
+
+
 def test_a_depth_that_nothing_determines_is_slid(board: Callable[..., BoardHand]) -> None:
     # The outer cube alone, without dimensions.
     kept = [row for row in nested().splitlines() if not row.startswith("DIMENSION")]

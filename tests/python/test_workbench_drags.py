@@ -40,13 +40,16 @@ CHOSEN = EXAMPLES if SOAK else random.Random(3).sample(EXAMPLES, 3)
 VIEWS = ["1", "2", "3", "4"]
 #: Picture points that a place may be beside the pointer.
 BESIDE = 3.0
+#: A hand that moves less than that clicks.
+CLICK = 6.0
 
 #: What the status line has when a point is not where the pointer is.
 REASON = re.compile(r"px behind|Turn the view|· on \w")
 
-#: Places of all that is drawn, as text: numbers of 32 bits are written in full.
-PLACES = """() => JSON.stringify(window.moldloft.items().map(
-  (i) => [i.name, i.stale, window.moldloft.positions(i.object)]))"""
+#: Places of all that is drawn, as text: numbers of 32 bits are written in full. What went and came
+#: back is last in the picture, so the order does not count.
+PLACES = """() => window.moldloft.items().map(
+  (i) => JSON.stringify([i.name, i.stale, window.moldloft.positions(i.object)])).sort().join()"""
 DRAGGABLE = """() => window.moldloft.model.objects
   .filter((o) => ['point', 'bead', 'magnet', 'ring'].includes(o.class))
   .filter((o) => o.state === 'ok' && o.shown)
@@ -94,6 +97,8 @@ def drag(b: Bench, name: str, chance: random.Random) -> str:
     text, places, faults = b.text(), b.page.evaluate(PLACES), errors(b)
     steps = len(b.hand("steps().done"))
     way = [chance.uniform(-60, 60), chance.uniform(-60, 60)]
+    if math.hypot(*way) < CLICK:
+        way[0] += math.copysign(CLICK, way[0])
     b.page.mouse.move(*at)
     b.page.mouse.down()
     for k in range(1, 5):

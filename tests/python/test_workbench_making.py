@@ -110,6 +110,39 @@ def test_objects_are_renamed_duplicated_and_deleted(bench: Callable[..., Bench])
     b.until(lambda: b.text() == POINTS)
 
 
+def test_statements_are_reordered_by_keys_and_by_drag(bench: Callable[..., Bench]) -> None:
+    bow, b_row = "AbsPoint A(0, 0, 0);  # bow\n", "AbsPoint B(4, 0, 0);\n"
+    c_row, line = "AbsPoint C(0, 3, 0);\n", "Line l(A, B);\n"
+    text = bow + b_row + c_row + line
+    b = bench(text, "order.sdl")
+    page = b.page
+
+    def row(name: str) -> Any:
+        return page.get_by_role("treeitem", name=re.compile(f"^{name} "))
+
+    page.get_by_role("treeitem", name="Points").click()
+    row("C").focus()
+    page.keyboard.press("Alt+ArrowUp")
+    b.until(lambda: b.text() == bow + c_row + b_row + line)
+    # The row keeps the focus, and the next press moves it on.
+    b.until(lambda: row("C").evaluate("e => e === document.activeElement"))
+    page.keyboard.press("Alt+ArrowUp")
+    b.until(lambda: b.text() == c_row + bow + b_row + line)
+    b.hand("settled()")
+    row("A").drag_to(row("B"), target_position={"x": 60, "y": 20})
+    b.until(lambda: b.text() == c_row + b_row + bow + line)
+    b.hand("settled()")
+    # A line comes after the points that it reads.
+    row("l").drag_to(row("B"), target_position={"x": 60, "y": 2})
+    page.locator(".status").get_by_text("cannot be moved there").wait_for()
+    assert b.text() == c_row + b_row + bow + line
+    done = ["Move C before B", "Move C before A", "Move A behind B"]
+    assert b.hand("steps().done") == done and not b.faults
+    for _ in done:
+        page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == text)
+
+
 def test_a_handle_moves_along_its_axis_or_plane(bench: Callable[..., Bench]) -> None:
     b = opened(bench)
     b.page.evaluate("() => window.moldloft.camera_set(-128, 24)")

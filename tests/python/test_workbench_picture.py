@@ -352,6 +352,26 @@ def test_files_are_dropped_on_the_picture(bench: Callable[..., Bench], tmp_path:
     assert not b.faults
 
 
+def test_a_sheet_that_no_longer_applies_does_not_move_the_picture(
+    bench: Callable[..., Bench],
+) -> None:
+    b = bench()
+    tabs = [b.page.get_by_role("tab", name=name) for name in ("Hydrostatics", "Section areas")]
+    for tab in tabs:
+        tab.wait_for()
+        assert tab.is_enabled()
+    view = b.page.locator(".view")
+    before = view.bounding_box()
+    b.page.evaluate(DROP, ["other.sdl", PLATE])
+    b.until(lambda: b.text() == PLATE)
+    # A plate does not float: the tabs stay where they are, and lead nowhere.
+    b.until(lambda: all(tab.is_disabled() for tab in tabs))
+    assert view.bounding_box() == before
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: all(tab.is_enabled() for tab in tabs))
+    assert view.bounding_box() == before and not b.faults
+
+
 def test_a_page_in_a_file_has_the_usual_numbers() -> None:
     page = exported_page(SAILBOAT / "hull.sdl", living=False).decode()
     found = re.search(r'id="moldloft-model">(.*?)</script>', page, re.DOTALL)

@@ -1,9 +1,11 @@
 // The drawing board: a rough picture by mouse, pen, finger or keys, each gesture a command in the text.
 
 import './board.css'
+import { BoardBar } from './board_bar'
 import { BoardBox } from './board_box'
 import { dimensioned, duplicated, labels } from './board_edit'
-import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter } from './board_paint'
+import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter, type Place } from './board_paint'
+import { BoardPointer, REACH } from './board_pointer'
 import { type Shape, shapes } from './board_shapes'
 import { BoardSolid, type SolidFacts } from './board_solid'
 import { Underlay } from './board_underlay'
@@ -12,7 +14,6 @@ import type { Editor } from './editor'
 import type { Facts } from './frame'
 import { type Link, Newest, Refused } from './link'
 
-type Place = [number, number]
 /** A place on the page that is, or becomes, a point. */
 interface Corner {
   at: Place
@@ -22,17 +23,6 @@ interface Corner {
 }
 
 const TYPES: Record<string, string> = { x: 'X', y: 'Y', z: 'Z', h: 'XY', p: 'YZ', f: 'XZ', o: 'O' }
-const PRESETS: [string, string][] = [
-  ['345 40 90', 'Trimetric 345 40 90'],
-  ['ISO', 'Isometric'],
-  ['CAVALIER', 'Cavalier'],
-  ['CABINET', 'Cabinet'],
-  ['MILITARY', 'Military'],
-  ['DIN', 'Dimetric 42/7'],
-  ['AUTO', 'As the lines show'],
-]
-/** Pixels: what a pointer reaches, what is a click, and how long a touch is no palm after a pen, ms. */
-const [REACH, CLICK, PALM] = [11, 5, 500]
 /** A duplicate is this far from what it was made of, in pixels. */
 const DUPLICATED = 24
 /** How long a hand rests before bodies and doubts are looked for, ms. */
@@ -68,8 +58,8 @@ export class Board {
   private readonly solid = new BoardSolid((n) => void this.make(n))
   /** What was chosen when the buttons were built. */
   private buttoned = ''
-  private readonly bar = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
-  private readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
+  private readonly bar = new BoardBar(this, () => this.underlay.controls(this.say))
+  private readonly pointer: BoardPointer
   private readonly line = h('input', {
     type: 'text',
     class: 'board-line',
@@ -78,44 +68,29 @@ export class Board {
     spellcheck: 'false',
     autocomplete: 'off',
   })
-  private readonly start = h('div', { class: 'board-start' })
   private readonly box: BoardBox
-  private drawn: Drawn = { ...NOTHING, object: null, objects: [], faults: [] }
-  private checks: Check[] = []
-  private proposed = new Map<number, string>()
+  drawn: Drawn = { ...NOTHING, object: null, objects: [], faults: [] }
+  checks: Check[] = []
+  proposed = new Map<number, string>()
   private object: string | null = null
   private text: string | null = null
-  private tool: 'draw' | 'select' = 'draw'
+  tool: 'draw' | 'select' = 'draw'
   private chain: Corner[] = []
   private aimed: Aim | null = null
   private lock = ''
-  private woken: number[] = []
-  private chosen = new Set<string>()
+  chosen = new Set<string>()
   private lit: Mark | null = null
-  private hoveredLine = 0
-  private pressed: {
-    id: number
-    at: Place
-    from: Place
-    kind: 'draw' | 'move' | 'pan' | 'axis' | 'none'
-    moved: boolean
-    what?: number
-    axis?: string
-    angles?: number[]
-  } | null = null
-  private touches = new Map<number, Place>()
-  private pen = 0
   private fitted = false
   private queue: Promise<unknown> = Promise.resolve()
   private timer = 0
-  private last: SolidFacts | null = null
+  last: SolidFacts | null = null
   private readonly pointing = new Newest<Facts>(async (request) => {
     const found = await this.ask('board_pointer', request)
-    if (!this.pressed || this.pressed.kind === 'draw') this.aim(found as Aim)
+    if (!this.pointer.taken) this.aim(found as Aim)
   })
   private readonly dragging = new Newest<{ point: number; at: Place }>(async (move) => {
     const found = await this.ask('board_drag', { move })
-    if (this.pressed?.kind === 'move') this.take(found as Drawn)
+    if (this.pointer.moving) this.take(found as Drawn)
   })
   private readonly trying = new Newest<string>(async (trial) => {
     const { solid } = await this.ask('board_solid', { trial })
@@ -134,7 +109,7 @@ export class Board {
     this.proposed = new Map(proposals.filter((p: any) => p.type !== 'O' || whole).map((p: any) => [p.line, p.type]))
     this.paint()
     this.buttons()
-    this.listIssues()
+    this.bar.listIssues()
   })
 
   constructor(
@@ -142,10 +117,10 @@ export class Board {
     private readonly editor: Editor,
     private readonly say: (words: string) => void,
   ) {
-    this.svg.prepend(this.underlay.image)
+    this.pointer = new BoardPointer(this.svg, this.page, this.painter, this.solid, this)
     this.box = new BoardBox(this.page, {
       commit: (mark, value) => this.dimension(mark, value),
-      leave: () => this.svg.focus(),
+      leave: () => this.focus(),
       next: (step) => this.openNext(step),
       closed: (tried) => (tried && this.resting.push(undefined), this.paint()),
       tried: (mark, value) => this.trying.push(dimensioned(this.drawn, mark, value)),
@@ -156,37 +131,25 @@ export class Board {
       'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
     )
     this.element.append(
-      this.bar,
+      this.bar.element,
+      // The drawing lies over the picture of the solid: what is drawn there is seen, and is what is meant.
       h(
         'div',
         { class: 'board-stage' },
-        this.svg as unknown as HTMLElement,
+        this.underlay.element as unknown as HTMLElement,
         this.solid.element,
-        this.issues,
-        this.start,
+        this.svg as unknown as HTMLElement,
+        this.bar.issues,
+        this.bar.start,
         this.box.element,
       ),
       this.line,
       help,
     )
-    const on = (name: string, run: (e: any) => void) => this.svg.addEventListener(name, run)
-    on('pointerdown', (e) => this.down(e))
-    on('pointermove', (e) => this.move(e))
-    on('pointerup', (e) => this.up(e))
-    on('pointercancel', (e) => this.cancel(e))
-    on('pointerleave', () => this.aim(null))
-    on('contextmenu', (e) => e.preventDefault())
-    // The gesture sets the focus, for instance into a dimension's box.
-    on('mousedown', (e) => e.preventDefault())
-    on('wheel', (e: WheelEvent) => {
-      e.preventDefault()
-      this.page.zoom(Math.exp(-e.deltaY * 0.0015), this.at(e))
-      this.paint()
-    })
-    on('keydown', (e) => this.key(e))
+    this.svg.addEventListener('keydown', (e) => this.key(e as KeyboardEvent))
     this.line.addEventListener('keydown', (e) => {
       e.stopPropagation()
-      if (e.key === 'Escape') this.svg.focus()
+      if (e.key === 'Escape') this.focus()
       if (e.key !== 'Enter' || !this.line.value.trim()) return
       const command = this.line.value
       void this.act([{ do: 'run', command, last: !/^\s*(p|l|dim|d|spl|w|st|ty|al|ref|var|ax)/i.test(command) }]).then(
@@ -207,7 +170,7 @@ export class Board {
 
   /** The text may be another: what is drawn follows it. */
   refresh(): void {
-    if (this.element.hidden || this.editor.text === this.text || this.pressed?.kind === 'move') return
+    if (this.element.hidden || this.editor.text === this.text || this.pointer.moving) return
     void this.later(async () => {
       await this.editor.synced()
       const text = this.editor.text
@@ -243,7 +206,7 @@ export class Board {
   }
 
   /** Changes of the sketch, as one step of the text's history. */
-  private act(changes: Facts[] | (() => Facts[])): Promise<boolean> {
+  act(changes: Facts[] | (() => Facts[])): Promise<boolean> {
     return this.later(async () => this.carryOut(typeof changes === 'function' ? changes() : changes)).then(
       (x) => x === true,
     )
@@ -275,7 +238,7 @@ export class Board {
       )
     }
     this.fitted ||= this.drawn.points.length > 0
-    this.starting()
+    this.bar.starting()
     this.paint()
     this.buttons()
     if (!this.drawn.lines.length) this.last = null
@@ -292,7 +255,7 @@ export class Board {
     if (width) this.page.size = [width, height]
   }
 
-  private paint(): void {
+  paint(): void {
     this.measurePage()
     const buttoned = [...this.chosen].join()
     if (buttoned !== this.buttoned) this.buttons()
@@ -310,111 +273,22 @@ export class Board {
     this.box.place()
   }
 
-  private aim(aim: Aim | null): void {
+  aim(aim: Aim | null): void {
     this.aimed = aim
-    const start =
-      this.chain.at(-1)?.at ??
-      (this.pressed?.kind === 'draw' && this.pressed.moved ? this.page.from(this.pressed.from) : null)
+    const start = this.chain.at(-1)?.at ?? this.pointer.begun
     this.painter.aim(this.tool === 'draw' ? aim : null, start, this.drawn.section, this.lock)
   }
 
-  /** What an empty text begins with. */
-  private starting(): void {
-    this.start.hidden = this.drawn.object !== null
-    if (this.start.hidden || this.start.childElementCount) return
-    const begin = (words: string, command: string) =>
-      h(
-        'button',
-        { onclick: () => void this.act([{ do: 'run', command, last: true }]).then(() => this.svg.focus()) },
-        words,
-      )
-    this.start.append(
-      h('h3', {}, 'A new drawing'),
-      h('p', { class: 'quiet' }, 'Only the directions of lines count; dimensions come after.'),
-      begin('Pictorial: a solid with its depth', `SKETCH PART\nAXES ${PRESETS[0][0]}`),
-      ...['XZ', 'XY', 'YZ'].map((plane) => begin(`Cross section in ${plane.toLowerCase()}`, `SKETCH PART 2D ${plane}`)),
-    )
-  }
-
   private buttons(): void {
-    const d = this.drawn
-    const button = (words: string, key: string, run: () => void, more: Facts = {}) =>
-      h(
-        'button',
-        { title: key ? `${words} (${key})` : words, onclick: run, ...more },
-        words,
-        key ? h('kbd', {}, key) : '',
-      )
-    const select = (name: string, options: [string, string][], value: string, run: (v: string) => void) => {
-      const made = h(
-        'select',
-        { 'aria-label': name, title: name },
-        ...options.map(([v, words]) => h('option', { value: v, selected: v === value }, words)),
-      )
-      made.addEventListener('change', () => run(made.value))
-      return made
-    }
-    const planes: Record<string, number> = {}
-    for (const [axis] of d.planes) planes[axis] = (planes[axis] ?? 0) + 1
-    const progress = Object.entries(d.missing)
-      .filter(([axis]) => axis in d.axes)
-      .map(([axis, open]) => {
-        const all = Math.max(0, (planes[axis] ?? 1) - 1)
-        return h('span', { class: `count type-${axis} ${open ? '' : 'done'}` }, `${axis} ${all - open}/${all}`)
-      })
-    const confirm = this.toConfirm()
-    const complete = d.lines.length > 2 && d.next.length === 0 && !d.faces
-    const action =
-      !d.section && complete && this.last?.exact && this.last.vertices
-        ? button('Make the solid', 'Enter', () => void this.make(), { class: 'primary' })
-        : ''
-    const shape = (one: Shape) =>
-      button(one.words, one.key.toUpperCase(), () => this.askShape(one), {
-        class: one.words === 'Extrude' && complete ? 'primary' : '',
-      })
-    this.bar.replaceChildren(
-      button('Draw', 'D', () => this.use('draw'), {
-        'aria-pressed': this.tool === 'draw',
-        class: this.tool === 'draw' ? 'on' : '',
-      }),
-      button('Select', 'V', () => this.use('select'), {
-        'aria-pressed': this.tool === 'select',
-        class: this.tool === 'select' ? 'on' : '',
-      }),
-      ...(d.objects.length > 1
-        ? [
-            select(
-              'object',
-              d.objects.map((o) => [o, o]),
-              d.object ?? '',
-              (name) => this.choose(name),
-            ),
-          ]
-        : []),
-      ...(d.object && !d.section
-        ? [
-            select(
-              'axes',
-              [['', `Axes ${d.angles.join(' ')}`], ...PRESETS],
-              '',
-              (axes) => axes && void this.act([{ do: 'axes', axes }]),
-            ),
-          ]
-        : []),
-      h('span', { class: 'progress', role: 'status', 'aria-label': 'dimensions given of those needed' }, ...progress),
-      ...(confirm.length ? [button(`${confirm.length} to confirm`, 'C', () => this.confirmNext())] : []),
-      ...(this.proposed.size
-        ? [button(`Accept ${this.proposed.size} proposed`, 'T', () => void this.acceptProposed())]
-        : []),
-      h('span', { class: 'grow' }),
-      ...this.underlay.controls(this.say),
-      ...(d.lines.length > 1 ? shapes(d, this.chosen) : []).map(shape),
-      action,
-      button('Fit', '0', () => this.fit()),
-    )
+    this.bar.buttons()
   }
 
-  private fit(): void {
+  /** Keys go to the drawing. */
+  focus(): void {
+    this.svg.focus({ preventScroll: true })
+  }
+
+  fit(): void {
     this.measurePage()
     this.page.fit(
       this.drawn.points.map((p) => [p[1], p[2]]),
@@ -423,189 +297,64 @@ export class Board {
     this.paint()
   }
 
-  private use(tool: 'draw' | 'select'): void {
+  use(tool: 'draw' | 'select'): void {
     this.tool = tool
     this.endChain()
     this.svg.dataset.tool = tool
     this.buttons()
-    this.svg.focus({ preventScroll: true })
+    this.focus()
   }
 
-  private choose(name: string): void {
+  choose(name: string): void {
     this.object = name
     this.text = null
     this.fitted = false
     this.refresh()
   }
 
-  private listIssues(): void {
-    const fault = this.drawn.faults[0]
-    const fix = (command: string) => {
-      const typed = /^TYPE (\d+) AS (\w+)$/.exec(command)
-      return h(
-        'button',
-        {
-          onclick: () =>
-            void this.act([typed ? { do: 'type', lines: [Number(typed[1])], type: typed[2] } : { do: 'run', command }]),
-        },
-        command,
-      )
-    }
-    // A doubt is ended by what is proposed, or by what is there.
-    const sure = (c: Check) => {
-      const [id] = c.about.lines
-      const type = this.proposed.get(id) ?? this.drawn.lines.find((l) => l[0] === id)?.[3]
-      return /doubtful|oblique|untyped/.test(c.about.kind) && type
-        ? [`TYPE ${id} AS ${letter(type, this.drawn.section)}`]
-        : []
-    }
-    this.issues.replaceChildren(
-      ...(fault ? [h('div', { class: 'bad' }, `line ${fault.line}: ${fault.text}`)] : []),
-      ...this.checks.slice(0, 5).map((c) =>
-        h(
-          'div',
-          {
-            class: 'issue',
-            onpointerenter: () => this.choosePart(c),
-            tabindex: 0,
-            onfocus: () => this.choosePart(c),
-          },
-          c.text,
-          ' ',
-          ...[...new Set([...c.fixes, ...sure(c)])].map(fix),
-        ),
-      ),
-      ...(this.checks.length > 5 ? [h('div', { class: 'quiet' }, `and ${this.checks.length - 5} more`)] : []),
-    )
-  }
-
-  private choosePart(c: Check): void {
+  choosePart(c: Check): void {
     this.chosen = new Set([...c.about.lines.map((l) => `l${l}`), ...c.about.points.map((p) => `p${p}`)])
     this.paint()
   }
 
   // Pointers.
 
-  private at(e: { clientX: number; clientY: number }): Place {
-    const box = this.svg.getBoundingClientRect()
-    return [e.clientX - box.left, e.clientY - box.top]
+  /** True while a chain is drawn. */
+  get chaining(): boolean {
+    return this.chain.length > 0
   }
 
-  private down(e: PointerEvent): void {
-    if (this.drawn.object === null) return
-    this.svg.focus({ preventScroll: true })
-    const at = this.at(e)
-    if (e.pointerType === 'pen') this.pen = performance.now()
-    if (e.pointerType === 'touch') {
-      // A palm comes with the pen, and is larger than a finger.
-      if (this.pen && (performance.now() - this.pen < PALM || Math.max(e.width, e.height) > 60)) return
-      this.touches.set(e.pointerId, at)
-      if (this.touches.size === 2) {
-        this.pressed = null
-        return
-      }
-    }
-    const target = e.target as Element
-    this.svg.setPointerCapture(e.pointerId)
-    const press = (kind: NonNullable<typeof this.pressed>['kind'], more: Facts = {}) =>
-      (this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, ...more })
-    const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
-    const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
-    if (e.button === 2 && this.chain.length) {
-      press('none')
-      return this.endChain()
-    }
-    if (e.button !== 0 || (e.pointerType === 'touch' && this.pen)) press('pan')
-    else if (axis) press('axis', { axis, angles: [...this.drawn.angles] })
-    else if (mark && !this.chain.length) {
-      press('none')
-      this.openMark(mark)
-    } else if (this.tool === 'draw') press('draw')
-    else {
-      const hit = this.painter.hit(at, this.drawn, REACH)
-      const key = hit.point ? `p${hit.point}` : hit.line ? `l${hit.line}` : ''
-      if (!e.shiftKey && !this.chosen.has(key)) this.chosen.clear()
-      if (key) this.chosen.add(key)
-      press(hit.point ? 'move' : key ? 'none' : 'pan', { what: hit.point })
-      this.paint()
-    }
+  /** A dimension under the pointer: its planes are lit. */
+  light(mark: Mark | null): void {
+    if (mark === this.lit) return
+    this.lit = mark
+    this.paint()
   }
 
-  private move(e: PointerEvent): void {
-    const at = this.at(e)
-    if (e.pointerType === 'touch' && this.touches.has(e.pointerId)) {
-      if (this.touches.size === 2) return this.pinch(e.pointerId, at)
-      this.touches.set(e.pointerId, at)
-    }
-    if (e.pointerType === 'pen') this.pen = performance.now()
-    const pressed = this.pressed
-    if (pressed) {
-      const [dx, dy] = [at[0] - pressed.at[0], at[1] - pressed.at[1]]
-      pressed.moved ||= Math.hypot(at[0] - pressed.from[0], at[1] - pressed.from[1]) > CLICK
-      pressed.at = at
-      if (!pressed.moved) return
-      if (pressed.kind === 'pan') {
-        this.page.pan(dx, dy)
-        return this.paint()
-      }
-      if (pressed.kind === 'move')
-        return this.dragging.push({ point: pressed.what!, at: this.rounded(this.page.from(at)) })
-      if (pressed.kind === 'axis') return this.turnAxis(at)
-      if (pressed.kind === 'none') return
-    } else {
-      const hit = this.painter.hit(at, this.drawn, REACH)
-      this.hoveredLine = hit.line ?? 0
-      if (hit.point && this.woken.at(-1) !== hit.point)
-        this.woken = [...this.woken.filter((p) => p !== hit.point), hit.point].slice(-4)
-      const name = (e.target as Element).closest('[data-mark]')?.getAttribute('data-mark')
-      const lit = name ? this.markOf(name) : null
-      if (lit !== this.lit) {
-        this.lit = lit
-        this.paint()
-      }
-    }
-    if (this.tool !== 'draw' || this.drawn.object === null) return
-    const start = this.chain.at(-1)?.at ?? (pressed?.kind === 'draw' ? this.page.from(pressed.from) : null)
+  /** Where the next corner would be, of a chain or of a stroke that began somewhere. */
+  point(at: Place, begun: Place | null, free: boolean): void {
     this.pointing.push({
       at: this.page.from(at),
       reach: REACH / this.page.scale,
-      start,
-      free: e.shiftKey,
-      woken: this.woken,
+      start: this.chain.at(-1)?.at ?? begun,
+      free,
+      woken: this.pointer.woken,
     })
   }
 
-  private up(e: PointerEvent): void {
-    this.touches.delete(e.pointerId)
-    const pressed = this.pressed
-    if (!pressed || pressed.id !== e.pointerId) return
-    this.pressed = null
-    const at = this.at(e)
-    if (pressed.kind === 'axis' && pressed.moved)
-      void this.act([{ do: 'axes', axes: pressed.angles!.map((a) => String(Math.round(a))).join(' ') }])
-    if (pressed.kind === 'move' && pressed.moved) this.drop(pressed.what!, at)
-    if (pressed.kind !== 'draw') return
-    const free = e.shiftKey
-    // A drawing during the gesture may scroll the page.
-    if (pressed.moved) void this.stroke(this.page.from(pressed.from), this.page.from(at), free)
-    else void this.click(this.page.from(at), free)
+  /** A point under the pointer that moves it. */
+  drag(point: number, at: Place): void {
+    this.dragging.push({ point, at: this.rounded(this.page.from(at)) })
   }
 
-  private cancel(e: PointerEvent): void {
-    this.touches.delete(e.pointerId)
-    if (this.pressed?.kind === 'move') this.text = null
-    this.pressed = null
+  /** A gesture that the system has ended; a point that was moved is where it was. */
+  dropped(moving: boolean): void {
+    if (moving) this.text = null
     this.refresh()
   }
 
-  private pinch(id: number, now: Place): void {
-    const before = this.touches.get(id)!
-    const other = [...this.touches].find(([k]) => k !== id)![1]
-    const far = (a: Place) => Math.max(10, Math.hypot(a[0] - other[0], a[1] - other[1]))
-    this.page.zoom(far(now) / far(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2])
-    this.page.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2)
-    this.touches.set(id, now)
-    this.paint()
+  axes(angles: number[]): void {
+    void this.act([{ do: 'axes', axes: angles.map((a) => String(Math.round(a))).join(' ') }])
   }
 
   /** A place to what a pixel is worth. */
@@ -620,7 +369,7 @@ export class Board {
       reach: REACH / this.page.scale,
       start,
       free,
-      woken: this.woken,
+      woken: this.pointer.woken,
     })) as Aim
     if (found.why === 'point') return { at: found.at, point: found.point }
     if (found.why === 'line' || found.why === 'mid') return { at: found.at, line: found.line, part: found.part }
@@ -628,7 +377,7 @@ export class Board {
   }
 
   /** A corner of a chain. */
-  private click(at: Place, free: boolean): Promise<unknown> {
+  click(at: Place, free: boolean): Promise<unknown> {
     return this.later(async () => {
       const last = this.chain.at(-1)
       const next = await this.corner(at, last?.at ?? null, free)
@@ -645,7 +394,7 @@ export class Board {
   }
 
   /** A line by pressing at its start and letting go at its end. */
-  private stroke(from: Place, to: Place, free: boolean): Promise<unknown> {
+  stroke(from: Place, to: Place, free: boolean): Promise<unknown> {
     return this.later(async () => {
       const start = await this.corner(from, null, free)
       const end = await this.corner(to, start.at, free)
@@ -686,13 +435,13 @@ export class Board {
     }
   }
 
-  private endChain(): void {
+  endChain(): void {
     this.chain = []
     this.lock = ''
     this.aim(this.aimed)
   }
 
-  private drop(point: number, at: Place): void {
+  drop(point: number, at: Place): void {
     const place = this.rounded(this.page.from(at))
     const near = [...this.painter.places].find(
       ([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH,
@@ -710,24 +459,23 @@ export class Board {
     })
   }
 
-  private turnAxis(at: Place): void {
-    const pressed = this.pressed!
+  turnAxis(axis: string, angles: number[], at: Place): void {
     const [ox, oy] = (this.svg.querySelector<SVGElement>('.triad')!.dataset.origin ?? '0,0').split(',').map(Number)
     const angle = Math.round((Math.atan2(oy - at[1], at[0] - ox) * 180) / Math.PI + 360) % 360
-    pressed.angles![Object.keys(this.drawn.axes).indexOf(pressed.axis!)] = angle
+    angles[Object.keys(this.drawn.axes).indexOf(axis)] = angle
     const r = (angle * Math.PI) / 180
-    this.drawn = { ...this.drawn, axes: { ...this.drawn.axes, [pressed.axis!]: [Math.cos(r), Math.sin(r)] } }
+    this.drawn = { ...this.drawn, axes: { ...this.drawn.axes, [axis]: [Math.cos(r), Math.sin(r)] } }
     this.paint()
-    this.say(`${pressed.axis!.toLowerCase()} axis at ${angle}°`)
+    this.say(`${axis.toLowerCase()} axis at ${angle}°`)
   }
 
   // Dimensions.
 
-  private markOf(name: string): Mark | null {
+  markOf(name: string): Mark | null {
     return [...this.drawn.next, ...this.drawn.marks].find((m) => m.name === name) ?? null
   }
 
-  private openMark(name: string): void {
+  openMark(name: string): void {
     const mark = this.markOf(name)
     if (mark) this.box.open(mark, this.drawn.next.includes(mark))
     this.paint()
@@ -738,7 +486,7 @@ export class Board {
     const { next } = this.drawn
     if (!next.length) {
       this.box.close()
-      this.svg.focus()
+      this.focus()
       return false
     }
     const now = next.findIndex((m) => m.name === this.box.mark?.name)
@@ -758,7 +506,7 @@ export class Board {
         this.openNext(1)
       } else {
         this.box.close()
-        this.svg.focus()
+        this.focus()
       }
     })
   }
@@ -805,14 +553,14 @@ export class Board {
 
   // Types, solids.
 
-  private toConfirm(): number[] {
+  toConfirm(): number[] {
     const doubted = this.checks
       .filter((c) => /doubtful|oblique|untyped/.test(c.about.kind))
       .flatMap((c) => c.about.lines)
     return [...new Set(doubted)].filter((id) => this.drawn.lines.some((l) => l[0] === id && l[4] !== 'user'))
   }
 
-  private confirmNext(): void {
+  confirmNext(): void {
     const all = this.toConfirm()
     const now = all.findIndex((id) => this.chosen.has(`l${id}`))
     if (!all.length) return
@@ -820,10 +568,10 @@ export class Board {
     this.chosen = new Set([`l${id}`])
     this.paint()
     this.say(`line ${id}: X Y Z H P F O set its type and lock it`)
-    this.svg.focus()
+    this.focus()
   }
 
-  private async acceptProposed(): Promise<void> {
+  async acceptProposed(): Promise<void> {
     const found = [...this.proposed].map(([id, type]) => ({
       do: 'type',
       lines: [id],
@@ -834,14 +582,14 @@ export class Board {
   }
 
   /** Makes the body; of several that fit, the one with a number. */
-  private async make(chosen = 0): Promise<void> {
+  async make(chosen = 0): Promise<void> {
     const commands = [...(chosen && this.last?.made ? [] : ['GENERATE FACES']), ...(chosen ? [`CHOOSE ${chosen}`] : [])]
     if (await this.act(commands.map((command) => ({ do: 'run', command, last: true }))))
       this.say('The body is in the model, exact.')
   }
 
   /** Asks for the number of a shape, and makes it. */
-  private askShape(shape: Shape): void {
+  askShape(shape: Shape): void {
     const mark: Mark = {
       name: shape.words,
       text: shape.asks,
@@ -859,7 +607,7 @@ export class Board {
       [],
       (value) =>
         void this.act([{ do: 'run', command: shape.command(value), last: shape.last }]).then((fine) =>
-          fine ? (this.box.close(), this.fit(), this.svg.focus()) : this.box.refuse(),
+          fine ? (this.box.close(), this.fit(), this.focus()) : this.box.refuse(),
         ),
     )
   }
@@ -894,8 +642,8 @@ export class Board {
       if (this.chain.length) {
         this.lock = this.lock === type ? '' : type
         this.aim(this.aimed)
-      } else if (lines.length || this.hoveredLine) {
-        const which = lines.length ? lines : [this.hoveredLine]
+      } else if (lines.length || this.pointer.hoveredLine) {
+        const which = lines.length ? lines : [this.pointer.hoveredLine]
         void this.act(which.map((line) => ({ do: 'type', lines: [line], type: own })))
       } else this.say('a type needs a line: point at one, or choose it')
       return done()

@@ -1,5 +1,6 @@
 // The drawing board's picture: lines with their types, points, dimensions, the triad, what the pointer means.
 
+import { type Hit, hit } from './board_hit'
 import { s, shown } from './dom'
 import type { Facts } from './frame'
 
@@ -57,7 +58,7 @@ export interface Aim extends Facts {
   certainty?: number
 }
 
-type Place = [number, number]
+export type Place = [number, number]
 
 /** The page on the screen: its lower left corner, which stays where it is when the toolbar grows, and pixels of a unit. */
 export class Page {
@@ -312,22 +313,7 @@ export class Painter {
   }
 
   /** The point or line near a place on the screen. */
-  hit([x, y]: Place, d: Drawn, reach: number): { point?: number; line?: number } {
-    let best = reach
-    let found: { point?: number; line?: number } = {}
-    for (const [id, p] of this.places) {
-      const far = Math.hypot(p[0] - x, p[1] - y)
-      if (far <= best) [best, found] = [far, { point: id }]
-    }
-    if (found.point) return found
-    for (const [id, p, q] of d.lines ?? []) {
-      const [a, b] = [this.places.get(p), this.places.get(q)]
-      if (!a || !b) continue
-      const [dx, dy] = [b[0] - a[0], b[1] - a[1]]
-      const t = Math.max(0, Math.min(1, ((x - a[0]) * dx + (y - a[1]) * dy) / Math.max(1e-9, dx * dx + dy * dy)))
-      const far = Math.hypot(a[0] + t * dx - x, a[1] + t * dy - y)
-      if (far <= best) [best, found] = [far, { line: id }]
-    }
-    return found
+  hit(at: Place, d: Drawn, reach: number): Hit {
+    return hit(at, this.places, d.lines, reach)
   }
 }

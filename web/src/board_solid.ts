@@ -79,22 +79,28 @@ export class BoardSolid {
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     this.element.append(this.renderer.domElement, this.fits, this.caption)
     this.scene.add(new AmbientLight(0xffffff, 1.3), this.light, this.parts)
-    const canvas = this.renderer.domElement
-    canvas.addEventListener('pointerdown', (e) => canvas.setPointerCapture(e.pointerId))
-    canvas.addEventListener('pointermove', (e) => {
-      if (!e.buttons) return
-      this.turned = true
-      const azimuth = Math.atan2(this.direction.y, this.direction.x) - e.movementX * 0.01
-      const flat = Math.hypot(this.direction.x, this.direction.y)
-      const elevation = Math.max(-1.5, Math.min(1.5, Math.atan2(this.direction.z, flat) + e.movementY * 0.01))
-      this.direction.set(
-        Math.cos(azimuth) * Math.cos(elevation),
-        Math.sin(azimuth) * Math.cos(elevation),
-        Math.sin(elevation),
-      )
-      this.draw()
-    })
     new ResizeObserver(() => this.draw()).observe(this.element)
+  }
+
+  /** True for a place on the screen that is on the picture. */
+  has({ clientX, clientY }: { clientX: number; clientY: number }): boolean {
+    const box = this.element.getBoundingClientRect()
+    const within = clientX > box.left && clientX < box.right && clientY > box.top && clientY < box.bottom
+    return within && this.caption.textContent !== ''
+  }
+
+  /** Turned by a hand that moves so many pixels. */
+  turn(dx: number, dy: number): void {
+    this.turned = true
+    const azimuth = Math.atan2(this.direction.y, this.direction.x) - dx * 0.01
+    const flat = Math.hypot(this.direction.x, this.direction.y)
+    const elevation = Math.max(-1.5, Math.min(1.5, Math.atan2(this.direction.z, flat) + dy * 0.01))
+    this.direction.set(
+      Math.cos(azimuth) * Math.cos(elevation),
+      Math.sin(azimuth) * Math.cos(elevation),
+      Math.sin(elevation),
+    )
+    this.draw()
   }
 
   /** Seen as the picture is drawn, until a hand turns it. */

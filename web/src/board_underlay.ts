@@ -7,8 +7,9 @@ import { h, s } from './dom'
 const FILL = 0.8
 
 export class Underlay {
+  private readonly image = s('image', { class: 'underlay', opacity: 0.45 })
   /** Below all that is drawn. */
-  readonly image = s('image', { class: 'underlay', opacity: 0.45, 'aria-hidden': 'true' })
+  readonly element = s('svg', { class: 'paper-under', 'aria-hidden': 'true' }, this.image)
   private place: { corner: [number, number]; size: [number, number] } | null = null
 
   constructor(

@@ -392,7 +392,7 @@ shell.tabs.addEventListener('keydown', (e) => {
   next.click()
 })
 
-/** Sheets that say nothing of this model have no tab; the palette still has them. */
+/** Sheets that never said anything of this model have no tab; the palette still has them. */
 function fitTabs(): void {
   const means: Record<string, boolean> = {
     lines: view.mirrored.includes('y'),
@@ -401,8 +401,12 @@ function fitTabs(): void {
     tables: tablesOf(editor).length > 0,
   }
   for (const [name, on] of Object.entries(means)) {
-    const t = shell.tabs.querySelector<HTMLElement>(`[data-sheet=${name}]`)!
-    t.hidden = !on && t.getAttribute('aria-selected') !== 'true'
+    const t = shell.tabs.querySelector<HTMLButtonElement>(`[data-sheet=${name}]`)!
+    const selected = t.getAttribute('aria-selected') === 'true'
+    // One that was shown stays: without it the row of tabs may be lower, and the picture would jump under the hand.
+    if (on) t.dataset.shown = ''
+    t.hidden = t.dataset.shown === undefined && !selected
+    if (!link.still) t.disabled = !on && !selected
   }
 }
 
@@ -643,7 +647,10 @@ Object.assign(window, {
         seen: view.seen(i),
       })),
     positions: (object: string) =>
-      [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
+      [...view.items.entries()]
+        .filter(([, i]) => i.object === object)
+        .sort(([a], [b]) => (a < b ? -1 : 1))
+        .flatMap(([, i]) => Array.from(i.position)),
     text: (file = '') => files.of(file)?.text,
     over: (name: string) => view.drawnOver(name),
     get board() {

@@ -1,4 +1,4 @@
-// The list of objects: found, selected, hidden, renamed, duplicated and deleted, by pointer and by keys.
+// The list of objects: found, selected, hidden, renamed, duplicated, moved and deleted, by pointer and by keys.
 
 import { h, store, stored } from './dom'
 import { type Item, openMenu } from './menu'
@@ -134,6 +134,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
       menu(o.name, event.clientX, event.clientY)
     })
     item.addEventListener('dblclick', () => void act.locate(o.name))
+    if (changeable()) carried(item, o.name)
     item.addEventListener('pointerenter', () => act.hover(o.name))
     item.addEventListener('pointerleave', () => act.hover(''))
     return item
@@ -141,6 +142,50 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
 
   const changeable = () => !act.still && model.program
   const erase = (name: string) => void act.rewrite('delete', { name }, `Delete ${name}`)
+
+  /** Moves a statement before that of another object, or behind it. */
+  const reorder = (name: string, beside: string, behind: boolean) =>
+    void act.rewrite('reorder', { name, beside, behind }, `Move ${name} ${behind ? 'behind' : 'before'} ${beside}`)
+
+  /** The next object of a row's group, up or down, takes its place. */
+  function shift(name: string, down: boolean): void {
+    const rows = items()
+    const at = rows.findIndex((r) => r.dataset.key === name)
+    const other = rows[at + (down ? 1 : -1)]?.dataset.key
+    if (other && !other.startsWith(':')) reorder(name, other, down)
+  }
+
+  /** The row is dragged to another place of the list. */
+  let held = ''
+  function carried(item: HTMLElement, name: string): void {
+    const below = (e: DragEvent) => {
+      const box = item.getBoundingClientRect()
+      return e.clientY > box.top + box.height / 2
+    }
+    const mark = (where: string) => {
+      if (where) item.dataset.drop = where
+      else delete item.dataset.drop
+    }
+    item.draggable = true
+    item.addEventListener('dragstart', (e) => {
+      held = name
+      e.dataTransfer?.setData('text/plain', name)
+    })
+    item.addEventListener('dragend', () => (held = ''))
+    item.addEventListener('dragover', (e) => {
+      if (!held || held === name) return
+      e.preventDefault()
+      mark(below(e) ? 'behind' : 'before')
+    })
+    item.addEventListener('dragleave', () => mark(''))
+    item.addEventListener('drop', (e) => {
+      mark('')
+      if (!held || held === name) return
+      e.preventDefault()
+      e.stopPropagation()
+      reorder(held, name, below(e))
+    })
+  }
 
   /** What can be done with an object. */
   function menu(name: string, x: number, y: number): void {
@@ -156,6 +201,8 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
             keys: 'Ctrl+D',
             run: () => void act.rewrite('duplicate', { name }, `Duplicate ${name}`),
           },
+          { name: 'Move up', keys: 'Alt+↑', run: () => shift(name, false) },
+          { name: 'Move down', keys: 'Alt+↓', run: () => shift(name, true) },
           { name: 'Delete', keys: 'Delete', run: () => erase(name) },
         ]
       : []
@@ -236,7 +283,9 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
       to.focus()
     }
     const group = key.startsWith(':') ? key.slice(1) : ''
-    if (event.key === 'ArrowDown') go(at + 1)
+    if (event.altKey && /^Arrow(Up|Down)$/.test(event.key) && !group && changeable())
+      shift(key, event.key === 'ArrowDown')
+    else if (event.key === 'ArrowDown') go(at + 1)
     else if (event.key === 'ArrowUp') go(at - 1)
     else if (event.key === 'Home') go(0)
     else if (event.key === 'End') go(rows.length - 1)

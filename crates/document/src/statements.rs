@@ -1,8 +1,9 @@
-//! Insertion of new statements into the text.
+//! Statements of the text: inserted, copied, moved.
 
 use crate::document::{Document, ObjectSource};
-use moldloft_diag::{Diagnostic, FileId};
+use moldloft_diag::{Diagnostic, FileId, Severity};
 use moldloft_syntax::sdl::{self, StmtId, StmtKind};
+use std::ops::Range;
 
 impl Document {
     /// Inserts a statement after the last statement of its kind and after those that it depends on,
@@ -89,6 +90,59 @@ impl Document {
         Ok(new)
     }
 
+    /// Moves the statement of an object before that of another one, or behind it, with the comment
+    /// that ends its line.
+    ///
+    /// # Errors
+    /// If one of them is not a statement of its own at the top level of the text, or if the program
+    /// then has a new error, such as a name that is read before it is declared; the model is then
+    /// unchanged.
+    pub fn reorder(&mut self, name: &str, beside: &str, behind: bool) -> Result<(), Diagnostic> {
+        let (moved, _) = self.sole_statement(name)?;
+        let (target, _) = self.sole_statement(beside)?;
+        if moved == target {
+            return Ok(());
+        }
+        if self.modules.get(0).program.is_edited() {
+            let text = self.text();
+            self.set_text(&text);
+            return self.reorder(name, beside, behind);
+        }
+        let program = &self.modules.get(0).program;
+        for (one, id) in [(name, moved), (beside, target)] {
+            if !program[program.body()].contains(&id) {
+                let why = format!("`{one}` cannot be moved, nor another statement beside it");
+                return Err(Diagnostic::error("not-here", why)
+                    .at(program[id].span)
+                    .found("its statement is inside another one".to_string())
+                    .help("edit the text"));
+            }
+        }
+        let before = program.text().to_string();
+        let errors = |document: &Self| -> Vec<Diagnostic> {
+            let all = document.diagnostics().into_iter();
+            all.filter(|d| d.severity == Severity::Error).collect()
+        };
+        let known: Vec<String> = errors(self).into_iter().map(|d| d.message.clone()).collect();
+        let text = moved_beside(
+            &before,
+            program[moved].span.range(),
+            program[target].span.range(),
+            behind,
+        );
+        if text.trim_end() == before.trim_end() {
+            return Ok(());
+        }
+        self.set_text(&text);
+        if let Some(new) = errors(self).into_iter().find(|d| !known.contains(&d.message)) {
+            self.set_text(&before);
+            return Err(Diagnostic::error("not-here", format!("`{name}` cannot be moved there"))
+                .found(new.message.clone())
+                .help("a statement comes after those that it reads"));
+        }
+        Ok(())
+    }
+
     fn is_taken(&self, name: &str) -> bool {
         let program = &self.modules.get(0).program;
         self.registry.get(name).is_some()
@@ -136,6 +190,45 @@ impl Document {
             None => append(&mut text, statement),
         }
         text
+    }
+}
+
+/// The text with one statement moved beside another. One that has its lines for itself takes them
+/// along, with the comment that ends them.
+fn moved_beside(text: &str, moved: Range<usize>, target: Range<usize>, behind: bool) -> String {
+    let line_start = |at: usize| text[..at].rfind('\n').map_or(0, |k| k + 1);
+    let line_end = |at: usize| text[at..].find('\n').map_or(text.len(), |k| at + k);
+    let begins = |at: usize| text[line_start(at)..at].trim().is_empty();
+    let ends = |at: usize| {
+        let rest = text[at..line_end(at)].trim_start();
+        rest.is_empty() || rest.starts_with('#')
+    };
+    let whole = begins(moved.start) && ends(moved.end);
+    let (taken, cut) = if whole {
+        let lines = line_start(moved.start)..line_end(moved.end);
+        (&text[lines.clone()], lines.start..(lines.end + 1).min(text.len()))
+    } else if ends(moved.end) {
+        // Without the blanks that separate it from what is before it.
+        let before = text[..moved.start].trim_end_matches([' ', '\t']).len();
+        (&text[moved.clone()], before..moved.end)
+    } else {
+        let rest = &text[moved.end..];
+        let blank = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+        (&text[moved.clone()], moved.start..moved.end + blank)
+    };
+    let (at, put) = match behind {
+        false if begins(target.start) => (line_start(target.start), format!("{taken}\n")),
+        true if ends(target.end) => (line_end(target.end), format!("\n{taken}")),
+        // Inside of a line, of which a comment would swallow the rest.
+        _ if whole => (if behind { target.end } else { target.start }, format!("\n{taken}\n")),
+        false => (target.start, format!("{taken} ")),
+        true => (target.end, format!(" {taken}")),
+    };
+    if at <= cut.start {
+        [&text[..at], &put, &text[at..cut.start], &text[cut.end..]].concat()
+    } else {
+        [&text[..cut.start], &text[cut.end..at.max(cut.end)], &put, &text[at.max(cut.end)..]]
+            .concat()
     }
 }
 

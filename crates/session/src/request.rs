@@ -255,6 +255,16 @@ pub enum Ask {
         /// The object.
         name: String,
     },
+    /// Moves the statement of an object before that of another one; the reply has the edits.
+    Reorder {
+        /// The object.
+        name: String,
+        /// The other one.
+        beside: String,
+        /// True for behind it.
+        #[serde(default)]
+        behind: bool,
+    },
     /// Renames an object and all its uses; the reply has the edits.
     RenameObject {
         /// Its name.
@@ -290,6 +300,7 @@ impl Ask {
                 | Ask::Add { .. }
                 | Ask::Delete { .. }
                 | Ask::Duplicate { .. }
+                | Ask::Reorder { .. }
                 | Ask::RenameObject { .. }
                 | Ask::Show { .. }
         )

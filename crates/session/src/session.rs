@@ -322,6 +322,9 @@ impl Session {
                 let new = self.rewrite(|d| d.duplicate(&name), frame)?;
                 frame.put("name", new);
             }
+            Ask::Reorder { name, beside, behind } => {
+                self.rewrite(|d| d.reorder(&name, &beside, behind), frame)?;
+            }
             Ask::RenameObject { name, new } => {
                 self.rewrite(|d| d.rename(&name, &new).map(drop), frame)?;
             }

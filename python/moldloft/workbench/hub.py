@@ -45,13 +45,13 @@ ASKED = NEWEST | {
     "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
     "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay",
     "definition", "locate", "rename", "format", "words", "ping",
-    "kinds", "add", "delete", "duplicate", "rename_object",
+    "kinds", "add", "delete", "duplicate", "rename_object", "reorder",
 }  # fmt: skip
 
 #: After these other tabs have something new, too.
 CHANGING = {
     "set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show",
-    "add", "delete", "duplicate", "rename_object", "text", "text_beside",
+    "add", "delete", "duplicate", "rename_object", "reorder", "text", "text_beside",
 }  # fmt: skip
 
 #: Requests about a text, which name its file; that of the model has no name.

@@ -1,6 +1,6 @@
 //! Where drags end, against closed forms.
 
-use crate::viewer::{ask, edited, example, examples, session};
+use crate::viewer::{Viewer, ask, edited, example, examples, opened, session};
 use moldloft_session::Reply;
 use serde_json::{Value, json};
 
@@ -191,6 +191,16 @@ fn noise(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
+/// The objects of a model that can be dragged.
+fn draggable(open: &Reply) -> Vec<String> {
+    let all = open.head["objects"].as_array().unwrap().iter();
+    let class = |o: &Value| o["class"].as_str().unwrap_or_default().to_string();
+    all.filter(|o| o["state"] == "ok")
+        .filter(|o| ["point", "bead", "magnet", "ring"].contains(&class(o).as_str()))
+        .map(|o| o["name"].as_str().unwrap().to_string())
+        .collect()
+}
+
 #[test]
 fn every_drag_of_the_examples_arrives_or_has_a_reason() {
     let soak = std::env::var("MOLDLOFT_SOAK").is_ok_and(|v| v == "1");
@@ -203,14 +213,7 @@ fn every_drag_of_the_examples_arrives_or_has_a_reason() {
         }
         let mut s = session(&text);
         let items = ask(&mut s, json!({"kind": "open"}));
-        let objects: Vec<String> = items.head["objects"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .filter(|o| o["state"] == "ok")
-            .filter(|o| ["point", "bead", "magnet", "ring"].contains(&o["class"].as_str().unwrap()))
-            .map(|o| o["name"].as_str().unwrap().to_string())
-            .collect();
+        let objects = draggable(&items);
         let step = if soak { 1 } else { objects.len().div_ceil(4).max(1) };
         for object in objects.iter().step_by(step) {
             let begin = ask(&mut s, json!({"kind": "drag_begin", "object": object}));
@@ -305,4 +308,63 @@ fn a_view_nearly_along_an_axis_takes_the_point_to_the_hand() {
             assert!((w * w - 8.125).abs() < 0.06, "{tilt} {steps} {y}: {w}");
         }
     }
+}
+
+/// Where each drag ends, whether it arrives or is refused, the picture is that of the text.
+#[test]
+fn a_drag_that_ends_leaves_the_picture_of_its_text() {
+    let soak = std::env::var("MOLDLOFT_SOAK").is_ok_and(|v| v == "1");
+    let mut seed = 11;
+    let (mut moved, mut held) = (0, 0);
+    for (path, text) in examples() {
+        if !soak && !path.ends_with("/naca_duct.sdl") {
+            continue;
+        }
+        let mut s = session(&text);
+        let mut viewer = Viewer::default();
+        let open = ask(&mut s, json!({"kind": "open"}));
+        viewer.take(&open);
+        let objects = draggable(&open);
+        let step = if soak { 1 } else { objects.len().div_ceil(6).max(1) };
+        for object in objects.iter().step_by(step) {
+            // From within the ranges to far beyond them.
+            for size in [0.05, 0.5, 5.0] {
+                let at = ask(&mut s, json!({"kind": "evaluate", "expressions": [object]}));
+                let at = at.head["values"][0]["value"].clone();
+                let Ok(at) = serde_json::from_value::<[f64; 3]>(at) else { continue };
+                let begin = ask(&mut s, json!({"kind": "drag_begin", "object": object}));
+                viewer.take(&begin);
+                if begin.head.get("error").is_some() {
+                    continue;
+                }
+                let size = size * (0.1 + at.iter().map(|x| x.abs()).fold(0.0, f64::max));
+                let mut any = || noise(&mut seed);
+                let basis = [[any(), any(), 0.1], [0.0, 0.1, any()]];
+                for _ in 0..3 {
+                    let target: [f64; 3] = std::array::from_fn(|c| at[c] + size * any());
+                    let to = json!({"kind": "drag_to", "target": target, "basis": basis,
+                        "grain": size / 100.0});
+                    viewer.take(&ask(&mut s, to));
+                }
+                let end = ask(&mut s, json!({"kind": "drag_end", "commit": true}));
+                viewer.take(&end);
+                let refused = end.head.get("error").is_some();
+                let new = if refused { s.text().to_string() } else { edited(s.text(), &end) };
+                if new == text {
+                    held += 1
+                } else {
+                    moved += 1
+                }
+                let fresh = opened(&mut session(&new), 0);
+                assert_eq!(viewer.items.len(), fresh.items.len(), "{path} {object} {size}\n{new}");
+                for (key, drawn) in &fresh.items {
+                    let same = viewer.items.get(key) == Some(drawn);
+                    assert!(same, "{path} {object} {size}: {key}\n{new}");
+                }
+                viewer.take(&ask(&mut s, json!({"kind": "text", "text": text})));
+            }
+        }
+        println!("{path}: {moved} moved, {held} held");
+    }
+    assert!(moved > held);
 }

@@ -80,6 +80,70 @@ fn objects_are_deleted_duplicated_and_renamed() {
 }
 
 #[test]
+fn a_statement_is_moved_beside_another_with_its_comment() {
+    let text = "# A plate\nAbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0);   # the lower edge\n\
+        AbsPoint C(0, 0, 3); # above\nLine l(A, B);\nLine m(A,\n  C);\nAbsPoint D(1, 1, 1);";
+    let mut s = session(text);
+    let mut moved = |name: &str, beside: &str, behind: bool| {
+        let request = json!({"kind": "reorder", "name": name, "beside": beside, "behind": behind});
+        let new = made(&mut s, text, request);
+        // As many statements as before, and the same words.
+        let words = |t: &str| {
+            let mut all: Vec<_> = t.split_whitespace().map(str::to_string).collect();
+            all.sort();
+            all
+        };
+        assert_eq!(words(&new), words(text), "{new}");
+        new
+    };
+    // Whole lines, also of two.
+    let new = moved("m", "l", false);
+    assert!(
+        new.contains("# above\nLine m(A,\n  C);\nLine l(A, B);\nAbsPoint D(1, 1, 1);"),
+        "{new}"
+    );
+    let new = moved("l", "m", true);
+    assert!(
+        new.contains("# above\nLine m(A,\n  C);\nLine l(A, B);\nAbsPoint D(1, 1, 1);"),
+        "{new}"
+    );
+    let new = moved("D", "C", false);
+    assert!(
+        new.contains("edge\nAbsPoint D(1, 1, 1);\nAbsPoint C(0, 0, 3); # above\nLine l"),
+        "{new}"
+    );
+    // Of several in a line.
+    let new = moved("A", "B", true);
+    assert!(
+        new.contains("plate\nAbsPoint B(2, 0, 0);   # the lower edge\nAbsPoint A(0, 0, 0);\n"),
+        "{new}"
+    );
+    let new = moved("B", "A", false);
+    assert!(
+        new.contains("AbsPoint B(2, 0, 0);\nAbsPoint A(0, 0, 0);   # the lower edge\n"),
+        "{new}"
+    );
+    // A comment does not swallow what follows.
+    let new = moved("C", "A", true);
+    assert!(new.contains("A(0, 0, 0);\nAbsPoint C(0, 0, 3); # above\n AbsPoint B"), "{new}");
+    assert_eq!(moved("D", "m", true), text);
+    assert_eq!(moved("A", "A", true), text);
+}
+
+#[test]
+fn a_statement_is_not_moved_where_the_program_would_fail() {
+    let mut s = session(TEXT);
+    let to = |name: &str, beside: &str| json!({"kind": "reorder", "name": name, "beside": beside, "behind": false});
+    assert!(refused(&mut s, to("l", "A")).contains("cannot be moved there"));
+    assert!(refused(&mut s, to("C", "A")).contains("cannot be moved there"));
+    assert!(refused(&mut s, to("nobody", "A")).contains("nobody"));
+    assert_eq!(s.text(), TEXT);
+    let text = "AbsPoint P(0, 0, 0);\nfor (k = 0:3) { AbsPoint q(k, 0, 0); }\n";
+    let reply = ask(&mut session(text), to("P", "q[1]"));
+    assert!(reply.head["error"].as_str().is_some_and(|e| !e.is_empty()), "{}", reply.head);
+}
+
+#[test]
 fn each_kind_has_a_row_for_a_form() {
     let reply = ask(&mut session(""), json!({"kind": "kinds"}));
     let kinds = reply.head["kinds"].as_array().unwrap();

@@ -153,7 +153,9 @@ fn split(at: [f64; 2], a: [f64; 2], w: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// The side on which the dimension line is nearest to the two planes that it measures: from points that a line along
-/// one other axis leads away from, beyond all that is drawn between them.
+/// one other axis leads away from, beyond all that is drawn between them. Planes of which no two points are level on
+/// the third axis, such as those of an eave and of a ridge, are measured from the points of the dimension itself.
+/// `None` for an axis that the view looks along.
 fn beside(
     drawing: &Drawing,
     planes: &Planes,
@@ -165,7 +167,10 @@ fn beside(
     let a = (page.unit)(axis);
     let of_planes = ends.map(|p| planes.plane(axis, p));
     let [Some(first), Some(second)] = of_planes else { return None };
-    let mut best: Option<(f64, UnplacedMark)> = None;
+    let at_end = |p: PointId| places.iter().find(|(id, _)| *id == p).map(|(_, at)| *at);
+    let [Some(begin), Some(end)] = ends.map(at_end) else { return None };
+    // Level pairs, and the dimension's own points.
+    let mut best: [Option<(f64, UnplacedMark)>; 2] = [None, None];
     for across in CoordinateAxis::ALL.into_iter().filter(|w| *w != axis) {
         if drawing.section == Some(across) {
             continue;
@@ -191,20 +196,25 @@ fn beside(
                     }
                 }
             }
-            for (key, &from) in &outer[0] {
-                let Some(&to) = outer[1].get(key) else { continue };
+            let [outer_first, outer_second] = &outer;
+            let level =
+                outer_first.iter().filter_map(|(k, &from)| Some((from, *outer_second.get(k)?)));
+            let own = split(begin, a, w).zip(split(end, a, w));
+            let pairs = level.map(|pair| (0, pair)).chain(own.map(|pair| (1, pair)));
+            for (kind, (from, to)) in pairs {
                 let reach = [from[0].min(to[0]), from[0].max(to[0])];
                 let clear = outermost(drawing, page, [a, w], reach, side);
                 let clear = clear.max(side * from[1]).max(side * to[1]);
                 let cost = (clear - side * from[1]) + (clear - side * to[1]);
                 let row = UnplacedMark { mark: 0, axis, across, side, ends: [from, to], clear };
-                if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9 * cost.abs()) {
-                    best = Some((cost, row));
+                if best[kind].as_ref().is_none_or(|b| cost < b.0 - 1e-9 * cost.abs()) {
+                    best[kind] = Some((cost, row));
                 }
             }
         }
     }
-    best.map(|b| b.1)
+    let [level, own] = best;
+    level.or(own).map(|b| b.1)
 }
 
 /// Maximum extent of a drawing's lines to a side of an axis, between two positions along it.

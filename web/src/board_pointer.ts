@@ -1,0 +1,213 @@
+// Mouse, pen and fingers on the drawing board: what a press is on, and what it becomes.
+
+import type { Board } from './board'
+import type { Mark, Page, Painter, Place } from './board_paint'
+import type { BoardSolid } from './board_solid'
+
+/** Pixels: what a pointer reaches, what is a click, and how long a touch is no palm after a pen, ms. */
+export const REACH = 11
+const [CLICK, PALM] = [5, 500]
+
+type Kind = 'draw' | 'move' | 'pan' | 'turn' | 'axis' | 'none'
+
+interface Press {
+  id: number
+  at: Place
+  from: Place
+  kind: Kind
+  moved: boolean
+  /** The point that moves. */
+  point: number
+  axis: string
+  angles: number[]
+}
+
+/** What pointers do to the board. */
+export type PointerActs = Pick<
+  Board,
+  | 'tool'
+  | 'drawn'
+  | 'chaining'
+  | 'chosen'
+  | 'aim'
+  | 'paint'
+  | 'light'
+  | 'markOf'
+  | 'openMark'
+  | 'endChain'
+  | 'point'
+  | 'click'
+  | 'stroke'
+  | 'drag'
+  | 'drop'
+  | 'dropped'
+  | 'turnAxis'
+  | 'axes'
+>
+
+export class BoardPointer {
+  /** The line under a pointer that is not pressed. */
+  hoveredLine = 0
+  /** Points that were hovered, the last ones last: their extensions are snapped to. */
+  woken: number[] = []
+  private pressed: Press | null = null
+  private readonly touches = new Map<number, Place>()
+  private pen = 0
+
+  constructor(
+    private readonly svg: SVGElement,
+    private readonly page: Page,
+    private readonly painter: Painter,
+    private readonly solid: BoardSolid,
+    private readonly board: PointerActs,
+  ) {
+    const on = (name: string, run: (e: any) => void) => svg.addEventListener(name, run)
+    on('pointerdown', (e) => this.down(e))
+    on('pointermove', (e) => this.move(e))
+    on('pointerup', (e) => this.up(e))
+    on('pointercancel', (e) => this.cancel(e))
+    on('pointerleave', () => board.aim(null))
+    on('contextmenu', (e) => e.preventDefault())
+    // The gesture sets the focus, for instance into a dimension's box.
+    on('mousedown', (e) => e.preventDefault())
+    on('wheel', (e: WheelEvent) => {
+      e.preventDefault()
+      page.zoom(Math.exp(-e.deltaY * 0.0015), this.at(e))
+      board.paint()
+    })
+  }
+
+  /** True while a point is moved. */
+  get moving(): boolean {
+    return this.pressed?.kind === 'move'
+  }
+
+  /** True while something else than a line is under way. */
+  get taken(): boolean {
+    return this.pressed !== null && this.pressed.kind !== 'draw'
+  }
+
+  /** Where the stroke that is being drawn began. */
+  get begun(): Place | null {
+    return this.pressed?.kind === 'draw' && this.pressed.moved ? this.page.from(this.pressed.from) : null
+  }
+
+  private at(e: { clientX: number; clientY: number }): Place {
+    const box = this.svg.getBoundingClientRect()
+    return [e.clientX - box.left, e.clientY - box.top]
+  }
+
+  private down(e: PointerEvent): void {
+    const { board } = this
+    if (board.drawn.object === null) return
+    ;(this.svg as unknown as HTMLElement).focus({ preventScroll: true })
+    const at = this.at(e)
+    if (e.pointerType === 'pen') this.pen = performance.now()
+    if (e.pointerType === 'touch') {
+      // A palm comes with the pen, and is larger than a finger.
+      if (this.pen && (performance.now() - this.pen < PALM || Math.max(e.width, e.height) > 60)) return
+      this.touches.set(e.pointerId, at)
+      if (this.touches.size === 2) {
+        this.pressed = null
+        return
+      }
+    }
+    const target = e.target as Element
+    this.svg.setPointerCapture(e.pointerId)
+    const press = (kind: Kind, more: Partial<Press> = {}) => {
+      this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, point: 0, axis: '', angles: [], ...more }
+    }
+    const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
+    const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
+    if (e.button === 2 && board.chaining) {
+      press('none')
+      return board.endChain()
+    }
+    if (e.button !== 0 || (e.pointerType === 'touch' && this.pen)) press('pan')
+    else if (axis) press('axis', { axis, angles: [...board.drawn.angles] })
+    else if (mark && !board.chaining) {
+      press('none')
+      board.openMark(mark)
+    } else if (board.tool === 'draw') press('draw')
+    else {
+      const hit = this.painter.hit(at, board.drawn, REACH)
+      const key = hit.point ? `p${hit.point}` : hit.line ? `l${hit.line}` : ''
+      if (!e.shiftKey && !board.chosen.has(key)) board.chosen.clear()
+      if (key) board.chosen.add(key)
+      press(hit.point ? 'move' : key ? 'none' : this.solid.has(e) ? 'turn' : 'pan', { point: hit.point ?? 0 })
+      board.paint()
+    }
+  }
+
+  private move(e: PointerEvent): void {
+    const { board, pressed } = this
+    const at = this.at(e)
+    if (e.pointerType === 'touch' && this.touches.has(e.pointerId)) {
+      if (this.touches.size === 2) return this.pinch(e.pointerId, at)
+      this.touches.set(e.pointerId, at)
+    }
+    if (e.pointerType === 'pen') this.pen = performance.now()
+    if (pressed) {
+      const [dx, dy] = [at[0] - pressed.at[0], at[1] - pressed.at[1]]
+      pressed.moved ||= Math.hypot(at[0] - pressed.from[0], at[1] - pressed.from[1]) > CLICK
+      pressed.at = at
+      if (!pressed.moved) return
+      if (pressed.kind === 'pan') {
+        this.page.pan(dx, dy)
+        return board.paint()
+      }
+      if (pressed.kind === 'turn') return this.solid.turn(dx, dy)
+      if (pressed.kind === 'move') return board.drag(pressed.point, at)
+      if (pressed.kind === 'axis') return board.turnAxis(pressed.axis, pressed.angles, at)
+      if (pressed.kind === 'none') return
+    } else this.hover(e, at)
+    if (board.tool !== 'draw' || board.drawn.object === null) return
+    board.point(at, pressed?.kind === 'draw' ? this.page.from(pressed.from) : null, e.shiftKey)
+  }
+
+  private hover(e: PointerEvent, at: Place): void {
+    const { board } = this
+    const hit = this.painter.hit(at, board.drawn, REACH)
+    this.hoveredLine = hit.line ?? 0
+    if (hit.point && this.woken.at(-1) !== hit.point)
+      this.woken = [...this.woken.filter((p) => p !== hit.point), hit.point].slice(-4)
+    const name = (e.target as Element).closest('[data-mark]')?.getAttribute('data-mark')
+    const lit: Mark | null = name ? board.markOf(name) : null
+    board.light(lit)
+    // The tool that selects turns the solid where nothing of the drawing is meant.
+    const turns = board.tool === 'select' && !hit.point && !hit.line && !name && this.solid.has(e)
+    this.svg.style.cursor = turns ? 'grab' : ''
+  }
+
+  private up(e: PointerEvent): void {
+    this.touches.delete(e.pointerId)
+    const { board, pressed } = this
+    if (!pressed || pressed.id !== e.pointerId) return
+    this.pressed = null
+    const at = this.at(e)
+    if (pressed.kind === 'axis' && pressed.moved) board.axes(pressed.angles)
+    if (pressed.kind === 'move' && pressed.moved) board.drop(pressed.point, at)
+    if (pressed.kind !== 'draw') return
+    const free = e.shiftKey
+    // A drawing during the gesture may scroll the page.
+    if (pressed.moved) void board.stroke(this.page.from(pressed.from), this.page.from(at), free)
+    else void board.click(this.page.from(at), free)
+  }
+
+  private cancel(e: PointerEvent): void {
+    this.touches.delete(e.pointerId)
+    const { moving } = this
+    this.pressed = null
+    this.board.dropped(moving)
+  }
+
+  private pinch(id: number, now: Place): void {
+    const before = this.touches.get(id)!
+    const other = [...this.touches].find(([k]) => k !== id)![1]
+    const far = (a: Place) => Math.max(10, Math.hypot(a[0] - other[0], a[1] - other[1]))
+    this.page.zoom(far(now) / far(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2])
+    this.page.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2)
+    this.touches.set(id, now)
+    this.board.paint()
+  }
+}
