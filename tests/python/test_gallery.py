@@ -171,6 +171,26 @@ def below_water(patches: list[moldloft.Surface], n: int = 1500) -> tuple[float, 
     return volume, moment / volume
 
 
+def test_a_yacht_with_twin_shafts_is_one_closed_skin(tmp_path: Path) -> None:
+    """The hull round a shaft against the hull with its hole; the solid by another program."""
+    text = (GALLERY / "twin_shafts.sdl").read_text(encoding="utf-8")
+    m = moldloft.loads(text + "TrimSurf rest(aft, {shaft.hole}, whole = 1, visible = 0);")
+    patches = [f"shaft.{n}[{k}]" for n in ("ring", "strip", "corner") for k in range(1, 5)]
+    assert sum(m[n].area for n in patches) == pytest.approx(m["rest"].area, rel=1e-8)
+    assert m.mesh().closure()["closed_with_lids_and_mirror"]
+    quality = m.mesh().quality()
+    hull = [measures for name, measures in quality.items() if name.startswith(("keel.", "shaft."))]
+    assert len(hull) == 20
+    pytest.importorskip("OCP")
+    from cad_reading import read
+
+    (path,) = m.write(tmp_path / "yacht.step")
+    found = read(path)
+    assert found.valid and found.solids == 1
+    volume = m.eval("mesh.volume")
+    assert abs(found.volume - volume) < 0.02 * volume
+
+
 def test_merchant_ship_floats_as_its_flux_says() -> None:
     m = model("merchant")
     for beam in (24, 28):

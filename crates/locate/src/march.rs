@@ -550,6 +550,13 @@ impl<'a> Crossing<'a> {
                     since = 0;
                     continue;
                 }
+                if let Some(edge) = self.sharp_seam(&last, guess, step, sign) {
+                    if let Some(end) = self.over_edge(&mut all, &start, edge) {
+                        return (all, end);
+                    }
+                    since = 0;
+                    continue;
+                }
                 step *= 0.5;
                 if step < least {
                     return (all, BranchEnd::Tangent);
@@ -575,15 +582,9 @@ impl<'a> Crossing<'a> {
                     self.close(&mut all, &lines, start, sign);
                     return (all, BranchEnd::Closed);
                 }
-                if station.x.distance(last.x) > 1e-12 * self.size {
-                    all.push(station);
+                if let Some(end) = self.over_edge(&mut all, &start, (station, end)) {
+                    return (all, end);
                 }
-                let Some(beyond) = self.beyond_seam(&station, end) else { return (all, end) };
-                if all.len() > 2 && self.same_place(&beyond, &start) {
-                    all.push(start);
-                    return (all, BranchEnd::Closed);
-                }
-                all.push(beyond);
                 since = 0;
                 continue;
             }
@@ -728,6 +729,70 @@ impl<'a> Crossing<'a> {
         })
     }
 
+    /// Continues a branch over the edge at a station; its end, if it ends there.
+    fn over_edge(
+        &self,
+        branch: &mut Vec<TracePoint>,
+        start: &TracePoint,
+        (station, end): (TracePoint, BranchEnd),
+    ) -> Option<BranchEnd> {
+        // It may have begun at the seam, and towards it.
+        if branch.len() > 2 && self.same_place(&station, start) {
+            branch.push(*start);
+            return Some(BranchEnd::Closed);
+        }
+        let last = branch.last().expect("it begins with the start");
+        if station.x.distance(last.x) > 1e-12 * self.size {
+            branch.push(station);
+        }
+        let Some(beyond) = self.beyond_seam(&station, end) else { return Some(end) };
+        if branch.len() > 2 && self.same_place(&beyond, start) {
+            branch.push(*start);
+            return Some(BranchEnd::Closed);
+        }
+        branch.push(beyond);
+        None
+    }
+
+    /// The point on the step to `ahead` at a seam, such as a trailing edge, beyond which the surface turns so much that no point
+    /// of the intersection is ahead.
+    fn sharp_seam(
+        &self,
+        last: &TracePoint,
+        ahead: Unknowns,
+        step: f64,
+        sign: f64,
+    ) -> Option<(TracePoint, BranchEnd)> {
+        let n = self.unknowns();
+        let mut best: Option<(f64, TracePoint, BranchEnd)> = None;
+        for unknown in (0..n).filter(|k| self.closed[*k]) {
+            let (p, q) = (last.q[unknown], ahead[unknown]);
+            let value = f64::from(u8::from(q > 0.5));
+            if (0.0..=1.0).contains(&q) || best.is_some_and(|(s, ..)| s <= (value - p) / (q - p)) {
+                continue;
+            }
+            let share = ((value - p) / (q - p)).clamp(0.0, 1.0);
+            let guess = std::array::from_fn(|k| last.q[k] + share * (ahead[k] - last.q[k]));
+            let Some(mut at) = self.at_line(guess, unknown, value) else { continue };
+            at[unknown] = value;
+            if at[..n].iter().any(|x| *x < -OUTSIDE || *x > 1.0 + OUTSIDE) {
+                continue;
+            }
+            let Some(station) = self.station(at) else { continue };
+            let way = station.x - last.x;
+            let onward = sign * way.dot(last.tangent) >= 0.9 * way.norm() - 1e-12 * self.size;
+            let turn = station.tangent.dot(last.tangent);
+            let end = BranchEnd::Edge { unknown, value };
+            let smooth = self
+                .beyond_seam(&station, end)
+                .is_some_and(|beyond| beyond.tangent.dot(station.tangent) >= CREASE);
+            if onward && !smooth && way.norm() <= 1.5 * step && turn > LARGEST_TURN {
+                best = Some((share, station, end));
+            }
+        }
+        best.map(|(_, station, end)| (station, end))
+    }
+
     /// Continuation of a branch at an edge, if the edge is a seam.
     fn beyond_seam(&self, at: &TracePoint, end: BranchEnd) -> Option<TracePoint> {
         let BranchEnd::Edge { unknown, value } = end else { return None };
@@ -740,8 +805,8 @@ impl<'a> Crossing<'a> {
         q[unknown] = 1.0 - value;
         let station = self.station(q)?;
         let near = station.x.distance(at.x) <= 1e-7 * self.size;
-        // A seam may be a crease.
-        (near && station.tangent.dot(at.tangent) > -0.5).then_some(station)
+        // A seam may be a crease, as sharp as a trailing edge.
+        (near && station.tangent.dot(at.tangent) > -1.0 + 1e-9).then_some(station)
     }
 
     fn same_place(&self, a: &TracePoint, b: &TracePoint) -> bool {

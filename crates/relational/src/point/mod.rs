@@ -2,6 +2,7 @@
 
 mod along;
 mod bead;
+mod boxed;
 mod derived;
 mod framed;
 mod free;
@@ -10,6 +11,7 @@ mod ring;
 
 pub use along::{ArcLenBead, ArcLenRing, CopyBead, CopyMagnet, CopyRing};
 pub use bead::{AbsBead, RelBead};
+pub use boxed::{BoxMagnet, BoxRing};
 pub use derived::{
     BlendPoint, CentroidPoint, CopyPoint, OffsetPoint, RotatPoint, TanPoint, tangent,
 };

@@ -4,6 +4,7 @@
 //! on one of them.
 
 use super::arguments::{Onto, Target};
+use super::branch_order::BranchNumber;
 use super::cut::{Both, Cut, CutJet, CutView, Second};
 use super::outcome::no_intersection;
 use super::pieces::{PieceEnd, at_seam, fitted, laid};
@@ -27,7 +28,9 @@ use std::sync::Arc;
 /// are `x` itself from end to end, so panels on both sides share its vertices.
 ///
 /// A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of the
-/// parameters of the surface declared first. Other branches are reported. The direction is n1 x n2, the product of both
+/// parameters of the surface declared first. Other branches are reported. `branch = {1, 2}` is the first of two branches
+/// in the order along u of the surface that is given first (`along = "v"`: along v), at all values of the parameters:
+/// where there is another number of branches, or another one beside it, an error says so. The direction is n1 x n2, the product of both
 /// normals. The curve extends from edge to edge, or from the magnet `start` to the magnet `end`, each on either
 /// surface and on the intersection, which keep their identity, so that patches join. A closed branch begins at
 /// the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface declared first. Each point
@@ -58,12 +61,19 @@ pub struct Intersection<T: Real> {
     end: Option<Magnet<T>>,
     /// With a plane: selects the parallel plane through this point.
     point: Option<Point<T>>,
+    /// The branch as {number, count}: its number in the order along a parameter of the surface that is given first, and the number
+    /// of all branches.
+    branch: Option<Vec<usize>>,
+    /// The parameter of that order, "u" or "v".
+    along: Option<Arc<str>>,
 }
 
 impl<T: Real> Build<T> for Intersection<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let Self { surface, target, start, end, point } = self;
-        let found = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
+        let Self { surface, target, start, end, point, branch, along } = self;
+        let number = BranchNumber::of(branch, along, [Self::BRANCH, Self::ALONG])?;
+        let select = Selection { ends: [start, end], point, number };
+        let found = cut(&surface, target, select, Self::FIELDS, context)?;
         let in_space = CutView { snake: false, ..found.view(0) };
         let mut curve = CurveRef::new(in_space, context.nesting).with_found(found.report.clone());
         let sides = if found.cut.both.second.surface().is_some() { 2 } else { 1 };
@@ -100,6 +110,11 @@ pub struct IntSnake<T: Real> {
     end: Option<Magnet<T>>,
     /// With a plane: selects the parallel plane through this point.
     point: Option<Point<T>>,
+    /// The branch as {number, count}: its number in the order along a parameter of the surface that is given first, and the number
+    /// of all branches.
+    branch: Option<Vec<usize>>,
+    /// The parameter of that order, "u" or "v".
+    along: Option<Arc<str>>,
 }
 
 impl<T: Real> IntSnake<T> {
@@ -109,7 +124,8 @@ impl<T: Real> IntSnake<T> {
 
 impl<T: Real> Build<T> for IntSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let Self { surface, target, start, end, point } = self;
+        let Self { surface, target, start, end, point, branch, along: order } = self;
+        let number = BranchNumber::of(branch, order, [Self::BRANCH, Self::ALONG])?;
         if let Target::Curve(along) = &target
             && !along.curve.snakes.is_empty()
         {
@@ -118,6 +134,7 @@ impl<T: Real> Build<T> for IntSnake<T> {
                 (start.is_some(), Self::START),
                 (end.is_some(), Self::END),
                 (point.is_some(), Self::POINT),
+                (number.is_some(), Self::BRANCH),
             ];
             if let Some((_, field)) = unused.into_iter().find(|(given, _)| *given) {
                 return Err(CallError::new(
@@ -131,7 +148,8 @@ impl<T: Real> Build<T> for IntSnake<T> {
             }
             return on_surface(&along.curve, &surface.surface, Self::SURFACE, context);
         }
-        let found = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
+        let select = Selection { ends: [start, end], point, number };
+        let found = cut(&surface, target, select, Self::FIELDS, context)?;
         let snake = found.snake(0, context);
         Ok(Value::Curve(snake.with_found(found.report)))
     }
@@ -225,16 +243,23 @@ impl<T: Real> FoundCut<T> {
     }
 }
 
+/// What selects a branch and a part of it.
+struct Selection<T: Real> {
+    ends: [Option<Magnet<T>>; 2],
+    point: Option<Point<T>>,
+    number: Option<BranchNumber>,
+}
+
 /// The intersection, from the arguments of both kinds. Two named surfaces are cut in the order of
 /// their declaration, in whichever order they are given: there is one curve.
 fn cut<T: Real>(
     surface: &Onto<T>,
     target: Target<T>,
-    [start, end]: [Option<Magnet<T>>; 2],
-    point: Option<Point<T>>,
+    select: Selection<T>,
     fields: IntersectionFields,
     context: &Context,
 ) -> Result<FoundCut<T>, CallError> {
+    let Selection { ends: [start, end], point, number } = select;
     let (second, second_start) = match target {
         Target::Plane(plane) => {
             let point = point.map_or(plane.point, |p| p.xyz);
@@ -262,8 +287,12 @@ fn cut<T: Real>(
         starts: [surface.start, second_start],
         ends: [None, None],
         swapped: false,
+        number,
         fields,
     };
+    if let Some(number) = number.filter(|_| request.starts.iter().any(Option::is_some)) {
+        return Err(number.twice());
+    }
     for (k, magnet) in [start, end].into_iter().enumerate() {
         request.ends[k] = magnet.map(|magnet| request.end(magnet, k)).transpose()?;
     }
@@ -287,6 +316,7 @@ struct CutRequest<T: Real> {
     ends: [Option<CutEnd<T>>; 2],
     /// True if the surfaces are in the opposite order to the given one, and so are the ends.
     swapped: bool,
+    number: Option<BranchNumber>,
     fields: IntersectionFields,
 }
 
@@ -439,27 +469,32 @@ fn traced<T: Real>(
     // The parameters that a report states are those of the surface that is given first.
     let given = usize::from(request.swapped);
     let report_at = |q: &Unknowns| vec![q[2 * given], q[2 * given + 1]];
-    let seed = seeds[0].and_then(|uv| crossing.near(uv, seeds[1]));
+    let by_magnet = seeds[0].filter(|_| request.number.is_none());
+    let seed = by_magnet.and_then(|uv| crossing.near(uv, seeds[1]));
     let mut status = SearchStatus::Ok;
     let mut alternatives = Vec::new();
     let branch = match seed.and_then(|q| crossing.branch(q)) {
         Some(branch) => branch,
         None => {
             let found = crossing.branches();
+            let numbered = request.number.map(|n| n.chosen(&found, 2 * given)).transpose()?;
             let mut all = found.branches;
             let from = seeds[0].unwrap_or([0.5, 0.5]);
             let away = |b: &Branch| {
                 let d = |q: &Unknowns| (q[0] - from[0]).powi(2) + (q[1] - from[1]).powi(2);
                 b.stations.iter().map(|s| d(&s.q)).fold(f64::INFINITY, f64::min)
             };
-            let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
+            let nearest = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
+            let chosen = numbered.or(nearest);
             let Some(chosen) = chosen else {
                 if let Some(touch) = found.touches.first() {
                     return Err(touching(touch.x).in_field(fields.target));
                 }
                 return Err(apart(&crossing, from, second.name()).in_field(fields.target));
             };
-            if seeds[0].is_some() {
+            if numbered.is_some() {
+                status = SearchStatus::Ok;
+            } else if seeds[0].is_some() {
                 status = SearchStatus::Fallback;
             } else if all.len() > 1 {
                 let middle = |b: &Branch| b.stations[b.stations.len() / 2];
@@ -549,6 +584,11 @@ fn set_up<T: Real>(
                 (away <= 0.3 * chord.norm() + context.tolerance).then_some((away, i, guess))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
+        let at_seams = seam_at(&branch.stations, x, SEAM * crossing.size);
+        if let Some(i) = at_seams.filter(|_| branch.closed()) {
+            places[k] = Some((i, branch.stations[i]));
+            continue;
+        }
         let station = at.and_then(|(_, i, guess)| {
             let q = crossing.across(guess, x, branch.stations[i].tangent)?;
             let station = crossing.station(q)?;
@@ -582,13 +622,20 @@ fn set_up<T: Real>(
     }
     let mut reversed = false;
     let whole = closed && places[1].is_none();
+    // A closed branch from a seam to the seam, where it may have a corner.
+    let mut at_seam_start = false;
     if closed {
         branch.stations.pop();
         let first_place = match ends[0] {
             None => nearest_station(crossing, &branch.stations, reference.re()),
             Some(_) => places[0],
         };
-        if let Some((i, station)) = first_place {
+        let seam = first_place
+            .and_then(|(_, station)| seam_at(&branch.stations, station.x, SEAM * crossing.size));
+        if let Some(i) = seam {
+            branch.stations.rotate_left(i);
+            at_seam_start = whole;
+        } else if let Some((i, station)) = first_place {
             let count = branch.stations.len();
             branch.stations.rotate_left((i + 1) % count);
             if whole {
@@ -603,8 +650,10 @@ fn set_up<T: Real>(
                 begin_at(&mut branch, station);
             }
         }
-        let begin = branch.stations[0];
-        branch.stations.push(begin);
+        if !at_seam_start {
+            let begin = branch.stations[0];
+            branch.stations.push(begin);
+        }
         if let Some((_, station)) = places[1] {
             cut_after(&mut branch, &station);
         }
@@ -659,7 +708,7 @@ fn set_up<T: Real>(
     };
     let end_place = |k: usize| -> Option<Vec3<T>> {
         let station = [stops.first(), stops.last()][k]?.station;
-        if let Some(end) = ends[k] {
+        if let Some(end) = ends[if at_seam_start { 0 } else { k }] {
             return Some(end.x);
         }
         if whole {
@@ -672,8 +721,9 @@ fn set_up<T: Real>(
     };
     let places = [end_place(0), end_place(1)];
     // A closed branch begins in the plane through its start across its own direction.
-    let shift =
-        ends[0].filter(|_| whole).map(|end| (end.x, Vec3::lifted(stops[0].station.tangent)));
+    let shift = ends[0]
+        .filter(|_| whole && !at_seam_start)
+        .map(|end| (end.x, Vec3::lifted(stops[0].station.tangent)));
     let failed = || lost("a point where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
@@ -705,7 +755,7 @@ fn set_up<T: Real>(
         let level = d.dot(at_end(0, Order::First).ok_or_else(failed)?.x - x);
         let slope = d.re().dot(stops[0].station.tangent);
         offsets = [(level - level.re()) * (-1.0 / slope); 2];
-    } else if whole {
+    } else if whole && (ends[0].is_none() || !at_seam_start) {
         // The branch begins where (X - M) . T is zero; the derivative of this with respect to the
         // length is 1 + (X - M) . k with the curvature k.
         let end = at_end(0, Order::Second).ok_or_else(failed)?;
@@ -800,6 +850,17 @@ fn with_joints<T: Real>(
         stop.joint = lines.iter().find(crosses).copied();
     }
     stops
+}
+
+/// Distance within which a station at a seam is a start, relative to the size.
+const SEAM: f64 = 1e-9;
+
+/// The station beyond a seam, of two at the point `x`, within a distance; the stations are a closed branch.
+fn seam_at(stations: &[TracePoint], x: Vec3, near: f64) -> Option<usize> {
+    let n = stations.len();
+    (0..n).find(|&i| {
+        stations[i].x.distance(x) <= near && at_seam(&stations[(i + n - 1) % n], &stations[i])
+    })
 }
 
 /// The point of a closed branch nearest to `m`, between which stations it is and itself; the last

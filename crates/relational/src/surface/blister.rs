@@ -96,7 +96,7 @@ impl<T: Real> Build<T> for Blister<T> {
         common_surface(&items, |fault, k| fault.in_field([Self::SNAKE, Self::CENTRE][k]))?;
         let surface = snake.surface.clone();
         let key = snake.curve.key;
-        let patch = SubPatch::cap(surface, Side::Snake(snake), Side::Magnet(centre));
+        let patch = SubPatch::cap(surface, [Side::Snake(snake), Side::Magnet(centre)]);
         if !patch.is_closed() {
             return Err(CallError::new("not-closed", "a bump is raised inside a closed snake")
                 .expected("a snake that ends where it begins")

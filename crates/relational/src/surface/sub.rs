@@ -67,15 +67,13 @@ impl<T: Real> Build<T> for SubSurf<T> {
                 .in_field(Self::SIDES));
         }
         let shape = match <[Side<T>; 2]>::try_from(sides) {
-            Ok(ends) => {
-                let corners = [Vec3::zero(); 4];
-                SubPatch { surface, layout: SideLayout::Between(ends), corners }
-            }
+            Ok(ends) => SubPatch::cap(surface, ends),
             Err(sides) => {
                 check_corners(&sides, Self::SIDES)?;
                 let (south, north) = (&sides[0], &sides[2]);
                 let corners = [end(south, 0.0), end(south, 1.0), end(north, 0.0), end(north, 1.0)];
-                SubPatch { surface, layout: SideLayout::Round(sides), corners }
+                let turns = [SeamTurns::default(), SeamTurns::default()];
+                SubPatch { surface, layout: SideLayout::Round(sides), turns, corners }
             }
         };
         shape.check_folds()?;
@@ -96,6 +94,8 @@ enum SideLayout<T: Real> {
 pub struct SubPatch<T: Real> {
     surface: SurfaceRef<T>,
     layout: SideLayout<T>,
+    /// The turns by which the edges v = 0 and v = 1 go on across seams, of a patch between two sides.
+    turns: [SeamTurns; 2],
     /// The corners of the patch: the ends of the edge v = 0, then those of v = 1.
     corners: [Vec3<T>; 4],
 }
@@ -108,6 +108,112 @@ fn place<T: Real, J: Jet<T>>(side: &Side<T>, t: J) -> Vec3<J> {
             let [u, v] = magnet.uv;
             Vec3::new(J::fixed(u), J::fixed(v), J::zero())
         }
+    }
+}
+
+/// True for a side that ends in the point in which it begins, by identity.
+fn closes_by_name<T: Real>(side: &Side<T>) -> bool {
+    let Side::Snake(Snake { curve, .. }) = side else { return true };
+    let one = |curve: &CurveRef<T>| matches!(curve.end_points(), [Some(a), Some(b)] if a == b);
+    let whole = curve.part_of.as_ref().is_some_and(|part| {
+        let [from, to] = part.1.map(|t| t.re());
+        (to - from).abs() == 1.0 && one(&part.0)
+    });
+    one(curve) || whole
+}
+
+/// A crossing of the seam of a closed surface by a side.
+struct SeamCrossing {
+    t: f64,
+    /// Its parameters there, continued from its beginning.
+    at: [f64; 2],
+    /// The turns to add before and after it.
+    before: [f64; 2],
+    after: [f64; 2],
+}
+
+/// The whole turns that continue the parameters of a side beyond the seams of a closed surface, where they jump.
+#[derive(Default)]
+struct SeamTurns {
+    crossings: Vec<SeamCrossing>,
+    /// Turns at the beginning.
+    base: [f64; 2],
+}
+
+/// Distance in t within which a parameter may be on either side of a seam.
+const NEAR_SEAM: f64 = 1e-7;
+
+impl SeamTurns {
+    /// The turns of both sides of a patch; those of the second side begin nearest to the first.
+    fn of_band<T: Real>(surface: &SurfaceRef<T>, sides: &[Side<T>; 2]) -> [Self; 2] {
+        let closed = surface.closed();
+        if closed == [false; 2] {
+            return [Self::default(), Self::default()];
+        }
+        let [first, mut last] = sides.each_ref().map(|side| Self::of(side, closed));
+        let place = |k: usize, t: f64| {
+            let turns: &Self = [&first, &last][k];
+            let w = end(&sides[k], t).re().to_array();
+            let by = turns.shift(t, [w[0], w[1]]);
+            [w[0] + by[0], w[1] + by[1]]
+        };
+        let mut base = [0.0; 2];
+        for a in 0..2 {
+            let ways = [0, 1].map(|k| place(k, 1.0)[a] - place(k, 0.0)[a]);
+            let jumps = !(first.crossings.is_empty() && last.crossings.is_empty());
+            let round = ways[0].round() != 0.0 && ways[0].round() == ways[1].round();
+            if closed[a] && jumps && round {
+                base[a] = (place(0, 0.0)[a] - place(1, 0.0)[a]).round();
+            }
+        }
+        last.base = base;
+        for crossing in &mut last.crossings {
+            for a in 0..2 {
+                crossing.at[a] += base[a];
+                crossing.before[a] += base[a];
+                crossing.after[a] += base[a];
+            }
+        }
+        [first, last]
+    }
+
+    fn of<T: Real>(side: &Side<T>, closed: [bool; 2]) -> Self {
+        let Side::Snake(snake) = side else { return Self::default() };
+        let mut all = Self::default();
+        let mut turns = [0.0; 2];
+        let breaks = snake.curve.breaks();
+        for t in breaks.into_iter().filter(|t| *t > NEAR_SEAM && *t < 1.0 - NEAR_SEAM) {
+            let [a, b] = [-1.0, 1.0].map(|s| end(side, t + s * NEAR_SEAM).re().to_array());
+            let jump = [0, 1].map(|k| if closed[k] { (a[k] - b[k]).round() } else { 0.0 });
+            if jump == [0.0; 2] {
+                continue;
+            }
+            let before = turns;
+            turns = [0, 1].map(|k| turns[k] + jump[k]);
+            let at = [0, 1].map(|k| {
+                let x = a[k] + before[k];
+                if jump[k] == 0.0 { x } else { x.round() }
+            });
+            all.crossings.push(SeamCrossing { t, at, before, after: turns });
+        }
+        all
+    }
+
+    /// The turns to add to the parameters `w` at `t`.
+    fn shift(&self, t: f64, w: [f64; 2]) -> [f64; 2] {
+        let mut turns = self.base;
+        for crossing in &self.crossings {
+            if t > crossing.t + NEAR_SEAM {
+                turns = crossing.after;
+            } else if t >= crossing.t - NEAR_SEAM {
+                let off = |by: [f64; 2]| {
+                    (0..2).map(|k| (w[k] + by[k] - crossing.at[k]).abs()).fold(0.0, f64::max)
+                };
+                let later = off(crossing.after) < off(crossing.before);
+                turns = if later { crossing.after } else { crossing.before };
+            }
+        }
+        turns
     }
 }
 
@@ -128,9 +234,9 @@ const TRIALS: usize = 8;
 
 impl<T: Real> SubPatch<T> {
     /// The patch between two sides of a surface.
-    pub fn cap(surface: SurfaceRef<T>, first: Side<T>, last: Side<T>) -> Self {
-        let layout = SideLayout::Between([first, last]);
-        Self { surface, layout, corners: [Vec3::zero(); 4] }
+    pub fn cap(surface: SurfaceRef<T>, sides: [Side<T>; 2]) -> Self {
+        let turns = SeamTurns::of_band(&surface, &sides);
+        Self { surface, layout: SideLayout::Between(sides), turns, corners: [Vec3::zero(); 4] }
     }
 
     /// The parent surface.
@@ -146,9 +252,21 @@ impl<T: Real> SubPatch<T> {
     /// Parameters on the edges v = 0 and v = 1.
     fn along_u<J: Jet<T>>(&self, u: J) -> [Vec3<J>; 2] {
         match &self.layout {
-            SideLayout::Between([first, last]) => [place(first, u), place(last, u)],
+            SideLayout::Between(sides) => [0, 1].map(|k| self.turned(&sides[k], k, u)),
             SideLayout::Round(sides) => [place(&sides[0], u), place(&sides[2], u)],
         }
+    }
+
+    /// The point at `t` of side `k` of a patch between two sides.
+    fn turned<J: Jet<T>>(&self, side: &Side<T>, k: usize, t: J) -> Vec3<J> {
+        let mut w = place(side, t);
+        if !self.turns[k].crossings.is_empty() || self.turns[k].base != [0.0; 2] {
+            let plain = w.map(|x| x.value().re());
+            let [u, v] = self.turns[k].shift(t.value().re(), [plain.x, plain.y]);
+            w.x = w.x + u;
+            w.y = w.y + v;
+        }
+        w
     }
 
     /// Parameters on the edges u = 0 and u = 1 of a patch with sides there.
@@ -194,25 +312,26 @@ impl<T: Real> SubPatch<T> {
 const AT_SEAM: f64 = 1e-9;
 
 impl<T: Real> SubPatch<T> {
-    /// True if both sides are closed: at one point object, or around the seam of a closed surface.
+    /// True if both sides are closed: at one point, or around the seam of a closed surface.
     pub fn is_closed(&self) -> bool {
         let SideLayout::Between(sides) = &self.layout else { return false };
         let round = seam::joined_sides(&self.surface);
-        let spans = sides.each_ref().map(|side| [0.0, 1.0].map(|t| end(side, t).re().to_array()));
+        let spans = [0, 1]
+            .map(|k| [0.0, 1.0].map(|t| self.turned(&sides[k], k, T::from(t)).re().to_array()));
         let way = |k: usize, a: usize| spans[k][1][a] - spans[k][0][a];
         let meets = |a: usize| {
             let (first, last) = (way(0, a), way(1, a));
             let turn = if round[a] { first.round().clamp(-1.0, 1.0) } else { 0.0 };
             (first - turn).abs().max((last - turn).abs()) <= AT_SEAM
         };
-        let by_name = sides.iter().all(|side| match side {
-            Side::Snake(_) => matches!(ends(side), [Some(a), Some(b)] if a == b),
-            Side::Magnet(_) => true,
-        });
         let on_edge = |x: f64| x == 0.0 || x == 1.0;
-        let at_seam = |a: usize| round[a] && spans.iter().flatten().all(|w| on_edge(w[a]));
-        let turned = (0..2).any(|a| at_seam(a) && way(0, a).abs() == 1.0);
-        meets(0) && meets(1) && (by_name || turned)
+        // From the seam to the seam, which is one line.
+        let at_seam = |k: usize| {
+            (0..2).any(|a| {
+                round[a] && spans[k].iter().all(|w| on_edge(w[a])) && way(k, a).abs() == 1.0
+            })
+        };
+        meets(0) && meets(1) && (0..2).all(|k| closes_by_name(&sides[k]) || at_seam(k))
     }
 
     /// Error for a patch with a folded parameter plane: det(w_u, w_v) must not change its sign.
@@ -430,7 +549,7 @@ impl<T: Real> SubPatch<T> {
     /// A default side: straight in the parameter plane between the ends `end` of two given sides,
     /// or a part of the surface's edge if it is on one.
     fn implied(&self, sides: [&Side<T>; 2], points: [Option<Key>; 2], end: f64) -> Edge<T> {
-        let [p, q] = sides.map(|side| place(side, T::from(end)));
+        let [p, q] = [0, 1].map(|k| self.turned(sides[k], k, T::from(end)));
         for (k, on) in [0.0, 1.0, 1.0, 0.0].into_iter().enumerate() {
             let split = |w: Vec3<T>| if k % 2 == 0 { (w.y, w.x) } else { (w.x, w.y) };
             let ((across_p, from), (across_q, to)) = (split(p), split(q));

@@ -157,6 +157,16 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                 _ => format!("{magnet}, 0.2*w, -{t}"),
             }
         }
+        "BoxMagnet" | "BoxRing" => {
+            let surface = p.surface();
+            let mut at = |u: f64, v: f64| {
+                let (u, v) = (p.number(u - 0.02, u + 0.02), p.number(v - 0.02, v + 0.02));
+                p.object("AbsMagnet", &format!("{surface}, {u}, {v}"))
+            };
+            let [a, b, c] = [at(0.5, 0.5), at(0.7, 0.45), at(0.55, 0.7)];
+            let ring = p.object("ConicSnake", &format!("{a}, {b}, {c}"));
+            format!("{ring}, {}, margin = 0.5*w", 1 + p.random.below(4))
+        }
         "AbsBead" => format!("{}, {t}", p.curve()),
         "RelBead" => {
             let curve = p.curve();
