@@ -349,7 +349,7 @@ class Floating:
             for heel in heels
         ]
         found = self._floating(rows, cg, density, gravity, "both", by, accuracy, flooded=True)
-        if found and all(math.isnan(state.gz) for state in found):
+        if found and all(state.gz is not None and math.isnan(state.gz) for state in found):
             upright = ("displacement", float(displacement), float(trim), 0.0, free_trim, False)
             self._floating([upright], cg, density, gravity, "both", by, accuracy)
         return RightingCurve(found)
