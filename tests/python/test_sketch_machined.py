@@ -27,13 +27,10 @@ BOUND = 1e-7
 #: resolve, and bores that touch a bar's side from inside in one point.
 NEAR = {("ball", -1e-4), ("ball", 1e-4), ("groove", -1e-4), ("groove", 1e-4), ("breakout", 0.0)}
 
-#: Sizes at which the pole of a ball is on the circle in which it touches a cylinder.
-POLES = {"ball slot": (5, 8)}
-
 
 @pytest.mark.parametrize("family", MACHINED)
 def test_machined_parts_are_those_of_occt(family: str) -> None:
-    for k in range(1000) if SOAK else (0, *POLES.get(family, ())):
+    for k in range(1000 if SOAK else 1):
         part = MACHINED[family](Sizes(f"{family} {k}"))
         volume, area = measures(part.solid)
         sketch = Sketch()
