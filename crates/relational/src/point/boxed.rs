@@ -206,7 +206,7 @@ impl<T: Real> SnakeBox<T> {
                 if upper {
                     high[a] += step;
                 } else {
-                    low[a] = low[a] - step;
+                    low[a] -= step;
                 }
             }
         }

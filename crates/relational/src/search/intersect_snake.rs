@@ -72,7 +72,7 @@ impl<T: Real> Build<T> for Intersection<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, target, start, end, point, branch, along } = self;
         let number = BranchNumber::of(branch, along, [Self::BRANCH, Self::ALONG])?;
-        let select = Selection { ends: [start, end], point, number };
+        let select = BranchSelection { ends: [start, end], point, number };
         let found = cut(&surface, target, select, Self::FIELDS, context)?;
         let in_space = CutView { snake: false, ..found.view(0) };
         let mut curve = CurveRef::new(in_space, context.nesting).with_found(found.report.clone());
@@ -148,7 +148,7 @@ impl<T: Real> Build<T> for IntSnake<T> {
             }
             return on_surface(&along.curve, &surface.surface, Self::SURFACE, context);
         }
-        let select = Selection { ends: [start, end], point, number };
+        let select = BranchSelection { ends: [start, end], point, number };
         let found = cut(&surface, target, select, Self::FIELDS, context)?;
         let snake = found.snake(0, context);
         Ok(Value::Curve(snake.with_found(found.report)))
@@ -244,7 +244,7 @@ impl<T: Real> FoundCut<T> {
 }
 
 /// What selects a branch and a part of it.
-struct Selection<T: Real> {
+struct BranchSelection<T: Real> {
     ends: [Option<Magnet<T>>; 2],
     point: Option<Point<T>>,
     number: Option<BranchNumber>,
@@ -255,11 +255,11 @@ struct Selection<T: Real> {
 fn cut<T: Real>(
     surface: &Onto<T>,
     target: Target<T>,
-    select: Selection<T>,
+    select: BranchSelection<T>,
     fields: IntersectionFields,
     context: &Context,
 ) -> Result<FoundCut<T>, CallError> {
-    let Selection { ends: [start, end], point, number } = select;
+    let BranchSelection { ends: [start, end], point, number } = select;
     let (second, second_start) = match target {
         Target::Plane(plane) => {
             let point = point.map_or(plane.point, |p| p.xyz);
