@@ -1620,6 +1620,60 @@ def TanMagnet(
         AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.5, 0.5); TanMagnet q(p, 0.5, -0.25);
     """
     ...
+def BoxMagnet(
+    name: str,
+    /,
+    snake: _Snake,
+    corner: _Integer,
+    edge: _Integer | None = ...,
+    margin: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """A corner of the box round a snake: 1 is the low u and the low v, 2 the high u and the low v, 3 the high u and the high v, 4 the low u
+    and the high v.
+
+    The sides of the box are parameter lines of the surface. They keep a distance from the snake, in both directions the same in
+    space, and stay off the edges of the surface: the box is between the snake and the edges for every size of the snake. The snake is closed,
+    or begins and ends on one edge of the surface, which is then a side of the box.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The snake.
+    corner : integer
+        The corner. 1 to 4.
+    edge : integer, optional
+        The edge of the surface on which the snake begins and ends: 1 is v = 0, 2 is u = 1, 3 is
+        v = 1, 4 is u = 0. 0: it is closed. At most 4, default 0.
+    margin : number, optional
+        Distance of the box from the snake, as a fraction of the snake's size. Default 0.5.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.5, 0.5); AbsMagnet q(S, 0.6, 0.5); AbsMagnet r(S, 0.5, 0.7); ConicSnake s(p, q, r); BoxMagnet c(s, 1); BoxMagnet d(s, 3); LineSnake diagonal(c, d);
+    """
+    ...
 def IntRing(
     name: str,
     /,
@@ -1801,6 +1855,63 @@ def ProxRing(
     In the language::
 
         AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsPoint P(1, 3, 1); ProxRing r(s, P);
+    """
+    ...
+def BoxRing(
+    name: str,
+    /,
+    snake: _Snake,
+    corner: _Integer,
+    edge: _Integer | None = ...,
+    margin: _Number | None = ...,
+    side: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The ring of a snake that faces a corner of the box round it: on the straight line of the parameter plane from the middle of the
+    snake to the corner.
+
+    The rings of the four corners divide the snake into the parts that face the sides of the box; side k is from corner k to the next.
+    The snake begins in one of these parts, and the rings keep a distance from its beginning.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The snake.
+    corner : integer
+        The corner. 1 to 4.
+    edge : integer, optional
+        The edge of the surface on which the snake begins and ends, as of the corner's magnet.
+        0: it is closed. At most 4, default 0.
+    margin : number, optional
+        Distance of the box from the snake, as of the corner's magnet. Default 0.5.
+    side : integer, optional
+        The side of the box that the beginning of a closed snake faces. 0: as it is at the
+        values of the parameters. At most 4, default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.5, 0.5); AbsMagnet q(S, 0.6, 0.5); AbsMagnet r(S, 0.5, 0.7); ConicSnake s(p, q, r); BoxMagnet c(s, 1); BoxRing t(s, 1); LineSnake spoke(t, c);
     """
     ...
 def Line(
@@ -3104,6 +3215,8 @@ def Intersection(
     start: _Magnet | None = ...,
     end: _Magnet | None = ...,
     point: _Point | None = ...,
+    branch: Sequence[_Integer] | _Array | _Any | None = ...,
+    along: _Text | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -3124,7 +3237,9 @@ def Intersection(
     are `x` itself from end to end, so panels on both sides share its vertices.
 
     A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of the
-    parameters of the surface declared first. Other branches are reported. The direction is n1 x n2, the product of both
+    parameters of the surface declared first. Other branches are reported. `branch = {1, 2}` is the first of two branches
+    in the order along u of the surface that is given first (`along = "v"`: along v), at all values of the parameters:
+    where there is another number of branches, or another one beside it, an error says so. The direction is n1 x n2, the product of both
     normals. The curve extends from edge to edge, or from the magnet `start` to the magnet `end`, each on either
     surface and on the intersection, which keep their identity, so that patches join. A closed branch begins at
     the point nearest to the magnet or, without one, to S(0.3, 0.4) of the surface declared first. Each point
@@ -3148,6 +3263,11 @@ def Intersection(
         End.
     point : point, optional
         With a plane: selects the parallel plane through this point.
+    branch : list of integer, optional
+        The branch as {number, count}: its number in the order along a parameter of the surface
+        that is given first, and the number of all branches.
+    along : text, optional
+        The parameter of that order, "u" or "v".
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes
@@ -3918,6 +4038,8 @@ def IntSnake(
     start: _Magnet | None = ...,
     end: _Magnet | None = ...,
     point: _Point | None = ...,
+    branch: Sequence[_Integer] | _Array | _Any | None = ...,
+    along: _Text | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -3953,6 +4075,11 @@ def IntSnake(
         End.
     point : point, optional
         With a plane: selects the parallel plane through this point.
+    branch : list of integer, optional
+        The branch as {number, count}: its number in the order along a parameter of the surface
+        that is given first, and the number of all branches.
+    along : text, optional
+        The parameter of that order, "u" or "v".
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v).
     **attributes

@@ -10,7 +10,7 @@ from moldloft import _core
 __all__ = ["picture", "routines"]
 
 _ROUTINE = re.compile(r"(?:subroutine|function (\w+)) (\w+)\((.*)\) \{$")
-_ARGUMENT = re.compile(r"(returned )?(\w+) (\w+)(\.\.\.)?$")
+_ARGUMENT = re.compile(r"(returned )?(\w+) (\w+)(\.\.\.)?(?: = (.+))?$")
 _MEANING = re.compile(r"^- (\w+): (.*)$", re.MULTILINE)
 _ARRAY = re.compile(r"\b(?:curve|surface) (\w+)\[")
 
@@ -61,13 +61,13 @@ def routines() -> list[dict[str, Any]]:
 def _field(text: str, said: dict[str, str]) -> dict[str, Any]:
     found = _ARGUMENT.match(text)
     assert found is not None, text
-    returned, kind, name, many = found.groups()
+    returned, kind, name, many, default = found.groups()
     return {
         "name": name,
         "class": kind,
         "many": bool(many),
-        "required": not many,
-        "default": None,
+        "required": not many and default is None,
+        "default": default,
         "help": ("Filled by the routine. " if returned else "") + said[name],
     }
 
