@@ -47,7 +47,9 @@ impl<T: Real> Build<T> for ExpandedSurf<T> {
         ends.push(1.0);
         for end in ends {
             let begin = places[places.len() - 1];
-            places.extend((1..=PARTS).map(|k| begin + (end - begin) * k as f64 / PARTS as f64));
+            places.extend((1..PARTS).map(|k| begin + (end - begin) * k as f64 / PARTS as f64));
+            // Exactly, so that breaks are recognized.
+            places.push(end);
         }
         check(&surface, &places)?;
         let mut plate = Plate { surface, frame, stations: Vec::new(), edges: Edges::own() };
