@@ -264,10 +264,9 @@ class Stability:
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
     def loll(self, most: float = math.pi) -> float | None:
-        """The angle of loll.
+        """Angle of loll, the smallest positive heel at which the arm changes to righting.
 
-        The smallest positive heel at which the arm changes from overturning to righting. ``None``
-        for a body that is stable upright, or without such a heel up to ``most``.
+        ``None`` for a body that is stable upright, or without such a heel up to ``most``.
 
         Parameters
         ----------

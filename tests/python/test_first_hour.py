@@ -115,6 +115,7 @@ def test_a_first_mistake_is_explained(
 
 def test_negative_values_need_no_equals_sign(tmp_path: Path, cli: Run) -> None:
     words = ["--displacement", "10", "--cg", "-1,0,-2", "--density", "1", "--gz", "-10,10,3"]
+    words += ["--fixed", "trim"]
     assert "GZ" in cli("hydro", HULL, *words).stdout.replace("gz", "GZ")
 
 

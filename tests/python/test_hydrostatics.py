@@ -135,7 +135,6 @@ def test_a_hull_without_a_bottom_has_no_figures(cli, model_file):
     asked = [
         model.hydrostatics,
         lambda: model.hydrostatics(draft=0.2),
-        lambda: model.righting_curve([0.1, 0.2], 0.5, cg=(2, 0, 0), density=1),
         lambda: model.eval("hydrostatics.volume"),
         lambda: model.derivatives(["hydrostatics.volume"], by=["a.z"]),
         lambda: moldloft.loads(BOTTOMLESS + "float v = hydrostatics.volume;"),
@@ -143,6 +142,8 @@ def test_a_hull_without_a_bottom_has_no_figures(cli, model_file):
     for ask in asked:
         with pytest.raises(moldloft.ModelError, match=r"(?s)open below the water.*`side`"):
             ask()
+    with pytest.raises(moldloft.ModelError, match="immersed open edge"):
+        model.righting_curve([0.1, 0.2], 0.5, cg=(2, 0, 0), density=1)
     model.partial = True
     state = model.hydrostatics()
     assert state.partial and state.open_edges == 1 and state.bounds == {}

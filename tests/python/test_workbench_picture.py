@@ -341,7 +341,7 @@ def test_files_are_dropped_on_the_picture(bench: Callable[..., Bench], tmp_path:
     b = bench(SIDES, "sides.sdl")
     b.page.evaluate(DROP, ["other.sdl", PLATE])
     b.until(lambda: b.text() == PLATE)
-    b.page.locator(".status").get_by_text("other.sdl has taken").wait_for()
+    b.page.locator(".status").get_by_text("other.sdl has replaced").wait_for()
     b.page.keyboard.press("Control+z")
     b.until(lambda: b.text() == SIDES)
     b.page.evaluate(DROP, ["part.skt", "SKETCH A\n"])

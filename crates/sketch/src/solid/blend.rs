@@ -701,7 +701,7 @@ impl BlendStrip {
     fn has(&self, p: Vec3) -> bool {
         match self.kind {
             BlendStripKind::Quad(ring) => {
-                let normal = super::combine::newell(&ring);
+                let normal = super::facet_source::newell(&ring);
                 let size = normal.norm();
                 (0..4).all(|k| {
                     let (a, b) = (ring[k], ring[(k + 1) % 4]);

@@ -1,8 +1,8 @@
 //! Bodies that chamfers and fillets take away or add: the section beside an edge, moved along it or turned
 //! about an axis, and the corner round the ball where three fillets meet.
 
-use super::combine::newell;
 use super::curve::SmoothPiece;
+use super::facet_source::newell;
 use super::meshing::by_angle;
 use super::surface::FaceSurface;
 use super::{CombinedMesh, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};

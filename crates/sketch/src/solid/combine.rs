@@ -8,7 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
-use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
+use super::facet_source::{FacetSource, ON_SURFACE, along, moves, newell, settled};
 use super::joined_round::{joined_surface, seams, shared_surfaces};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
@@ -460,13 +460,6 @@ fn along_normal<T: Real>(
 
 /// The loops of a facet, and the edge of the body for each side.
 pub(super) type LoopsAndTags = (Vec<Vec<u32>>, Vec<Vec<u32>>);
-
-/// Newell's normal: twice the vector area.
-pub(super) fn newell<T: Real>(ring: &[Vec3<T>]) -> Vec3<T> {
-    let first = ring[0];
-    (1..ring.len().saturating_sub(1))
-        .fold(Vec3::zero(), |s, k| s + (ring[k] - first).cross(ring[k + 1] - first))
-}
 
 /// The triangles of loops of numbered points.
 pub(super) fn triangles_of(

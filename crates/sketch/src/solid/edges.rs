@@ -111,7 +111,7 @@ impl<T: Real> SketchSolid<T> {
                         way
                     })
                     .collect();
-                let Some(normal) = super::combine::newell(&ring).normalized() else {
+                let Some(normal) = super::facet_source::newell(&ring).normalized() else {
                     return FaceForm::Other;
                 };
                 FaceForm::Plane { at: ring[0], normal }

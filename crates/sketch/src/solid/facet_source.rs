@@ -92,3 +92,10 @@ pub(super) fn settled<T: Real>(
     let foot = left.norm() <= share * size && along(du) + along(dv) <= ON_SURFACE * size;
     (near(at[0]) && near(at[1]) && foot).then_some(at)
 }
+
+/// Newell's normal: twice the vector area.
+pub(super) fn newell<T: Real>(ring: &[Vec3<T>]) -> Vec3<T> {
+    let first = ring[0];
+    (1..ring.len().saturating_sub(1))
+        .fold(Vec3::zero(), |s, k| s + (ring[k] - first).cross(ring[k + 1] - first))
+}

@@ -4,8 +4,9 @@
 //! is halved at the edge's own point, one within a round face at the surface's, in both facets beside it, so the mesh
 //! stays closed. Plane faces are divided into triangles again between their finer borders.
 
-use super::combine::{newell, triangles_of};
+use super::combine::triangles_of;
 use super::edges::FaceForm;
+use super::facet_source::newell;
 use super::facet_source::{along, settled};
 use super::surface::{Carrier, FaceSurface, meet};
 use super::{CombinedMesh, SketchSolid};

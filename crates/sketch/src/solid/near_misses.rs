@@ -536,7 +536,7 @@ fn element<'a, T: Real>(
             let (mut rest, mut twice) = (&corners[..], Vec3::zero());
             for cycle in loops {
                 let (ring, more) = rest.split_at(cycle.len());
-                (rest, twice) = (more, twice + super::combine::newell(ring));
+                (rest, twice) = (more, twice + super::facet_source::newell(ring));
             }
             twice.norm() / (2.0 * size).max(f64::MIN_POSITIVE)
         }

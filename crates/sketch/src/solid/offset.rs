@@ -285,7 +285,7 @@ fn outward_normal<T: Real>(body: &SketchSolid<T>, face: usize, p: Vec3<T>) -> Op
             // The loop's orientation determines the outward side.
             let ring: Vec<Vec3<T>> =
                 body.faces[face].loops[0].iter().flat_map(|&h| body.run(h)).collect();
-            let sum = super::combine::newell(&ring);
+            let sum = super::facet_source::newell(&ring);
             let middle =
                 ring.iter().fold(Vec3::<f64>::zero(), |s, q| s + (q.re() - axis.foot(*q).re()));
             Some(if sum.re().dot(middle) > 0.0 { radial } else { -radial })

@@ -39,7 +39,7 @@ pub(super) fn moved_section<T: Real>(
         return None;
     };
     let way: Vec<Vec3<T>> = face.loops[0].iter().flat_map(|&h| section.run(h)).collect();
-    let plane = super::combine::newell(&way).normalized()?;
+    let plane = super::facet_source::newell(&way).normalized()?;
     let mut sides: BTreeMap<usize, MovedSide<T>> = BTreeMap::new();
     let mut at_vertex: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for &h in face.loops.iter().flatten() {

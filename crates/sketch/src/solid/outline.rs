@@ -284,7 +284,7 @@ impl<T: Real> SketchSolid<T> {
                 let newell = |ring: &Vec<u32>| {
                     let ring: Vec<Vec3> =
                         ring.iter().map(|v| outline.points[*v as usize].re()).collect();
-                    super::combine::newell(&ring).normalized().unwrap_or_default()
+                    super::facet_source::newell(&ring).normalized().unwrap_or_default()
                 };
                 let normals = outline.strips.iter();
                 let normals = normals.map(|own| own.iter().map(|(l, _)| newell(&l[0])).collect());

@@ -201,7 +201,7 @@ fn caps<T: Real>(
     let reach = |c: &Vec<usize>| {
         let points = c.iter().map(|s| sides[*s].piece.at(T::zero()).re());
         let all: Vec<Vec3> = points.collect();
-        super::combine::newell(&all).norm()
+        super::facet_source::newell(&all).norm()
     };
     cycles.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
     let start = cycles

@@ -5,7 +5,8 @@
 //! intersecting bodies: it keeps the volume of winding number one or more, so that a hole that a
 //! dimension moves half out of the body becomes a notch, and a hole outside it disappears.
 
-use super::combine::{CombineError, newell, resolved, unclear};
+use super::combine::{CombineError, resolved, unclear};
+use super::facet_source::newell;
 use super::outline::Outline;
 use super::{FacetPart, SketchSolid, SolidFace};
 use crate::FaceId;
