@@ -198,7 +198,7 @@ def halves(n: Sizes) -> Tool:
     r = n(6, 15)
     kind = n.pick("rod", "cone", "ball", "ring")
     both = []
-    plane, off = n.pick("x", "y", "z"), n(-4, 4)
+    plane, off = n.pick("x", "y", "z"), n(-2.5, 2.5)
     for k in "AB":
         made = {
             "rod": lambda k: rod(k, "z", r, (0.0, 0.0, -20.0), 40.0),

@@ -109,7 +109,7 @@ pub(super) fn fair_data_under<T: Real>(
     }
     let space = MovingSpace { space: &layout.space, knots: &knots };
     let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
-    let wanted = layout.data(points);
+    let wanted = layout.moving_data(points, at, &sites);
     // Change of the control points for which the curve of `of` follows the data at the sites while
     // knots and sites move.
     let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {

@@ -21,6 +21,8 @@ pub struct InterpolationSpace {
     pub sites: Vec<f64>,
     /// The sites as combinations of the data.
     sources: SparseRows,
+    /// Sites without a datum are on the polynomial through the data of their row of `sources`.
+    polynomial: bool,
     /// Datum of each site.
     pub owner: Vec<Option<usize>>,
     /// The parameter of each datum.
@@ -97,6 +99,7 @@ impl InterpolationSpace {
             space,
             sites: at.to_vec(),
             sources: SparseRows::identity(n),
+            polynomial: true,
             owner: (0..n).map(Some).collect(),
             at: at.to_vec(),
             marks: Vec::new(),
@@ -245,8 +248,21 @@ impl InterpolationSpace {
         let space = Space::open(KnotVector::new(degree, knots)?)?;
         let rows = values(&space, &sites);
         let (at, first, thin) = (at.to_vec(), None, None);
-        let mut layout =
-            Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first, thin };
+        let polynomial = held.is_empty();
+        let mut layout = Self {
+            space,
+            sites,
+            sources,
+            polynomial,
+            owner,
+            at,
+            marks,
+            rows,
+            site_of,
+            knot_of,
+            first,
+            thin,
+        };
         if !held.is_empty() {
             layout.sources = layout.tangent_sources(&held)?;
         }
@@ -353,6 +369,7 @@ impl InterpolationSpace {
             space,
             sites: at.clone(),
             sources: SparseRows::identity(n),
+            polynomial: true,
             owner: (0..n).map(Some).collect(),
             at,
             marks: Vec::new(),
@@ -399,6 +416,41 @@ impl InterpolationSpace {
                 entries.fold(Vec3::zero(), |s, (&c, &f)| s + points[c as usize].map(|x| x * f))
             })
             .collect()
+    }
+
+    /// The sites of data at parameters that carry derivatives, whose real parts are those of the
+    /// layout; `sites` are the parameters of the sites (see [`Self::moving`]).
+    pub(crate) fn moving_data<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        at: &[T],
+        sites: &[T],
+    ) -> Vec<Vec3<T>> {
+        let mut out = self.data(points);
+        let short = |k: &usize| self.polynomial && self.sources.row(*k).0.len() > 1;
+        for k in (0..out.len()).filter(short) {
+            let (columns, t) = (self.sources.row(k).0, sites[k]);
+            let places: Vec<T> =
+                columns.iter().map(|&c| self.place(at, c as usize, columns)).collect();
+            let mut moved = Vec3::zero();
+            for (j, &c) in columns.iter().enumerate() {
+                let others = (0..columns.len()).filter(|&i| i != j);
+                let factor = others.fold(T::one(), |product, i| {
+                    product * ((t - places[i]) / (places[j] - places[i]))
+                });
+                moved += points[c as usize].map(|x| x * factor);
+            }
+            out[k] = Vec3::lifted(out[k].re()) + (moved - Vec3::lifted(moved.re()));
+        }
+        out
+    }
+
+    /// The parameter of a datum of a piece, that of the first break of a closed curve being 0 or 1.
+    fn place<T: Real>(&self, at: &[T], datum: usize, piece: &[u32]) -> T {
+        let Some(first) = self.first else { return at[datum] };
+        let ends = datum == first && !piece.contains(&(((first + 1) % at.len()) as u32));
+        let turn = if datum < first || ends { T::one() } else { T::zero() };
+        at[datum] - at[first] + turn
     }
 
     /// The data at breaks.
@@ -546,7 +598,7 @@ impl InterpolationSpace {
         at: &[T],
     ) -> Result<(Vec<Vec3<T>>, Vec<T>), FairError> {
         let (sites, knots) = self.moving(at);
-        let wanted = self.data(points);
+        let wanted = self.moving_data(points, at, &sites);
         let real: Vec<Vec3<f64>> = wanted.iter().map(|p| p.re()).collect();
         let control = self.through(&real)?;
         let space = MovingSpace { space: &self.space, knots: &knots };

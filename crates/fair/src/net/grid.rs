@@ -631,7 +631,9 @@ pub fn fair_grid_with<T: Real>(
         sv.iter().map(|&t| spaces[1].value(t)).collect::<Vec<_>>(),
     ];
     let values = products(&bases[0], &bases[1], nv);
-    let wanted = data.sites(points)?;
+    let wanted = GridData::both(points, data.columns(), |d, line| {
+        Ok(data.layouts[d].moving_data(line, at[d], [&su, &sv][d]))
+    })?;
     // By how much control points must change so that the surface of `of` follows the data at the
     // sites while knots and sites move.
     let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
