@@ -198,7 +198,10 @@ def halves(n: Sizes) -> Tool:
     r = n(6, 15)
     kind = n.pick("rod", "cone", "ball", "ring")
     both = []
-    plane, off = n.pick("x", "y", "z"), n(-2.5, 2.5)
+    plane, off = n.pick("x", "y", "z"), n(-4, 4)
+    if kind == "ring" and plane == "z":
+        # The plane meets the tube.
+        off *= (r / 2 - 0.5) / 4
     for k in "AB":
         made = {
             "rod": lambda k: rod(k, "z", r, (0.0, 0.0, -20.0), 40.0),
