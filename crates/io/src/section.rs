@@ -98,7 +98,12 @@ mod tests {
         let error = read_aerofoil(short).unwrap_err();
         assert_eq!((error.place, error.found.as_str()), (FilePosition::Line(2), "6 points"));
         assert_eq!(read_aerofoil(b"X\n1 0\n0 0 0\n").unwrap_err().place, FilePosition::Line(3));
-        assert!(read_aerofoil(b"X\n0 0\n1 0\n2 0\n3 1\n4 1\n").unwrap_err().found.contains("leading edge"));
+        assert!(
+            read_aerofoil(b"X\n0 0\n1 0\n2 0\n3 1\n4 1\n")
+                .unwrap_err()
+                .found
+                .contains("leading edge")
+        );
         assert!(read_aerofoil(b"").is_err());
     }
 }
