@@ -123,9 +123,10 @@ quick: $(VENV)/.with-tests ## format, lints and some tests, two minutes; CRATE=n
 test: setup check ## every check and test
 	@$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-check: setup $(if $(WEB),$(NODE_MODULES)) ## formatting, lints, types, the Rust tests and those of the page's parts
+check: setup $(if $(WEB),$(NODE_MODULES)) ## formatting, lints, links of the documentation, types, the Rust tests and those of the page's parts
 	@cargo fmt --all --check
 	@cargo clippy --quiet --workspace --all-targets -- -D warnings
+	@RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
 	@cargo test --quiet --workspace --exclude moldloft-py --no-fail-fast
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --quiet --check

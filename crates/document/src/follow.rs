@@ -1,6 +1,6 @@
 //! The least change of chosen numbers that brings conditions to zero.
 //! Each step solves, with exact derivatives, a linear least-squares problem within the ranges
-//! (Stark and Parker, Computational Statistics 10, 1995); a condition weighs [`CONDITION`] times
+//! (Stark and Parker, Computational Statistics 10, 1995); a condition weighs `CONDITION` times
 //! the change of a number over its whole range. Conditions that can be met within the ranges are
 //! met with the convergence of Newton's method; otherwise the result is the closest approach.
 

@@ -13,7 +13,7 @@
 //!   points.
 //! - [`Job`]: a curve to be faired with its conditions: [`Limit`] (balls, boxes, one direction, one
 //!   plane; per control point), `marks` (intended breaks), [`EndContinuity`]s, weights.
-//! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
+//! - [`KnotJumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
 //!   [`with_findings`] takes them into account.
 //! - [`knot_removal()`]: the classical method, knots removed and re-inserted one by one, the worst
 //!   first, with a log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and

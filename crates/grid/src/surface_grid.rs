@@ -18,13 +18,13 @@ pub struct SurfaceGrid<T> {
 /// An edge of a grid, by the index that is constant along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GridSide {
-    /// s[1,]
+    /// `s[1,]`
     FirstI,
-    /// s[m,]
+    /// `s[m,]`
     LastI,
-    /// s[,1]
+    /// `s[,1]`
     FirstJ,
-    /// s[,n]
+    /// `s[,n]`
     LastJ,
 }
 
@@ -203,7 +203,7 @@ impl<T: Real> SurfaceGrid<T> {
     }
 }
 
-/// The grid of four edges, its inside unset: `edges` are s[1,], s[m,], s[,1] and s[,n], each in
+/// The grid of four edges, its inside unset: `edges` are `s[1,]`, `s[m,]`, `s[,1]` and `s[,n]`, each in
 /// ascending index.
 ///
 /// # Errors

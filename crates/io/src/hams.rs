@@ -25,7 +25,7 @@ pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteErr
 /// The file of the lids, HAMS's `WaterplaneMesh.pnl`; `None` for a mesh without lids.
 ///
 /// # Errors
-/// As for [`write`].
+/// As for [`write()`].
 pub fn write_lids(mesh: &Mesh, options: PanelFileOptions) -> Result<Option<Vec<u8>>, WriteError> {
     let mut builder = TopologyBuilder::new();
     let lids = mesh.patches().iter().filter(|p| p.info.tag == Tag::Lid && !p.faces.is_empty());

@@ -15,7 +15,8 @@
 //! | OFF | [`off::write`] | [`off::read`] |
 //! | Gmsh | [`msh::write`] | – |
 //! | SU2 | [`su2::write`] | – |
-//! | hexahedra of SU2, Gmsh, blockMesh | [`hexahedra::su2`], [`hexahedra::gmsh`], [`hexahedra::block_mesh`] | – |
+//! | hexahedra of SU2, Gmsh | [`hexahedra::su2`], [`hexahedra::gmsh`] | – |
+//! | OpenFOAM | [`openfoam::block_mesh`], [`openfoam::poly_mesh`] | – |
 //! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |

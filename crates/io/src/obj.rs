@@ -18,10 +18,10 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     write_with(mesh, &LinesAndPoints::default())
 }
 
-/// As [`write`], with polylines (`l`) and points (`p`) after the faces.
+/// As [`write()`], with polylines (`l`) and points (`p`) after the faces.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_with(mesh: &Mesh, strands: &LinesAndPoints) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let mut used = vec![false; mesh.positions().len()];

@@ -5,7 +5,7 @@
 //! towards a side beyond which a neighbour continues. If the distance is convex over a pair there
 //! is one minimum, found by a descent within the pair. Other pairs are halved. So on curves whose
 //! pieces are exact (see [`crate::pieces`]) no intersection is missed; contacts are resolved to
-//! [`SMALLEST`] of the size. Without an intersection, the same search with the smallest distance as
+//! `SMALLEST` of the size. Without an intersection, the same search with the smallest distance as
 //! its bound finds the nearest points; for parallel curves it finds one such pair.
 
 use crate::newton::NewtonResult;

@@ -290,7 +290,7 @@ impl Panelling {
         self.measured
     }
 
-    /// Its counts, for [`Self::like`].
+    /// Its counts, for panels with the same counts.
     pub fn nominal(&self) -> Nominal {
         let counts = self.structure.patches.iter().map(|frame| {
             let edges = std::array::from_fn(|k| match &frame.runs[k] {

@@ -2,7 +2,7 @@
 //! iterators of the same names.
 //!
 //! Threads do not survive `fork`, which is how `multiprocessing` starts processes on Linux up to Python 3.13: a child that
-//! waited for its parent's pool would wait for ever. So every loop ends in [`pool::in_pool`], and no other crate calls Rayon.
+//! waited for its parent's pool would wait for ever. So every loop ends in `pool::in_pool`, and no other crate calls Rayon.
 //!
 //! Rayon without threads would work too, but its generic code, instantiated for each closure, is a
 //! fortieth of the page's engine. Methods of Rayon used by a crate must exist in both `many` and

@@ -236,7 +236,7 @@ pub fn knot_removal(job: &Job, options: &KnotRemovalOptions) -> Result<KnotRemov
 /// of the job, across all passes.
 ///
 /// # Errors
-/// As [`local`].
+/// As [`knot_removal`].
 pub fn knot_removal_from(
     job: &Job,
     from: Vec<Vec3<f64>>,
@@ -393,7 +393,7 @@ pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>
 /// the same order, and their moves follow the input. Real parts are the bits of the log.
 ///
 /// # Errors
-/// [`FairError`] as for [`local`].
+/// [`FairError`] as for [`knot_removal`].
 pub fn replay_with<T: Real>(
     job: &Job,
     options: &KnotRemovalOptions,

@@ -17,7 +17,7 @@ pub enum Mode {
     KnotRemoval(KnotRemovalOptions),
     /// Number of sweeps over all points; see [`sweeps`].
     Sweeps(Measure, usize),
-    /// Number of multilevel cycles; see [`levels`].
+    /// Number of multilevel cycles; see [`multilevel`](crate::multilevel).
     Multilevel(Measure, usize),
 }
 
@@ -97,7 +97,7 @@ pub fn numbers(
 /// Fairs a curve and reports.
 ///
 /// # Errors
-/// [`FairError`] as for [`optimum`] and [`local`].
+/// [`FairError`] as for [`optimum`] and [`knot_removal`](crate::knot_removal).
 ///
 /// # Example
 /// ```

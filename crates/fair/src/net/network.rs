@@ -414,7 +414,7 @@ impl Network {
     ///
     /// # Errors
     /// [`FairError::TooLarge`] beyond that ([`Network::sweeps`] is for such nets); others as for
-    /// [`crate::optimum`]. [`Bound::BezierExtraction`] is for nets only.
+    /// [`crate::optimum`]. [`Bound::Bezier`] is for nets only.
     pub fn optimum(
         &self,
         measure: Measure,

@@ -217,7 +217,7 @@ fn halves(sides: &[Interval; 3]) -> impl Iterator<Item = [Interval; 3]> + '_ {
 /// Certified integrals over the part of a set that is within a box, about its middle.
 ///
 /// # Errors
-/// A box without volume; [`FieldError::Cancelled`].
+/// A box without volume; [`FieldError::Spent`].
 ///
 /// # Example
 /// ```

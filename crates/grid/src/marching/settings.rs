@@ -54,7 +54,7 @@ pub struct Hyperbolic<T> {
     /// The distances of the layers from the wall, the first 0. The first cell is kept everywhere; further out
     /// heights are means, since volumes are smoothed.
     pub heights: Vec<T>,
-    /// At the edges s[1,], s[m,], s[,1], s[,n]; of a curve the first two.
+    /// At the edges `s[1,]`, `s[m,]`, `s[,1]`, `s[,n]`; of a curve the first two.
     pub sides: [MarchBoundary; 4],
     /// Factor of the smoothing where lines converge: 1 suits nearly every wall, 0 is none.
     pub smoothing: f64,

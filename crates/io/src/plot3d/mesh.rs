@@ -25,7 +25,7 @@ pub(crate) fn structured_patches(mesh: &Mesh) -> Result<Vec<(&str, &Block)>, Wri
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when some patch has no grid; positions that are not finite; blocks that
-/// the variant cannot hold, see [`write`].
+/// the variant cannot hold, see [`write()`].
 pub fn write_mesh(mesh: &Mesh, variant: Variant) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let grid = |(_, b): (&str, &Block)| {
@@ -40,7 +40,7 @@ pub fn write_mesh(mesh: &Mesh, variant: Variant) -> Result<Vec<u8>, WriteError> 
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite; blocks that the
-/// variant cannot hold, see [`write`].
+/// variant cannot hold, see [`write()`].
 pub fn write_blocks(blocks: &Blocks, variant: Variant) -> Result<Vec<u8>, WriteError> {
     check_blocks(blocks, f64::MAX)?;
     let grids = blocks.blocks().iter().map(|b| {

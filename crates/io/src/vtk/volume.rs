@@ -14,7 +14,7 @@ fn vertices(block: &HexBlock) -> impl Iterator<Item = u32> + '_ {
     across.flat_map(move |(j, k)| (0..nu).map(move |i| block.at([i, j, k])))
 }
 
-/// The blocks of a volume mesh as files, named as those of [`structured_files`].
+/// The blocks of a volume mesh as files, named as those of [`super::structured_files`].
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite.

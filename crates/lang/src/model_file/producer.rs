@@ -19,7 +19,7 @@ use moldloft_registry::{
 use moldloft_syntax::model_file::{EntryField as Written, FieldKind, Fields, ObjectEntry as Line};
 use std::collections::HashMap;
 
-/// Makes the objects of an [`Extent::Whole`] application.
+/// Makes the objects of an [`moldloft_model::Extent::Whole`] application.
 pub struct Producer<'a, 'g, T: Scalar> {
     /// The parsed file.
     pub source: &'a ModelFileSource,

@@ -73,7 +73,7 @@ pub enum Outcome {
     Built(Key),
     /// A `Variable` or `Formula`: a number without an object.
     Real,
-    /// Not declared, because of this [`RootCause`].
+    /// Not declared, because of this `RootCause`.
     Missing(usize),
 }
 
