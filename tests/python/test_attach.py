@@ -251,7 +251,11 @@ def test_an_intersection_passes_a_sharp_trailing_edge(cut: str) -> None:
 
 def test_a_strut_is_attached_at_its_trailing_edge() -> None:
     """Area of the plate against the foil's, at random values, with one numbering."""
-    text = STRUT + ("attach weld(hull, strut, strut.u0, side = 2);")
+    text = STRUT + (
+        "attach weld(hull, strut, strut.u0, side = 2);"
+        "SubSurf blade({weld.rim, strut.v1}, divisions = {32, 4});"
+        "SubSurf stub({weld.rim, strut.v0}, visible = 0);"
+    )
     model = moldloft.loads(text)
     rng = np.random.default_rng(5)
     faces = None
@@ -260,15 +264,17 @@ def test_a_strut_is_attached_at_its_trailing_edge() -> None:
         inside = abs(np.sum(foil[:-1, 0] * foil[1:, 1] - foil[1:, 0] * foil[:-1, 1])) / 2
         area = sum(model[name].area for name in PATCHES)
         assert area == pytest.approx(24 - inside, rel=1e-7)
+        # The tip is at two thirds of the strut from the hull.
+        assert model["blade"].area == pytest.approx(2 * model["stub"].area, rel=1e-8)
+        assert model["blade"].area == pytest.approx(model["strut"].area * 2 / 3, rel=1e-8)
         mesh = model.mesh()
         faces = mesh.faces if faces is None else faces
         assert np.array_equal(mesh.faces, faces)
         assert not model.junctions()
-        # The plate's border and the hole are open.
-        open_edges = {
-            (e["patch"], e["edge"]) for e in mesh.closure()["edges"] if "ring" in e["patch"]
-        }
-        assert open_edges == {(f"weld.ring[{k}]", "v = 0") for k in (1, 2, 3, 4)}
+        # The plate's border and the strut's tip alone are open.
+        open_edges = {(e["patch"], e["edge"]) for e in mesh.closure()["edges"]}
+        assert not any("ring" in patch for patch, _ in open_edges)
+        assert {edge for patch, edge in open_edges if patch == "blade"} == {"v = 1"}
         model.set(
             {
                 "chord": rng.uniform(0.7, 1.4),

@@ -89,6 +89,9 @@ pub(super) struct CutPiece<T> {
     pub joint: bool,
 }
 
+/// Rounding of a parameter at an edge of a surface.
+const EDGE_ROUNDING: f64 = 1e-12;
+
 /// A cubic in powers of y.
 pub(super) type Guide = [Vec3; 4];
 
@@ -138,6 +141,17 @@ impl<T: Real> CutPiece<T> {
         let ([value, _], [_, slope]) = (polynomial(&self.run, y), polynomial(&plain, y));
         let rest = value - run;
         T::from(y) - (rest - rest.re()) / slope
+    }
+
+    /// The unknowns with those that rounding has moved across an edge of their surface back on it:
+    /// beyond the edge there may be the other side of a sharp seam.
+    fn within_edges(&self, unknowns: [T; 4]) -> [T; 4] {
+        std::array::from_fn(|k| {
+            let (x, middle) = (unknowns[k], self.places[0][k]);
+            let beyond = x.re() - x.re().clamp(0.0, 1.0);
+            let crossed = (0.0..=1.0).contains(&middle) && beyond.abs() < EDGE_ROUNDING;
+            if crossed { x - beyond } else { x }
+        })
     }
 }
 
@@ -377,6 +391,7 @@ impl<T: Real> Cut<T> {
         let pair = |q: [T; 4]| flat([q[2 * side], q[2 * side + 1]], T::one());
         let plain_jet = [pair(q.map(T::from)), Vec3::zero(), Vec3::zero()];
         let Some(all) = self.both.unknowns(&piece.guide, q, y) else { return plain_jet };
+        let all = piece.within_edges(all);
         let w = pair(all);
         if order == Order::Zero {
             return [w, Vec3::zero(), Vec3::zero()];
