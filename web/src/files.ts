@@ -10,13 +10,13 @@ import { changed, model, type Remark } from './state'
 const PROGRAM = /\.(sdl|skt|ms2)$/i
 
 /** Endings of CAD files, which are read by the server. */
-const CAD = /\.(step|stp|stpz|iges|igs)$/i
+const CAD = /\.(step|stp|stpz|iges|igs|3dm|brep|brp)$/i
 
 /** Endings of files that are opened from an empty program. */
-export const OPENED = '.sdl,.ms2,.step,.stp,.stpz,.iges,.igs'
+export const OPENED = '.sdl,.ms2,.step,.stp,.stpz,.iges,.igs,.3dm,.brep,.brp'
 
 /** Endings of files that are laid over a model. */
-const LAID = '.stl,.obj,.ply,.off,.gdf,.csv,.txt,.dat,.xyz,.step,.stp,.stpz,.iges,.igs'
+const LAID = '.stl,.obj,.ply,.off,.gdf,.csv,.txt,.dat,.xyz,.step,.stp,.stpz,.iges,.igs,.3dm,.brep,.brp'
 
 /** Formats that hold no surfaces. */
 const FLAT = new Set(['svg', 'png', 'sdl', 'ms2'])

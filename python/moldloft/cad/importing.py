@@ -29,7 +29,7 @@ __all__ = ["UNITS", "load_cad", "program"]
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of length in metres."""
 
-ENDINGS = (".step", ".stp", ".stpz", ".iges", ".igs", ".brep", ".brp")
+ENDINGS = (".step", ".stp", ".stpz", ".iges", ".igs", ".3dm", ".brep", ".brp")
 """The endings of the files that are read."""
 
 

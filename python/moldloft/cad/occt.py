@@ -22,6 +22,7 @@ from moldloft.budget import limits
 from moldloft.cad import identifier, needed
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
+from moldloft.cad.rhino_reading import step_text
 from moldloft.cad.sewing import Sewn, faces_of, is_sheet, map_of
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
@@ -229,8 +230,11 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
     if not data.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
-    text = data.decode("latin-1")
+    text, said = data.decode("latin-1"), list[str]()
+    if path.suffix.lower() == ".3dm":
+        text, said = step_text(path, data)
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
+    source.remarks[:0] = said
     if isinstance(source, StepText) and numbers is not None:
         source = source.only_faces(numbers)
     # OCCT may end the process over an entity that is missing: it gets what needs none.
@@ -247,8 +251,9 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
     if not done and source.remarks:
         raise FileError(f"cannot read `{path}`: {'; '.join(source.remarks)}")
     if not done:
-        kind = "an IGES" if iges else "a STEP"
-        raise FileError(f"cannot read `{path}`: not {kind} file that OCCT takes")
+        kind = {".igs": "an IGES", ".iges": "an IGES", ".3dm": "a 3DM"}
+        what = kind.get(path.suffix.lower(), "a STEP")
+        raise FileError(f"cannot read `{path}`: not {what} file that OCCT takes")
     hollow = 0 if iges else len(re.findall(r"=\s*BREP_WITH_VOIDS\s*\(", text))
     if hollow:
         found.remarks.append(
@@ -280,9 +285,23 @@ def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
             whole = Sewn.of(_compound(sheets), 0.0)
             parts += [whole] if whole.found else [Sewn(sheet) for sheet in sheets]
             _collect(document, parts, found, source.names)
+            _name_curves(found, source.curve_names)
             if whole.found:
                 whole.say(found.remarks, iges=False)
     return found, done
+
+
+def _name_curves(found: Imported, named: list[tuple[str, int, int]]) -> None:
+    """Names the curves as the file does, which OCCT does not say, if they are in its order."""
+    curves = list(found.curves.items())
+    stated = [(degree, count) for _, degree, count in named]
+    if [(c.degrees[0], len(c.points)) for _, c in curves] != stated:
+        return
+    taken = {face.name for face in found.faces}
+    found.curves = {
+        identifier(label or known, taken): curve
+        for (known, curve), (label, _, _) in zip(curves, named, strict=True)
+    }
 
 
 def _transferred(data: bytes, iges: bool, document: Any) -> bool:

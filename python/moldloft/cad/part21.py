@@ -131,6 +131,31 @@ class StepText:
         return {int(n): body.strip() for n, body in found}
 
     @cached_property
+    def curve_names(self) -> list[tuple[str, int, int]]:
+        """Name, degree and number of points of each B-spline in sets of curves, in their order."""
+        sets = re.findall(
+            rf"\bGEOMETRIC_(?:CURVE_)?SET\s*\(\s*{_STRING}\s*,\s*\(([#\d,\s]*)\)", self.text
+        )
+        numbers = [int(n) for held in sets for n in re.findall(r"\d+", held)]
+        wanted = set(numbers)
+        bodies = {
+            int(n): body
+            for n, body in re.findall(rf"#(\d+)\s*=\s*((?:{_STRING}|[^;'])*);", self.text)
+            if wanted and int(n) in wanted
+        }
+        pattern = (
+            rf"B_SPLINE_CURVE(?:_WITH_KNOTS)?\s*\(\s*(?:{_STRING}\s*,)?\s*(\d+)\s*,\s*\(([^)]*)\)"
+        )
+        found = []
+        for n in numbers:
+            body = bodies.get(n, "")
+            if (spline := re.search(pattern, body)) is not None:
+                name = re.search(_STRING, body)
+                label = "" if name is None else _letters(name[0][1:-1])
+                found.append((label, int(spline[1]), spline[2].count("#")))
+        return found
+
+    @cached_property
     def references(self) -> dict[int, list[int]]:
         """References of each entity."""
         return {n: [int(m) for m in re.findall(r"#(\d+)", b)] for n, b in self.entities.items()}

@@ -119,6 +119,10 @@ fn logical(yes: bool) -> &'static str {
 
 /// A curve of two or three coordinates.
 fn curve(file: &mut Part21, c: &Nurbs<1>, coordinates: usize) -> usize {
+    named_curve(file, "", c, coordinates)
+}
+
+fn named_curve(file: &mut Part21, name: &str, c: &Nurbs<1>, coordinates: usize) -> usize {
     let points: Vec<usize> =
         c.points.iter().map(|p| file.point(&p.to_array()[..coordinates])).collect();
     if let [from, to] = points[..]
@@ -126,23 +130,24 @@ fn curve(file: &mut Part21, c: &Nurbs<1>, coordinates: usize) -> usize {
         && c.weights.is_none()
         && c.knots[0] == [0.0, 0.0, 1.0, 1.0]
     {
-        return file.trace([from, to], |file| spline(file, c, &points));
+        return file.trace([from, to], |file| spline(file, name, c, &points));
     }
-    spline(file, c, &points)
+    spline(file, name, c, &points)
 }
 
-fn spline(file: &mut Part21, c: &Nurbs<1>, points: &[usize]) -> usize {
+fn spline(file: &mut Part21, name: &str, c: &Nurbs<1>, points: &[usize]) -> usize {
+    let name = text(name);
     let closed = logical(c.points.first() == c.points.last());
     let (degree, points) = (c.degrees[0], list(points));
     let [times, knots] = knots_of(&c.knots[0]);
     let Some(weights) = &c.weights else {
         return file.add(format!(
-            "B_SPLINE_CURVE_WITH_KNOTS('',{degree},{points},.UNSPECIFIED.,{closed},.F.,{times},{knots},.UNSPECIFIED.)"
+            "B_SPLINE_CURVE_WITH_KNOTS({name},{degree},{points},.UNSPECIFIED.,{closed},.F.,{times},{knots},.UNSPECIFIED.)"
         ));
     };
     let weights = reals(weights.iter().copied());
     file.add(format!(
-        "(BOUNDED_CURVE()B_SPLINE_CURVE({degree},{points},.UNSPECIFIED.,{closed},.F.)B_SPLINE_CURVE_WITH_KNOTS({times},{knots},.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE({weights})REPRESENTATION_ITEM(''))"
+        "(BOUNDED_CURVE()B_SPLINE_CURVE({degree},{points},.UNSPECIFIED.,{closed},.F.)B_SPLINE_CURVE_WITH_KNOTS({times},{knots},.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE({weights})REPRESENTATION_ITEM({name}))"
     ))
 }
 
@@ -309,7 +314,7 @@ impl<'a> Shapes<'a> {
     }
 
     fn wire(&mut self, file: &mut Part21, wire: &Wire) -> usize {
-        let number = curve(file, &wire.curve, 3);
+        let number = named_curve(file, &wire.name, &wire.curve, 3);
         if let Some(colour) = wire.colour {
             let colour = self.colour(file, colour);
             let font = file.add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')".into());

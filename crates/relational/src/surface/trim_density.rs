@@ -45,6 +45,10 @@ fn rim_jet<T: Real>(surface: &SurfaceRef<T>, curve: &CurveRef<T>, t: f64) -> Opt
     Some(RimJet { d, dd, turn })
 }
 
+/// Speed of a curve, relative to its largest and to a side of the face, up to which it rests at a
+/// point: its turn is noise.
+const RESTING: f64 = 1e-9;
+
 /// Spacing of the divisions of a rim: equal parts of the integral of their density between breaks.
 pub(crate) fn rim_density<T: Real>(
     fineness: &Fineness,
@@ -54,6 +58,10 @@ pub(crate) fn rim_density<T: Real>(
     let mut stops = vec![0.0];
     stops.extend(breaks_of(surface, curve));
     stops.push(1.0);
+    let speed = |t: f64| rim_jet(surface, curve, t).map_or(0.0, |j| j.d.norm());
+    let middles = stops.windows(2).map(|w| speed(0.5 * (w[0] + w[1])));
+    let side = if fineness.side.is_finite() { fineness.side } else { 0.0 };
+    let resting = RESTING * middles.fold(side, f64::max);
     let mut density = DivisionDensity::default();
     for w in stops.windows(2) {
         let (from, to) = (w[0], w[1]);
@@ -61,7 +69,8 @@ pub(crate) fn rim_density<T: Real>(
             let step = (to - from) / m as f64;
             let at = (0..m).map(|i| from + (i as f64 + 0.5) * step);
             at.map(|t| {
-                rim_jet(surface, curve, t).map_or(0.0, |j| fineness.along(j.d, j.dd, j.turn)) * step
+                let moving = rim_jet(surface, curve, t).filter(|j| j.d.norm() > resting);
+                moving.map_or(0.0, |j| fineness.along(j.d, j.dd, j.turn)) * step
             })
             .collect()
         };

@@ -235,19 +235,38 @@ impl SideGrid {
     fn crossing(&self) -> Option<[LoopSide; 2]> {
         let mut found: Option<(u32, u32)> = None;
         for slot in self.cells.values() {
-            for (i, &k) in slot.iter().enumerate() {
-                for &l in &slot[i + 1..] {
-                    let ([a, b], [p, q]) =
-                        (self.sides[k as usize].ends, self.sides[l as usize].ends);
-                    let crosses = cross(a, b, p) * cross(a, b, q) < 0.0
-                        && cross(p, q, a) * cross(p, q, b) < 0.0;
-                    if crosses && found.is_none_or(|f| (k, l) < f) {
-                        found = Some((k, l));
+            // A cell may hold many short sides: those that overlap along one axis are compared.
+            let extent = |k: u32, axis: usize| {
+                let [a, b] = self.sides[k as usize].ends.map(|p| p[axis]);
+                [a.min(b), a.max(b)]
+            };
+            let spread = |axis: usize| {
+                let all = slot.iter().map(|&k| extent(k, axis));
+                let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], [a, b]| {
+                    [l.min(a), h.max(b)]
+                });
+                high - low
+            };
+            let axis = usize::from(spread(1) > spread(0));
+            let mut sorted: Vec<([f64; 2], u32)> =
+                slot.iter().map(|&k| (extent(k, axis), k)).collect();
+            sorted.sort_by(|x, y| x.0[0].total_cmp(&y.0[0]));
+            for (i, &([_, high], k)) in sorted.iter().enumerate() {
+                let near = sorted[i + 1..].iter().take_while(|([low, _], _)| *low <= high);
+                for &(_, l) in near {
+                    let pair = (k.min(l), k.max(l));
+                    if found.is_none_or(|f| pair < f) && self.crosses(k, l) {
+                        found = Some(pair);
                     }
                 }
             }
         }
         found.map(|(k, l)| [k, l].map(|k| self.sides[k as usize]))
+    }
+
+    fn crosses(&self, k: u32, l: u32) -> bool {
+        let ([a, b], [p, q]) = (self.sides[k as usize].ends, self.sides[l as usize].ends);
+        cross(a, b, p) * cross(a, b, q) < 0.0 && cross(p, q, a) * cross(p, q, b) < 0.0
     }
 
     /// True if all sides are at least `margin`, at most a cell, away.
