@@ -305,3 +305,21 @@ def test_packed_and_marked_files_and_breps(tmp_path: Path) -> None:
     BRepTools.Write_s(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), str(tmp_path / "box.brep"))
     text, remarks = program(tmp_path / "box.brep", units="mm")
     assert moldloft.loads(text).mesh().closed and "millimetres" in remarks[0]
+
+
+def test_a_side_without_length_is_not_divided() -> None:
+    """A loop with a side of 1e-14, whose turn is noise."""
+    noise = 5e-15 * np.random.default_rng(1).uniform(-1, 1, (12, 2)) + (0.5, 0.9)
+    points = "".join(f"AbsMagnet k{i}(s, {u!r}, {v!r});" for i, (u, v) in enumerate(noise.tolist()))
+    names = ", ".join(f"k{i}" for i in range(12))
+    model = moldloft.loads(
+        f"""AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 1); BCurve a({{A, {{2, 0, 2}}, B}});
+        BCurve b({{{{0, 3, 0}}, {{2, 3, 3}}, {{4, 3, 0}}}}); RuledSurf s(a, b, visible = 0);
+        AbsMagnet m1(s, 0.2, 0.2); AbsMagnet m2(s, 0.8, 0.3); {points}
+        LineSnake l1(m1, m2); LineSnake l2(m2, k0); BSnake l3({{{names}}}, 3);
+        LineSnake l4(k11, m1); TrimSurf face(s, {{l1, l2, l3, l4}});""",
+        strict=False,
+    )
+    mesh = model.mesh()
+    assert len(mesh.faces) < 250
+    assert mesh.area == pytest.approx(model["face"].area, rel=1e-3)
