@@ -1,7 +1,7 @@
 """A law of drags: what is dragged in any view, and taken back, leaves the text bit for bit.
 
 Every object of the examples that can be dragged is, in standard views and in perspective. The point
-follows the pointer, or the status line gives the reason; the program stays without new errors.
+follows the pointer, or the status line gives the reason; what fails by it is named there.
 After undo the text and every place of the picture are those of before, after redo those of the
 drag. At the end all steps are taken back and done again, with the engine killed between.
 """
@@ -110,7 +110,9 @@ def drag(b: Bench, name: str, chance: random.Random) -> str:
     said = b.page.locator(".status").inner_text()
     after = b.text()
     words = (b.path.name, name, way, said)
-    assert errors(b) == faults, (words, errors(b))
+    # What fails where the point now is, is named: a keel that no longer meets the hull.
+    broken = [message for message in errors(b) if message not in faults]
+    assert not broken or re.search(r" fails?: ", said), (words, broken)
     done = b.hand("steps().done")[steps:]
     # Another point may be in front of it.
     there = b.page.evaluate("(name) => window.moldloft.project(name)", name)
@@ -125,6 +127,7 @@ def drag(b: Bench, name: str, chance: random.Random) -> str:
         b.until(lambda: b.page.evaluate(PLACES) == places)
         return "stayed"
     assert turned(b, "Control+z") == text, words
+    assert errors(b) == faults, (words, errors(b))
     b.until(lambda: b.page.evaluate(PLACES) == places)
     if chance.random() < 0.5:
         # The next drag begins where this one ended.

@@ -5,7 +5,7 @@ import { ink } from './colour'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
-import { model } from './state'
+import { model, on } from './state'
 import { typed } from './typed'
 import type { Drawn, View } from './view'
 
@@ -57,6 +57,10 @@ interface Drag {
   /** True for a drag by the keys of the keyboard. */
   keys: boolean
   last: [number, number]
+  /** The errors of the model before it. */
+  faults: Set<string>
+  /** What it has told of itself. */
+  said: string
   /** From the place to the pointer, where a handle beside the place is held. */
   offset: [number, number]
 }
@@ -77,6 +81,8 @@ export class Hands {
   private places: Vector3[] = []
   private under: [number, number] | null = null
   private drag: Drag | null = null
+  /** The last drag that counted, until the next one. */
+  private latest: Drag | null = null
   /** Settles when the engine has heard the end of the last drag. */
   private ended: Promise<void> = Promise.resolve()
   private readonly pointers = new Map<number, [number, number]>()
@@ -101,6 +107,10 @@ export class Hands {
     host.append(this.gumball.element, this.tip, this.chooser, this.entry)
     this.requests = new Newest((run) => run())
     const c = view.canvas
+    on(['faults'], () => {
+      const drag = this.drag ?? this.latest
+      if (drag?.said) this.failing(drag)
+    })
     c.addEventListener('pointerdown', (e) => this.down(e))
     c.addEventListener('pointermove', (e) => this.move(e))
     c.addEventListener('pointerup', (e) => this.up(e))
@@ -196,11 +206,14 @@ export class Hands {
       begun: Promise.resolve(false),
       aimed: false,
       committed: false,
+      faults: new Set(model.faults.filter((f) => f.severity === 'error').map((f) => f.message)),
+      said: '',
       keys,
       last: [x, y],
       offset: [0, 0],
     }
     this.drag = drag
+    this.latest = null
     drag.begun = this.begin(drag)
   }
 
@@ -417,12 +430,24 @@ export class Hands {
         const why = !(short > BEHIND)
           ? ''
           : ` · stays ${Math.round(short)} px behind: ${ended.length ? ended.join(', ') : `${drag.names.join(', ')} ${drag.names.length > 1 ? 'move' : 'moves'} it no further that way`}`
-        this.act.status(words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why)
+        drag.said = words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why
+        this.failing(drag)
       } catch (error) {
         if (error instanceof Refused && error.message !== 'superseded')
           this.act.status(`${error.message}. Turn the view, or lock another axis`)
       }
     })
+  }
+
+  /** What fails since the drag began, beside what it says of itself. */
+  private failing(drag: Drag): void {
+    const broken = model.faults.filter((f) => f.severity === 'error' && !drag.faults.has(f.message))
+    const names = [...new Set(broken.map((f) => f.object).filter(Boolean))]
+    const few = names.slice(0, 3).join(', ') + (names.length > 3 ? ', …' : '')
+    const fails = broken.length
+      ? ` · ${few || 'the model'} ${names.length > 1 ? 'fail' : 'fails'}: ${broken[0].message}`
+      : ''
+    this.act.status(drag.said + fails)
   }
 
   /** How far the place has moved, beside it, and the line from where it was. */
@@ -468,6 +493,7 @@ export class Hands {
     if (!drag) return this.ended
     this.drag = null
     drag.committed = commit
+    this.latest = commit ? drag : null
     this.chooser.hidden = this.entry.hidden = this.tip.hidden = true
     this.view.overlay('moved', null)
     this.view.ghost(false)

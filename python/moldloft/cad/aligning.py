@@ -32,6 +32,9 @@ parametrisation.
 _PARTED = 1e-4
 """Distance of two curves, relative to their length, above which they are distinct."""
 
+_AS_NEAR = 1.1
+"""Distance of a fitted path from the other curve, relative to the distance of the two curves."""
+
 _PLACES = 1025
 _STEPS = 14
 """Steps towards a point of the other curve: Newton's, within the known bounds."""
@@ -173,6 +176,12 @@ def _rerun(
         breaks = breaks[np.concatenate([[True], np.diff(breaks) > 1e-6])]
         breaks[-1] = 1
     probe = np.linspace(0, 1, 129)
+    there = wanted(probe)
+    # The two curves are as far apart as the tolerance of the program that made them.
+    floor = float(np.linalg.norm(_on(surface, own(parameters(probe))) - there, axis=1).max())
+    if floor > _PARTED * length:
+        return None
+    near = max(_NEAR * length, _AS_NEAR * floor)
     for parts in _PARTS:
         ends = np.concatenate(
             [np.linspace(a, b, parts, endpoint=False) for a, b in pairwise(breaks)] + [[1.0]]
@@ -189,7 +198,7 @@ def _rerun(
         points[::n] = through[::n]
         knots = np.concatenate([[0.0], np.repeat(ends, n), [1.0]])
         made = Nurbs((n,), (knots,), points, None)
-        apart = float(np.linalg.norm(_on(surface, made(probe)) - wanted(probe), axis=1).max())
-        if apart <= _NEAR * length:
+        apart = float(np.linalg.norm(_on(surface, made(probe)) - there, axis=1).max())
+        if apart <= near:
             return made
     return made if apart <= _PARTED * length else None
