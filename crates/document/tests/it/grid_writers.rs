@@ -202,7 +202,8 @@ fn what_no_solver_takes_is_said() {
             n - 1
         )
     };
-    said(&pair(9, "0"), "not-joined");
+    said(&pair(9, "0"), "cannot-write");
+    said(&pair(8, "0"), "not-joined");
     said(&pair(5, "1e-8"), "not-joined");
     let met = open(&pair(5, "0"));
     assert_eq!(ids(&met), ["nameless"], "{:?}", reported(&met));

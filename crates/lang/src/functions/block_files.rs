@@ -1,5 +1,6 @@
 //! Blocks as one mesh with named boundaries: joints, periodic boundaries, and the data for CGNS.
 
+use crate::functions::hanging::{HangingJoint, hanging};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
 use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
@@ -45,6 +46,21 @@ pub(crate) struct Connected {
     pub partners: Vec<PeriodicPartner>,
     /// Parts of faces without a neighbour or a name.
     pub nameless: Vec<FacePart>,
+    /// Those that are one face with others, of finer or coarser cells.
+    pub hanging: Vec<HangingJoint>,
+}
+
+impl Connected {
+    /// True of a part all of which is in hanging interfaces.
+    pub fn is_hanging(&self, part: &FacePart) -> bool {
+        let covered = self.hanging.iter().map(|joint| match joint.parts.map(|own| own == *part) {
+            [true, _] => joint.cells[0].iter().product(),
+            [_, true] => joint.cells[1].iter().product(),
+            _ => 0,
+        });
+        let cells = (0..3).map(|k| part.2[k].abs_diff(part.3[k]).max(1)).product::<usize>();
+        covered.sum::<usize>() == cells
+    }
 }
 
 /// The names of faces: "k1 = hull wall, i1 in = plane symmetry"; a surface has no faces k.
@@ -229,7 +245,9 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     joints.extend(of_pairs);
     let names = blocks.iter().map(|block| block.name.clone()).collect();
     let content = CgnsBlocks { names, joints, boundaries };
-    Ok(Connected { content, partners, nameless })
+    let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let hanging = hanging(blocks, &nameless, SAME * size);
+    Ok(Connected { content, partners, nameless, hanging })
 }
 
 /// Refuses a boundary of two types.
@@ -280,6 +298,9 @@ fn thrice(blocks: &[NamedBlock], numbers: &[Vec<usize>]) -> Option<[usize; 2]> {
     }
     None
 }
+
+/// Tolerance of the points of two faces that are one, relative to the size.
+const SAME: f64 = 1e-10;
 
 /// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;

@@ -5,6 +5,8 @@ use crate::functions::block_files::{
     Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each, volumes,
 };
 use crate::functions::grid_formats::GridFormat;
+use crate::functions::hanging::HangingJoint;
+use crate::functions::joint_report::part_text;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, SurfaceGrid, VolumeGrid, folded_cells};
 use moldloft_io::StructuredGrid;
@@ -54,7 +56,17 @@ pub(super) fn checked(
     symmetry(&layers, &mut found);
     let connected = connected(&layers)?;
     overlaps(&layers, &connected)?;
-    nameless(&layers, flat, &connected.nameless, &mut found);
+    if let (false, Some(joint)) = (format.hangs, connected.hanging.first()) {
+        return Err(hung(&layers, flat, joint));
+    }
+    // CGNS has boundaries there, which is said.
+    let said: Vec<FacePart> = match format.keeps_order && !format.plane {
+        true => connected.nameless.clone(),
+        false => {
+            connected.nameless.iter().filter(|part| !connected.is_hanging(part)).copied().collect()
+        }
+    };
+    nameless(&layers, flat, &said, &mut found);
     Ok((found, Some(connected)))
 }
 
@@ -134,6 +146,18 @@ fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnost
         }
     }
     Ok(())
+}
+
+/// The fault of a hanging interface in a format of whole faces.
+fn hung(blocks: &[NamedBlock], flat: bool, joint: &HangingJoint) -> Diagnostic {
+    let [a, b] = joint.sides.map(|part| part_text(blocks, flat, &part));
+    let [own, theirs] = joint.cells.map(|[m, n]| format!("{m} x {n}"));
+    let message = format!("{a} and {b} are one face, of {own} and {theirs} cells");
+    Diagnostic::error("cannot-write", message)
+        .expected("the same cells on both sides: the format joins whole faces of cells")
+        .help(
+            "give both blocks the same counts there, or name both faces, as boundaries that the solver joins",
+        )
 }
 
 /// The number of cells that are turned over at a corner, and the first of them.
@@ -303,7 +327,7 @@ fn distance_to(p: Vec3, face: &FaceMesh) -> f64 {
 }
 
 /// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-fn nearest_of(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(super) fn nearest_of(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {

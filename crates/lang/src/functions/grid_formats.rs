@@ -43,6 +43,8 @@ pub(crate) struct GridFormat {
     pub blanking: bool,
     /// True if surfaces in one plane are a mesh, with their edges as boundaries.
     pub plane: bool,
+    /// True if faces of unequal cells may meet.
+    pub hangs: bool,
     /// True if cells keep the order of the points, right-handed or not.
     pub keeps_order: bool,
     /// True if it checks the budget itself; others are watched from outside.
@@ -58,6 +60,7 @@ pub(crate) const PLAIN: GridFormat = GridFormat {
     joins: false,
     plane: false,
     blanking: false,
+    hangs: false,
     keeps_order: false,
     watches: false,
     words: &[],
@@ -106,7 +109,7 @@ pub(crate) static CSV: GridFormat = PLAIN;
 
 /// `write_cgns`.
 pub(crate) static CGNS: GridFormat =
-    GridFormat { blocks: true, joins: true, keeps_order: true, encode: cgns, ..PLAIN };
+    GridFormat { blocks: true, joins: true, hangs: true, keeps_order: true, encode: cgns, ..PLAIN };
 
 /// `write_su2`.
 pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
@@ -129,7 +132,8 @@ pub(crate) static NEUTRAL_MAP: GridFormat =
     GridFormat { plane: false, keeps_order: true, encode: neutral_map_file, ..JOINED_MESH };
 
 /// `interfaces`, which writes nothing.
-pub(crate) static CONNECTIONS: GridFormat = GridFormat { keeps_order: true, ..JOINED_MESH };
+pub(crate) static CONNECTIONS: GridFormat =
+    GridFormat { hangs: true, keeps_order: true, ..JOINED_MESH };
 
 /// `plot`.
 pub(crate) static PICTURE: GridFormat = GridFormat {
