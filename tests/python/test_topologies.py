@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,11 +40,13 @@ def aerofoil(
     return c if rng.random() < 0.5 else c[::-1].copy()
 
 
+def constant(value: np.ndarray) -> Callable[[], np.ndarray]:
+    return lambda: value
+
+
 def of(text: str, **curves: np.ndarray) -> moldloft.Model:
     """A program in which these curves and surfaces are functions."""
-    functions: dict[str, Callable[..., object]] = {
-        name: (lambda value: lambda: value)(value) for name, value in curves.items()
-    }
+    functions = {name: constant(value) for name, value in curves.items()}
     return moldloft.loads(HEAD + text, functions=functions)
 
 
@@ -381,3 +385,39 @@ for (j = 1:3) { tube[, j] = c + {0, 0, j}; ring[, j] = j*c; flat[, j] = sharp*{1
 """
     with pytest.raises(moldloft.ModelError, match=match):
         moldloft.loads(HEAD + text + call)
+
+
+@pytest.mark.parametrize("end", ["default", "low", "high"])
+def test_the_blocks_of_a_nacelle(end: str) -> None:
+    """The example, also at the ends of its ranges: no corner folded, and the volume of the frusta of its rims."""
+    m = moldloft.load(Path(__file__).resolve().parents[2] / "examples/nacelle/blocks.sdl")
+    assert not m.diagnostics, m.diagnostics
+    m.set({name: getattr(p, end) for name, p in m.params.items()})
+    assert not m.has_errors
+    found: dict[str, Any] = {name: m[name] for name in ("grid", "inside", "outside")}
+    blocks = [np.asarray(b) for b in found["grid"]]
+    assert len(blocks) == 36
+    assert all((jacobians(b) > 0).all() for b in blocks)
+    volume = sum(hexahedra(b) for b in blocks)
+
+    def frusta(line: np.ndarray) -> float:
+        """The body of 32-sided frusta between rims of these places and radii."""
+        x, r = line[:, 0], line[:, 1]
+        whole = (np.diff(x) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2)).sum() / 3
+        return float(16 * np.sin(2 * np.pi / 32) * whole)
+
+    inside = [np.asarray(c) for c in found["inside"]]
+    outside = [np.asarray(c) for c in found["outside"]]
+    far = np.array([0, 5 * float(m["chord"]), 0])
+    exact = sum(frusta(c + far) for c in outside) - frusta(outside[1]) + frusta(inside[1])
+    assert volume == pytest.approx(exact, rel=1e-9)
+    # The walls of the SU2 mesh are those of the nacelle, and every other face is named.
+    text = m.written["nacelle.su2"].decode()
+    tags = dict(re.findall(r"MARKER_TAG= (\S+)\nMARKER_ELEMS= (\d+)", text))
+    assert tags["duct"] == tags["cowl"] == str(4 * 8 * 24) and set(tags) == {
+        "duct",
+        "cowl",
+        "far",
+        "inlet",
+        "outlet",
+    }
