@@ -236,6 +236,9 @@ fn families_contain_their_coarse_grids() {
         "geometric(0, 1, refined_step(.01), refined(25))",
         "geometric2(0, 1, refined_step(.01), refined_step(.005), refined(25))",
         "cosine(0, 1, refined(25))",
+        "uniform(0, 1, refined(25))",
+        "redist(geometric(0, 1, .01, 20), refined(25))",
+        "redist(d_tanh(0, 1, refined_step(.01), 0, refined(25)), refined(13))",
     ] {
         let mut rows = Vec::new();
         for level in 0..3 {
@@ -253,8 +256,13 @@ fn families_contain_their_coarse_grids() {
             assert!(off.fold(0.0, f64::max) < 1e-15, "{law} at {level}");
         }
     }
-    let mut document = open("farray a = geometric(0, 1, .01, refined(25));");
-    assert!(document.diagnostics().is_empty());
-    document.refine(1).unwrap();
-    assert_eq!(ids(&document), ["not-nested"]);
+    for law in [
+        "geometric(0, 1, .01, refined(25))",
+        "redist(d_tanh(0, 1, refined_step(.01), 0, refined(25)), refined(17))",
+    ] {
+        let mut document = open(&format!("farray a = {law};"));
+        assert!(document.diagnostics().is_empty());
+        document.refine(1).unwrap();
+        assert_eq!(ids(&document), ["not-nested"], "{law}");
+    }
 }
