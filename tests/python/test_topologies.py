@@ -421,3 +421,43 @@ def test_the_blocks_of_a_nacelle(end: str) -> None:
         "inlet",
         "outlet",
     }
+
+
+def test_examples_of_the_library() -> None:
+    """Each routine that makes blocks has an example that holds."""
+    text = (Path(__file__).resolve().parents[2] / "crates/lang/sdl/topologies.sdl").read_text()
+    found = re.findall(r"((?:^#   .*\n)+)function \S+ (\w+)\(", text, re.MULTILINE)
+    assert [name for _, name in found] == [
+        "c_blocks",
+        "o_between",
+        "h_o_h",
+        "h_c_h",
+        "o_h_wing",
+        "butterfly",
+    ]
+    for example, name in found:
+        program = HEAD + re.sub(r"^#   ", "", example, flags=re.MULTILINE)
+        assert f"{name}(" in program
+        assert not moldloft.loads(program).diagnostics, name
+
+
+def test_topologies_have_derivatives() -> None:
+    """Through marching, smoothing across a cut and the core of a duct, against central differences."""
+    text = """load "naca.sdl"; param float h = 0.3 in [0, 1];
+curve lower[11], upper[11], c[21], a[21], b[21], r[17]; naca4l(lower, 0, 0, 12); naca4(upper, 0, 0, 12);
+c[1:11] = lower[11:1:-1]; c[11:21] = upper; c.y = c.y*(1 + h);
+surface g[] = c_blocks(c, geometric(0, 2, 0.02, 9), 2 + h, 8, 4);
+arc(a, 2*PI, 0, 1); arc(b, 2*PI, 0, 4); a[21] = a[1]; b[21] = b[1]; b.x = b.x + h;
+surface o = o_between(a, b, 8, 0.1 + 0.1*h);
+arc(r, 0, 2*PI, 1); r[17] = r[1]; surface w[17, 2]; w[, 1] = r; w[, 2] = r*(1 + h) + {0, 0, 1};
+block d[] = butterfly(w, 5, 0.05);
+vector p = g[1][10, 4], q = g[2][4, 3], s = o[1, 4], t = d[2][3, 3, 2], u = d[5][3, 2, 2];
+"""
+    model = moldloft.loads(HEAD + text)
+    step = 1e-5
+    high, low = (
+        moldloft.loads(HEAD + text.replace("h = 0.3", f"h = {0.3 + d!r}")) for d in (step, -step)
+    )
+    for name in [f"{point}.{axis}" for point in "pqstu" for axis in "xy"]:
+        differences = (high.eval(name) - low.eval(name)) / (2 * step)
+        assert model.derivative(name, "h") == pytest.approx(differences, rel=1e-4, abs=1e-5), name

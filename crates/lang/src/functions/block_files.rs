@@ -195,16 +195,17 @@ pub(crate) fn extruded(
     Ok((layers.collect(), PlaneAxes { axes, normal: normal.into() }))
 }
 
-/// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
-pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
+/// The blocks with common vertices where points of faces coincide.
+pub(crate) fn merged(blocks: &[NamedBlock]) -> Result<Blocks, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
-    if let Some([a, b]) = thrice(blocks, &numbers) {
-        let [a, b] = [a, b].map(|block| &blocks[block].name);
-        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
-        return Err(Diagnostic::error("cannot-write", message)
-            .expected("blocks that do not overlap")
-            .help("write each block once"));
-    }
+    joined(blocks, positions, numbers)
+}
+
+fn joined(
+    blocks: &[NamedBlock],
+    positions: Vec<Vec3>,
+    numbers: Vec<Vec<usize>>,
+) -> Result<Blocks, Diagnostic> {
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -215,8 +216,21 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
             faces: Default::default(),
         })
         .collect();
-    let all = Blocks::new(positions, hexahedra)
-        .map_err(|error| Diagnostic::error("cannot-write", error.to_string()))?;
+    Blocks::new(positions, hexahedra)
+        .map_err(|error| Diagnostic::error("cannot-write", error.to_string()))
+}
+
+/// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
+pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
+    let (positions, numbers) = shared_nodes(&volumes(blocks));
+    if let Some([a, b]) = thrice(blocks, &numbers) {
+        let [a, b] = [a, b].map(|block| &blocks[block].name);
+        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+    }
+    let all = joined(blocks, positions, numbers)?;
     let (joints, free) = all.interfaces();
     let joints = joints.iter().map(|joint| {
         let side = |k: usize| (joint.sides[k].0, joint.sides[k].1, joint.from[k], joint.to[k]);

@@ -129,7 +129,8 @@ impl Correspondence {
         };
         let ((a, back_a, count_a), (b, back_b, count_b)) = (step(first)?, step(second)?);
         let cells = [count_a, count_b];
-        let divides = |k: usize| cells[k] % theirs[k] == 0 || theirs[k] % cells[k] == 0;
+        let divides =
+            |k: usize| cells[k].is_multiple_of(theirs[k]) || theirs[k].is_multiple_of(cells[k]);
         let fits = a != b && divides(0) && divides(1) && cells != theirs;
         fits.then_some(Self { start, along: [(a, back_a), (b, back_b)], cells, theirs })
     }
@@ -162,7 +163,9 @@ impl Correspondence {
         for i in 0..=finest[0] {
             for j in 0..=finest[1] {
                 let place = [i, j];
-                let has = |cells: [usize; 2]| (0..2).all(|k| place[k] * cells[k] % finest[k] == 0);
+                let has = |cells: [usize; 2]| {
+                    (0..2).all(|k| (place[k] * cells[k]).is_multiple_of(finest[k]))
+                };
                 match (has(self.cells), has(self.theirs)) {
                     (true, true) if own_at(place).distance(their_at(place)) > tolerance => {
                         return None;
