@@ -2,9 +2,10 @@
 
 blockMesh joins whole faces of blocks and identifies an edge by its two vertices. So blocks are cut
 where a part of a face meets another block, where two edges would run between the same vertices,
-where a ring closes on itself, and where the corners alone are no block. Edges are ``polyLine`` through the vertices of the grid, graded
-cell by cell, so that blockMesh's points on them are the grid's; inside faces and blocks it
-interpolates between the edges. More cuts (``every``) bring that closer to the grid.
+where a ring closes on itself, and where the corners alone are no block. Edges are ``polyLine``
+through the vertices of the grid, graded cell by cell, so that blockMesh's points on them are the
+grid's; inside faces and blocks it interpolates between the edges. More cuts (``every``) bring that
+closer to the grid.
 
 Format: OpenFOAM user guide, section 4.3 "Mesh generation with the blockMesh utility".
 """
@@ -79,7 +80,11 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
         )
     kinds = {"symmetry": "symmetryPlane", "wall": "wall"}
     patches = [
-        ((free.block, free.face, free.begin, free.end), free.name, kinds.get(free.kind, "patch"))
+        (
+            (free.block, free.face, [*free.begin], [*free.end]),
+            free.name,
+            kinds.get(free.kind, "patch"),
+        )
         for free in blocks.boundaries
     ]
     return blocks._core.block_mesh(patches, every)

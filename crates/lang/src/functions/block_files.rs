@@ -41,6 +41,15 @@ pub struct CgnsBlocks {
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
+/// A face that lies on another one, with points that are not the same.
+pub(crate) struct AbuttingFaces {
+    pub parts: [FacePart; 2],
+    /// Points along the axes of both.
+    pub sizes: [[usize; 2]; 2],
+    /// The greatest distance of the points of the first from the second.
+    pub gap: f64,
+}
+
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,
@@ -48,6 +57,8 @@ pub(crate) struct Connected {
     pub nameless: Vec<FacePart>,
     /// Those that are one face with others, of finer or coarser cells.
     pub hanging: Vec<HangingJoint>,
+    /// Those that lie on others but are not joined.
+    pub abutting: Vec<AbuttingFaces>,
 }
 
 impl Connected {
@@ -261,7 +272,7 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     let content = CgnsBlocks { names, joints, boundaries };
     let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
     let hanging = hanging(blocks, &nameless, SAME * size);
-    Ok(Connected { content, partners, nameless, hanging })
+    Ok(Connected { content, partners, nameless, hanging, abutting: Vec::new() })
 }
 
 /// Refuses a boundary of two types.

@@ -2,7 +2,8 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each, volumes,
+    AbuttingFaces, Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each,
+    volumes,
 };
 use crate::functions::grid_formats::GridFormat;
 use crate::functions::hanging::HangingJoint;
@@ -54,7 +55,7 @@ pub(super) fn checked(
         false => blocks.to_vec(),
     };
     symmetry(&layers, &mut found);
-    let connected = connected(&layers)?;
+    let mut connected = connected(&layers)?;
     overlaps(&layers, &connected)?;
     if let (false, Some(joint)) = (format.hangs, connected.hanging.first()) {
         return Err(hung(&layers, flat, joint));
@@ -66,7 +67,7 @@ pub(super) fn checked(
             connected.nameless.iter().filter(|part| !connected.is_hanging(part)).copied().collect()
         }
     };
-    nameless(&layers, flat, &said, &mut found);
+    connected.abutting = nameless(&layers, flat, &said, &mut found);
     Ok((found, Some(connected)))
 }
 
@@ -228,15 +229,21 @@ fn symmetry(blocks: &[NamedBlock], found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Faces without a name: coincident ones, and the existence of others.
-fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut Vec<Diagnostic>) {
+/// Faces without a name: coincident ones, which are returned, and the existence of others.
+fn nameless(
+    blocks: &[NamedBlock],
+    flat: bool,
+    parts: &[FacePart],
+    found: &mut Vec<Diagnostic>,
+) -> Vec<AbuttingFaces> {
     let word = |part: &FacePart| match (flat, GridFace::ALL[part.1].word()) {
         (true, "in") => "im",
         (_, word) => word,
     };
     let called = |part: &FacePart| format!("{} of `{}`", word(part), blocks[part.0].name);
+    let mut abutting = Vec::new();
     if parts.is_empty() {
-        return;
+        return abutting;
     }
     // The faces of each block, once, in their order.
     let mut seen: Vec<(usize, Vec<&str>)> = Vec::new();
@@ -253,15 +260,15 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
         .iter()
         .map(|(block, face, from, to)| part_of(&blocks[*block].grid, *face, *from, *to))
         .collect();
-    let mut abutting = false;
     for (a, mesh) in meshes.iter().enumerate() {
         for (b, other) in meshes.iter().enumerate() {
             if a == b || parts[a].0 == parts[b].0 || (a > b && lies_on(other, mesh).is_some()) {
                 continue;
             }
             if let Some(gap) = lies_on(mesh, other) {
-                abutting = true;
                 let ([m, n], [p, q]) = (mesh.size, other.size);
+                let sizes = [[m, n], [p, q]];
+                abutting.push(AbuttingFaces { parts: [parts[a], parts[b]], sizes, gap });
                 let (this, that) = (called(&parts[a]), called(&parts[b]));
                 let message = format!("{this} lies on {that}, but they are not joined");
                 found.push(
@@ -275,7 +282,7 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
             }
         }
     }
-    if !abutting {
+    if abutting.is_empty() {
         let all: Vec<String> = seen
             .iter()
             .map(|(block, faces)| format!("{} of `{}`", faces.join(", "), blocks[*block].name))
@@ -286,6 +293,7 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
                 .help("name them behind the block: \"i1 = inlet inflow, k1 = body wall\""),
         );
     }
+    abutting
 }
 
 /// Distance of a face from another that contains it; `None` if none does.

@@ -64,6 +64,14 @@ pub(super) fn joint_report(blocks: &[NamedBlock], connected: &Connected, flat: b
             joint.gap
         ));
     }
+    for faces in &connected.abutting {
+        let [own, theirs] = faces.parts.map(|side| part(&side));
+        let [a, b] = faces.sizes.map(|[m, n]| format!("{m} x {n}"));
+        lines.push(format!(
+            "{own} | {theirs}: not joined, {a} and {b} points, up to {:.3e} apart",
+            faces.gap
+        ));
+    }
     let is_side = |of: &FacePart| flat && of.1 > 3;
     for (of, name, kind) in &connected.content.boundaries {
         if is_side(of) || connected.is_hanging(of) {
