@@ -423,24 +423,6 @@ def test_the_blocks_of_a_nacelle(end: str) -> None:
     }
 
 
-def test_examples_of_the_library() -> None:
-    """Each routine that makes blocks has an example that holds."""
-    text = (Path(__file__).resolve().parents[2] / "crates/lang/sdl/topologies.sdl").read_text()
-    found = re.findall(r"((?:^#   .*\n)+)function \S+ (\w+)\(", text, re.MULTILINE)
-    assert [name for _, name in found] == [
-        "c_blocks",
-        "o_between",
-        "h_o_h",
-        "h_c_h",
-        "o_h_wing",
-        "butterfly",
-    ]
-    for example, name in found:
-        program = HEAD + re.sub(r"^#   ", "", example, flags=re.MULTILINE)
-        assert f"{name}(" in program
-        assert not moldloft.loads(program).diagnostics, name
-
-
 def test_topologies_have_derivatives() -> None:
     """Through marching, smoothing across a cut and the core of a duct, against central differences."""
     text = """load "naca.sdl"; param float h = 0.3 in [0, 1];
