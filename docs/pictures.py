@@ -34,6 +34,9 @@ MODELS = {
     "missile_finned": ("missile/finned.sdl", (1000, 640)),
 }
 
+#: Programs that draw a picture themselves.
+PROGRAMS = {"nacelle_blocks": ("nacelle/blocks.sdl", "nacelle.png")}
+
 #: Arguments of `moldloft fair` for each plot, and its width in picture points.
 PLOTS = {
     "fairing-naca0012": ("naca0012-3.csv --tol 1e-3", 1000),
@@ -155,11 +158,14 @@ def dragged() -> bytes:
 
 def main() -> None:
     """Draws the pictures that are named, or all."""
-    named = sys.argv[1:] or [*MODELS, *PLOTS, *STUDIES, "deformation", "drag"]
+    named = sys.argv[1:] or [*MODELS, *PROGRAMS, *PLOTS, *STUDIES, "deformation", "drag"]
     for name in named:
         if name in MODELS:
             place, size = MODELS[name]
             data = moldloft.load(EXAMPLES / place).picture(*size)
+        elif name in PROGRAMS:
+            place, file_name = PROGRAMS[name]
+            data = moldloft.load(EXAMPLES / place).written[file_name]
         elif name in STUDIES:
             place, values = STUDIES[name]
             data = beside(moldloft.load(EXAMPLES / place), values)

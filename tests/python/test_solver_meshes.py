@@ -112,17 +112,12 @@ class PolyMesh:
         return volume
 
 
-def checked_by_openfoam(written: dict[str, bytes], path: Path) -> str | None:
-    """What checkMesh prints; none without OpenFOAM."""
+def run_openfoam(program: str, path: Path) -> str | None:
+    """What a program of OpenFOAM prints for a case; none without OpenFOAM."""
     # Packages of Debian set no variables.
     project = os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam")
-    if not shutil.which("checkMesh") or not Path(project, "etc", "controlDict").exists():
+    if not shutil.which(program) or not Path(project, "etc", "controlDict").exists():
         return None
-    for name, content in written.items():
-        if "polyMesh/" in name:
-            target = path / name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(content)
     (path / "system").mkdir(exist_ok=True)
     head = "FoamFile {{ version 2.0; format ascii; class dictionary; object {0}; }}\n"
     (path / "system" / "controlDict").write_text(
@@ -136,16 +131,26 @@ def checked_by_openfoam(written: dict[str, bytes], path: Path) -> str | None:
     (path / "system" / "fvSchemes").write_text(head.format("fvSchemes") + schemes)
     (path / "system" / "fvSolution").write_text(head.format("fvSolution"))
     done = subprocess.run(
-        ["checkMesh", "-case", str(path)],
+        [program, "-case", str(path)],
         env=os.environ | {"WM_PROJECT_DIR": project},
         capture_output=True,
         text=True,
         timeout=300,
         check=False,
     )
-    report = done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def checked_by_openfoam(written: dict[str, bytes], path: Path) -> str | None:
+    """What checkMesh prints; none without OpenFOAM."""
+    for name, content in written.items():
+        if "polyMesh/" in name:
+            target = path / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
+    report = run_openfoam("checkMesh", path)
     # It warns of vectors of separation other than those of the faces.
-    assert "differs" not in report, report
+    assert report is None or "differs" not in report, report
     return report
 
 

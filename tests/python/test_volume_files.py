@@ -135,7 +135,7 @@ def test_cgns_read_back(blocks, tmp_path):
         }
 
 
-class _Dictionary:
+class BlockMeshDict:
     """A reader of blockMeshDict of its own, with blockMesh's interpolation of blocks."""
 
     def __init__(self, text: str) -> None:
@@ -162,7 +162,7 @@ class _Dictionary:
         self.boundary = {
             name: (kind, [tuple(map(int, f.split())) for f in re.findall(r"\(([\d ]+)\)", faces)])
             for name, kind, faces in re.findall(
-                r"(\S+)\s*\{\s*type (\w+);\s*faces\s*\((.*?)\);\s*\}", part["boundary"], re.S
+                r"(\S+)\s*\{\s*type (\w+);[^{}]*?faces\s*\((.*?)\);\s*\}", part["boundary"], re.S
             )
         }
 
@@ -237,7 +237,7 @@ class _Dictionary:
 
 
 def test_block_mesh_dict_read_back(blocks):
-    read = _Dictionary(blockmesh.write(blocks).decode())
+    read = BlockMeshDict(blockmesh.write(blocks).decode())
     parts = blockmesh.cut(blocks)
     assert len(read.blocks) == len(parts) == 18
     # Each face of the boundary is a face of one block; every other face is one of two.
@@ -274,7 +274,7 @@ def test_block_mesh_dict_read_back(blocks):
 
 def _off(blocks: moldloft.Blocks, every: int) -> tuple[float, float]:
     """How far what blockMesh makes is from the grid, and its volume from the grid's."""
-    read = _Dictionary(blockmesh.write(blocks, every).decode())
+    read = BlockMeshDict(blockmesh.write(blocks, every).decode())
     parts = blockmesh.cut(blocks, every)
     worst = volume = 0.0
     for part, block in zip(parts, read.blocks, strict=True):

@@ -4,9 +4,9 @@ use crate::value::{BlockArg, GridArg, Points, gathered, surface};
 use moldloft_budget::Budget;
 use moldloft_grid::{
     Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
-    QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells_until,
-    framed, hyperbolic_curve_until, hyperbolic_until, quality_until, transfinite_block_until,
-    transfinite_until,
+    PeriodicEdges, QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until,
+    folded_cells_until, framed, hyperbolic_curve_until, hyperbolic_until, quality_until,
+    transfinite_block_until, transfinite_until,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -67,6 +67,10 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
         GridError::Heights { value, .. } => {
             with("not-monotone").expected("heights that increase from 0").found(value.to_string())
         }
+        GridError::NotPeriodic { gap, .. } => with("edges-apart")
+            .expected("two edges whose points differ by the same vector")
+            .found(format!("a deviation of {gap}"))
+            .help("set the second edge as the first one plus a vector: s[im, ] = s[1, ] + pitch"),
         GridError::NoNormal { .. } => {
             with("no-direction").expected("a surface with a normal at every point")
         }
@@ -204,7 +208,7 @@ const EDGES: [(&str, GridSide); 4] = [
 ];
 
 /// A grid smoothed by the elliptic equations a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0;
-/// its edges are fixed.
+/// its edges are fixed, except periodic ones.
 ///
 /// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
 /// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
@@ -213,8 +217,10 @@ const EDGES: [(&str, GridSide); 4] = [
 /// after `n` sweeps, or when no point moves by more than `tol` of the size and the walls have the
 /// requested spacing and angle; without convergence a note gives the residual. For "sorenson"
 /// `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
-/// height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
-/// error, unless `folded` is "allow".
+/// height there, `angle` the angle of the grid lines to the wall. `periodic` names two opposite edges
+/// of a plane grid that are one line, the second moved by a constant vector (the cut of an O-grid, the
+/// sides of a cascade): their points move like those inside, except the ends. A result with folded
+/// cells is an error, unless `folded` is "allow".
 #[derive(Kind)]
 #[kind(
     forward,
@@ -231,7 +237,7 @@ pub struct EllipticGrid<T: Scalar> {
     /// Maximum number of sweeps.
     #[field(default = 5000, min = 0, max = 1e6)]
     n: usize,
-    /// Convergence: maximum displacement of a point in a sweep, relative to the size.
+    /// Convergence: maximum displacement of a point in a sweep, relative to the size; 1: exactly `n` sweeps.
     #[field(default = 1e-8, min = 0)]
     tol: T,
     /// "laplace", "middlecoff" or "sorenson".
@@ -250,6 +256,9 @@ pub struct EllipticGrid<T: Scalar> {
     /// Over-relaxation.
     #[field(default = 1.3, min = 0.01, max = 1.99)]
     omega: T,
+    /// Periodic edges: "i1 im" or "j1 jn".
+    #[field(default = "")]
+    periodic: Arc<str>,
     /// "refuse" or "allow" folded cells in the result.
     #[field(default = "refuse")]
     folded: Arc<str>,
@@ -298,6 +307,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
                 .in_field(Self::METHOD));
             }
         };
+        let periodic = periodic_edges(&self.periodic, &walls, Self::PERIODIC)?;
         let grid = self.s.0;
         grid.re().check_edges().map_err(|error| fault(error, Self::S))?;
         extended(&grid.planes, Self::S)?;
@@ -314,17 +324,27 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
                 Some((&own, [u, v]))
             }
         };
+        if periodic.is_some() && on.is_some() {
+            return Err(CallError::new(
+                "wrong-shape",
+                "periodic edges of a grid that is not plane",
+            )
+            .expected("a plane grid, without `on`")
+            .in_field(Self::PERIODIC));
+        }
+        let counted = self.tol.re() >= 1.0;
         let options = Elliptic {
             method,
+            periodic,
             sweeps: self.n,
-            tolerance: self.tol.re(),
+            tolerance: if counted { 0.0 } else { self.tol.re() },
             omega: self.omega.re(),
             walls,
             on,
         };
         let done = elliptic_until(&grid, &options, &context.budget)
             .map_err(|error| fault(error, Self::S))?;
-        if !done.converged && self.n > 0 {
+        if !done.converged && !counted && self.n > 0 {
             context.remark(
                 "not-converged",
                 unsettled(&done),
@@ -395,6 +415,35 @@ fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, C
             .in_field(EllipticGrid::<T>::SPACING));
     }
     Ok(walls)
+}
+
+/// The two edges that words name, which must have no wall.
+fn periodic_edges<T>(
+    words: &str,
+    walls: &[Wall<T>],
+    field: FieldId,
+) -> Result<Option<PeriodicEdges>, CallError> {
+    let mut named: Vec<&str> = words.split([' ', ',']).filter(|word| !word.is_empty()).collect();
+    named.sort_unstable();
+    let (edges, sides) = match named[..] {
+        [] => return Ok(None),
+        ["i1", "im"] => (PeriodicEdges::I, [GridSide::FirstI, GridSide::LastI]),
+        ["j1", "jn"] => (PeriodicEdges::J, [GridSide::FirstJ, GridSide::LastJ]),
+        _ => {
+            let expected = "\"i1 im\" or \"j1 jn\"".to_string();
+            return Err(unknown(words, "pair of edges", expected, field));
+        }
+    };
+    if let Some(wall) = walls.iter().find(|wall| sides.contains(&wall.edge)) {
+        let name = EDGES.iter().find(|(_, edge)| *edge == wall.edge).map_or("", |(name, _)| name);
+        return Err(CallError::new(
+            "wrong-value",
+            format!("the edge {name} is a wall and periodic"),
+        )
+        .expected("walls on the other two edges")
+        .in_field(field));
+    }
+    Ok(Some(edges))
 }
 
 /// True if all points are coplanar, to rounding.

@@ -128,8 +128,8 @@ impl<T: Scalar> Build<T> for OGrid<T> {
 ///
 /// The section is a closed curve from tail to tail, in either direction, with the tail at its
 /// greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
-/// cell at the tail; both its sides have identical points. A blunt tail is an error: close it, or
-/// make an O-grid.
+/// cell at the tail; both its sides have identical points. A blunt tail is an error: `c_blocks` of
+/// topologies.sdl makes its C-grid with the block behind the base.
 #[derive(Kind)]
 #[kind(
     forward,
@@ -327,6 +327,7 @@ fn self_smoothed<T: Scalar>(
         tolerance: 1e-8,
         omega: 1.0,
         walls: vec![wall],
+        periodic: None,
         on: None,
     };
     let done = elliptic_until(&grid, &options, &context.budget).map_err(of)?;
@@ -350,7 +351,10 @@ fn blunt<T: Real>(section: &[Vec3<T>], count: usize, field: FieldId) -> CallErro
     let gap = section[count - 1].re().distance(section[count].re());
     CallError::new("edges-apart", format!("the trailing edge is blunt, {gap:.3e} thick"))
         .expected("a section that ends in its first point")
-        .help("close the trailing edge, or make an O-grid: o_grid(section, heights)")
+        .help(
+            "close the trailing edge, or make an O-grid, o_grid(section, heights), or a C-grid with a block behind the base, \
+             c_blocks of topologies.sdl",
+        )
         .in_field(field)
 }
 

@@ -43,6 +43,7 @@ fn main() {
                     tolerance: 0.0,
                     omega: 1.0,
                     walls: vec![],
+                    periodic: None,
                     on: None,
                 };
                 pool.install(|| elliptic(&grid, &options)).unwrap();

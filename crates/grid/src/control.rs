@@ -4,15 +4,16 @@ use crate::lines::Control;
 use crate::{GridSide, SurfaceGrid, Wall};
 use moldloft_num::{Real, Vec3};
 
-/// -r' . r'' / |r'|^2 at each point of a row, by central differences; zero at its ends and where it
-/// stays fixed.
+/// -r' . r'' / |r'|^2 at each point of a row, by central differences, within [`MOST`], which corners exceed; zero at
+/// its ends and where it stays fixed.
 fn along<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
     let mut all = vec![T::zero(); points.len()];
     for (k, w) in points.windows(3).enumerate() {
         let (first, second) = ((w[2] - w[0]) * T::from(0.5), w[2] + w[0] - w[1] * T::from(2.0));
         let square = first.norm_sq();
         if square.re() > 0.0 {
-            all[k + 1] = -(first.dot(second) / square);
+            let limit = T::from(MOST);
+            all[k + 1] = (-(first.dot(second) / square)).min(limit).max(-limit);
         }
     }
     all
@@ -20,8 +21,8 @@ fn along<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
 
 /// The terms of Thomas and Middlecoff (1980): along each edge those with which its own points are a
 /// solution, in between linear from edge to edge by index. An edge that is a point takes those of the
-/// opposite one.
-pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
+/// opposite one; of periodic edges, the last is that of the grid everywhere.
+pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>, periodic: bool) -> Control<T> {
     let (m, n) = (grid.m, grid.n);
     let pair = |a: GridSide, b: GridSide| -> [Vec<T>; 2] {
         let (p, q) = (grid.edge(a), grid.edge(b));
@@ -34,7 +35,10 @@ pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
     };
     // The rows of the grid are along j: "across" belongs to i.
     let [low, high] = pair(GridSide::FirstJ, GridSide::LastJ);
-    let [first, last] = pair(GridSide::FirstI, GridSide::LastI);
+    let [first, last] = match periodic {
+        true => [along(&grid.edge(GridSide::LastI)), along(&grid.edge(GridSide::LastI))],
+        false => pair(GridSide::FirstI, GridSide::LastI),
+    };
     let mix = |a: T, b: T, k: usize, n: usize| a + (b - a) * (k as f64 / (n - 1) as f64);
     Control {
         across: (0..m * n).map(|k| mix(low[k / n], high[k / n], k % n, n)).collect(),

@@ -1,9 +1,10 @@
 //! Elliptic smoothing of surface grids, free or on a support surface.
 //!
-//! Holds: edges stay to the bit; the same bits at any number of threads.
+//! Holds: edges that are not periodic stay to the bit; the same bits at any number of threads.
 
 use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
 use crate::lines::{Change, Control, ZebraRows, larger, transposed_control};
+use crate::periodic::{Seam, crossed};
 use crate::zebra::Banks;
 use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_budget::Budget;
@@ -34,6 +35,16 @@ pub struct Wall<T> {
     pub angle: T,
 }
 
+/// Two opposite edges that are one line, the second moved by a constant vector: the cut of an O-grid, the sides of a
+/// cascade. Their points move like those inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PeriodicEdges {
+    /// s[1,] and s[m,]
+    I,
+    /// s[,1] and s[,n]
+    J,
+}
+
 /// Options of elliptic smoothing.
 pub struct Elliptic<'a, T: Real> {
     /// Control of the spacing.
@@ -47,6 +58,8 @@ pub struct Elliptic<'a, T: Real> {
     pub omega: f64,
     /// For [`Method::Sorenson`].
     pub walls: Vec<Wall<T>>,
+    /// Edges that are smoothed across; walls are on the others.
+    pub periodic: Option<PeriodicEdges>,
     /// The surface that the points stay on, with their parameters u and v at the start; the points
     /// move freely without.
     pub on: Option<(&'a dyn Surface<T>, [Vec<T>; 2])>,
@@ -77,12 +90,15 @@ const WALL_ACCURACY: f64 = 1e-6;
 
 /// The grid with its inner points moved towards a solution of
 /// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0, a = |r_y|^2, b = r_x . r_y, c = |r_x|^2,
-/// by line over-relaxation in two colours; the edges stay.
+/// by line over-relaxation in two colours; edges that are not periodic stay.
 ///
 /// Derivatives are those of the sweeps that were done. The same bits at any number of threads.
 ///
 /// # Errors
-/// [`GridError::TooFew`], [`GridError::NotFinite`], [`GridError::Diverged`].
+/// [`GridError::TooFew`], [`GridError::NotFinite`], [`GridError::NotPeriodic`], [`GridError::Diverged`].
+///
+/// # Panics
+/// With periodic edges on a support surface, or with a wall on a periodic edge.
 pub fn elliptic<T: Real>(
     grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
@@ -99,6 +115,12 @@ pub fn elliptic_until<T: Real>(
     options: &Elliptic<T>,
     budget: &Budget,
 ) -> Result<Smoothed<T>, GridError> {
+    if options.periodic == Some(PeriodicEdges::J) {
+        let done = elliptic_until(&grid.transposed(), &crossed(options), budget)?;
+        let walls = done.walls.into_iter();
+        let walls = walls.map(|wall| WallReport { edge: wall.edge.crossed(), ..wall }).collect();
+        return Ok(Smoothed { grid: done.grid.transposed(), walls, ..done });
+    }
     // Rows side by side that fill the widest registers; numbers with derivatives fill several.
     match T::PARTS {
         1 => smoothed::<T, 8>(grid, options, budget),
@@ -114,6 +136,11 @@ fn smoothed<T: Real, const L: usize>(
     grid.check_count(3)?;
     grid.check_finite()?;
     let size = grid.size();
+    let seam = options.periodic.map(|_| Seam::of(grid)).transpose()?;
+    assert!(seam.is_none() || options.on.is_none(), "periodic edges are in a plane");
+    let original = grid;
+    let grid = &seam.as_ref().map_or_else(|| grid.clone(), |_| Seam::widened(grid));
+    let specified = &seam.as_ref().map_or_else(|| options.walls.clone(), |_| Seam::walls(options));
     let (m, n) = (grid.m, grid.n);
     // A component that is the same everywhere stays so.
     let varies = |c: &usize| {
@@ -143,10 +170,10 @@ fn smoothed<T: Real, const L: usize>(
     };
     let base = match options.method {
         Method::Laplace => None,
-        Method::Middlecoff | Method::Sorenson => Some(middlecoff(grid)),
+        Method::Middlecoff | Method::Sorenson => Some(middlecoff(grid, seam.is_some())),
     };
     let mut terms = (options.method == Method::Sorenson && !options.walls.is_empty())
-        .then(|| WallTerms::new(grid, &options.walls));
+        .then(|| WallTerms::new(grid, specified));
     let both = |control: &Control<T>| {
         let turned = transposed_control(control, m, n);
         let bank = |m: usize, n: usize, c: &Control<T>| {
@@ -164,9 +191,8 @@ fn smoothed<T: Real, const L: usize>(
         let mut met = true;
         if let (Some(terms), Some(base)) = (&mut terms, &base) {
             let now = merged(&points, turned);
-            met =
-                terms.update(&now, &options.walls).iter().all(|wall| wall.error() <= WALL_ACCURACY);
-            control = Some(both(&terms.control(&now, &options.walls, base)));
+            met = terms.update(&now, specified).iter().all(|wall| wall.error() <= WALL_ACCURACY);
+            control = Some(both(&terms.control(&now, specified, base)));
         }
         let way = usize::from(turned);
         let mut square: f64 = 0.0;
@@ -174,7 +200,11 @@ fn smoothed<T: Real, const L: usize>(
             let moved = match (&mut points, &control) {
                 (SmoothedPoints::Free(banks), control) => {
                     let control = control.as_ref().map(|(_, banks)| &banks[way]);
-                    banks.pass(colour, options.omega, control)
+                    let moved = banks.pass(colour, options.omega, control);
+                    if let Some(seam) = &seam {
+                        seam.close(banks, turned, &components);
+                    }
+                    moved
                 }
                 (SmoothedPoints::On(constraint), control) => {
                     let control = control.as_ref().map(|(planes, _)| &planes[way]);
@@ -199,7 +229,8 @@ fn smoothed<T: Real, const L: usize>(
         }
     }
     let grid = merged(&points, turned);
-    let walls = wall_reports(&grid, &options.walls);
+    let walls = wall_reports(&grid, specified);
+    let grid = seam.map_or(grid.clone(), |_| Seam::narrowed(&grid, original));
     let change = history.last().copied().unwrap_or(f64::INFINITY);
     Ok(Smoothed { grid, sweeps: done, change, history, walls, converged })
 }

@@ -86,6 +86,13 @@ pub enum GridError {
         /// Its value.
         value: f64,
     },
+    /// Edges that should be periodic are not the same line.
+    NotPeriodic {
+        /// The indices of the first point that differs, from 1.
+        at: [usize; 2],
+        /// Its distance from its place.
+        gap: f64,
+    },
     /// A surface has no normal at a point.
     NoNormal {
         /// Its indices, from 1.
@@ -125,6 +132,12 @@ impl fmt::Display for GridError {
             Self::Spent(spent) => write!(f, "{spent}"),
             Self::Heights { at, value } => {
                 write!(f, "heights ascend from 0, but height {at} is {value}")
+            }
+            Self::NotPeriodic { at: [i, j], gap } => {
+                write!(
+                    f,
+                    "the edges are not periodic: point [{i},{j}] is {gap} off the place of its partner"
+                )
             }
             Self::NoNormal { at: [i, j] } => write!(f, "no normal at point [{i},{j}]"),
         }

@@ -21,6 +21,7 @@ mod error;
 mod hex_mesh;
 mod lines;
 mod marching;
+mod periodic;
 mod pole_cells;
 mod quality;
 mod surface_grid;
@@ -32,7 +33,7 @@ pub use blend::{Blend, transfinite, transfinite_until};
 pub use block::{Faces, transfinite_block, transfinite_block_until};
 pub use block_quality::{BlockMetric, block_quality, block_quality_until};
 pub use control::{WallReport, wall_cells};
-pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
+pub use elliptic::{Elliptic, Method, PeriodicEdges, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
 pub use hex_mesh::{BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck, shared_nodes};
 pub use marching::{

@@ -34,6 +34,18 @@ impl GridSide {
         [GridSide::FirstI, GridSide::LastI, GridSide::FirstJ, GridSide::LastJ];
 }
 
+impl GridSide {
+    /// The same edge once the indices are exchanged.
+    pub(crate) fn crossed(self) -> Self {
+        match self {
+            GridSide::FirstI => GridSide::FirstJ,
+            GridSide::LastI => GridSide::LastJ,
+            GridSide::FirstJ => GridSide::FirstI,
+            GridSide::LastJ => GridSide::LastI,
+        }
+    }
+}
+
 impl fmt::Display for GridSide {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -98,6 +110,11 @@ impl<T: Real> SurfaceGrid<T> {
     pub fn points(&self) -> impl Iterator<Item = Vec3<T>> + '_ {
         (0..self.m * self.n)
             .map(|k| Vec3::new(self.planes[0][k], self.planes[1][k], self.planes[2][k]))
+    }
+
+    /// The grid with its indices exchanged.
+    pub fn transposed(&self) -> Self {
+        Self::from_fn(self.n, self.m, |i, j| self.at(j, i))
     }
 
     /// The points of an edge, in ascending index.

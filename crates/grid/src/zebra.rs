@@ -53,12 +53,18 @@ impl<T: Real, const L: usize> Banks<T, L> {
     /// The planes.
     pub fn planes(&self) -> Vec<Vec<T>> {
         let n = self.n;
-        let at = |c: usize, i: usize, j: usize| {
-            let k = i / 2;
-            self.colours[i % 2][c][k / L * n + j][k % L]
-        };
-        let plane = |c: usize| (0..self.m * n).map(|k| at(c, k / n, k % n)).collect();
+        let plane = |c: usize| (0..self.m * n).map(|k| self.at(c, k / n, k % n)).collect();
         (0..self.colours[0].len()).map(plane).collect()
+    }
+
+    /// Number (i, j) of a component.
+    pub fn at(&self, component: usize, i: usize, j: usize) -> T {
+        self.colours[i % 2][component][i / 2 / L * self.n + j][i / 2 % L]
+    }
+
+    /// Replaces number (i, j) of a component.
+    pub fn set(&mut self, component: usize, i: usize, j: usize, x: T) {
+        self.colours[i % 2][component][i / 2 / L * self.n + j][i / 2 % L] = x;
     }
 
     /// Rows become columns.

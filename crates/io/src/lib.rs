@@ -16,7 +16,7 @@
 //! | Gmsh | [`msh::write`] | – |
 //! | SU2 | [`su2::write`] | – |
 //! | hexahedra of SU2, Gmsh | [`hexahedra::su2`], [`hexahedra::gmsh`] | – |
-//! | OpenFOAM | [`openfoam::block_mesh`], [`openfoam::poly_mesh`] | – |
+//! | OpenFOAM | [`openfoam::block_mesh`], [`graded_blocks::graded_block_mesh`], [`openfoam::poly_mesh`] | – |
 //! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
@@ -51,6 +51,7 @@ pub mod drawing;
 mod facing;
 pub mod gdf;
 pub mod gltf;
+pub mod graded_blocks;
 pub mod hams;
 pub mod hexahedra;
 pub mod hydrostar;

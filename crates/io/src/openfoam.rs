@@ -11,7 +11,7 @@ use std::fmt::Write;
 /// correspond.
 const SAME_PERIODIC: f64 = 1e-8;
 
-fn header(class: &str, object: &str) -> String {
+pub(crate) fn header(class: &str, object: &str) -> String {
     format!(
         "FoamFile\n{{\n    version 2.0;\n    format ascii;\n    class {class};\n    object {object};\n}}\n"
     )
@@ -48,8 +48,19 @@ fn type_entries(mesh: &HexMesh, patch: &BoundaryPatch, periodic: &[PeriodicPartn
     out
 }
 
-/// A blockMeshDict of OpenFOAM: a block for each cell, so that the points are those of the grid.
-pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
+/// Name and entries of each boundary with a name.
+pub fn boundary_entries(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<(String, String)> {
+    let named = mesh.patches.iter().filter(|patch| patch.name != "defaultFaces");
+    named.map(|patch| (patch.name.clone(), type_entries(mesh, patch, periodic))).collect()
+}
+
+/// A blockMeshDict of OpenFOAM: a block for each cell, so that the points are those of the grid. The faces of periodic
+/// boundaries have the order of their partners.
+///
+/// # Errors
+/// As [`poly_mesh`], with periodic boundaries.
+pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Result<Vec<u8>, WriteError> {
+    let ordered = if periodic.is_empty() { None } else { Some(ordered(mesh, periodic)?) };
     let mut out = header("dictionary", "blockMeshDict");
     out.push_str("scale 1;\ndefaultPatch { name defaultFaces; type patch; }\nvertices\n(\n");
     for p in &mesh.points {
@@ -60,20 +71,27 @@ pub fn block_mesh(mesh: &HexMesh, periodic: &[PeriodicPartner]) -> Vec<u8> {
         let _ = writeln!(out, "hex ({}) (1 1 1) simpleGrading (1 1 1)", nodes(cell, 0));
     }
     out.push_str(");\nedges ();\nboundary\n(\n");
-    for patch in &mesh.patches {
+    for (number, patch) in mesh.patches.iter().enumerate() {
         // The faces that have no name are found by blockMesh itself.
         if patch.name == "defaultFaces" {
             continue;
         }
         let _ = write!(out, "{}\n{{\n{}", patch.name, type_entries(mesh, patch, periodic));
         out.push_str("    faces\n    (\n");
-        for face in &patch.faces {
-            let _ = writeln!(out, "    ({})", nodes(face, 0));
+        let faces: Vec<String> = match &ordered {
+            Some((faces, ranges)) => {
+                let [first, count] = ranges[number];
+                faces[first..first + count].iter().map(|face| nodes(&face.nodes, 0)).collect()
+            }
+            None => patch.faces.iter().map(|face| nodes(face, 0)).collect(),
+        };
+        for face in faces {
+            let _ = writeln!(out, "    ({face})");
         }
         out.push_str("    );\n}\n");
     }
     out.push_str(");\nmergePatchPairs ();\n");
-    out.into_bytes()
+    Ok(out.into_bytes())
 }
 
 /// A file of a polyMesh, with its name in the folder.

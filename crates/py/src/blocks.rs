@@ -6,6 +6,7 @@ use crate::error::{model_error, plain_error};
 use moldloft::diag::Sources;
 use moldloft::document::Blocked;
 use moldloft::export::{format_named, write_blocks};
+use moldloft::io::graded_blocks::{GradedPatch, graded_block_mesh, graded_parts};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -99,6 +100,30 @@ impl PyBlocks {
     fn boundaries(&self) -> Vec<Side> {
         let (_, free) = self.blocked.blocks.interfaces();
         free.iter().map(|b| (b.block, b.face, b.from, b.to)).collect()
+    }
+
+    /// The parts that a blockMeshDict has: (block, begin, end).
+    fn block_mesh_parts(&self, every: usize) -> Vec<(usize, [usize; 3], [usize; 3])> {
+        let parts = graded_parts(&self.blocked.blocks, every);
+        parts.into_iter().map(|part| (part.block, part.begin, part.end)).collect()
+    }
+
+    /// A blockMeshDict with these parts of faces, their names and types.
+    fn block_mesh<'py>(
+        &self,
+        py: Python<'py>,
+        patches: Vec<(Side, String, String)>,
+        every: usize,
+    ) -> Bound<'py, PyBytes> {
+        let patches: Vec<GradedPatch> = patches
+            .into_iter()
+            .map(|((block, face, from, to), name, kind)| {
+                let entries = format!("    type {kind};\n");
+                GradedPatch { block, face, from, to, name, entries }
+            })
+            .collect();
+        let blocks = &self.blocked.blocks;
+        PyBytes::new(py, &py.detach(|| graded_block_mesh(blocks, &patches, every)))
     }
 
     /// The files of a format, the first of them under the name `main`: name and content of each.

@@ -202,7 +202,8 @@ fn what_no_solver_takes_is_said() {
             n - 1
         )
     };
-    said(&pair(9, "0"), "not-joined");
+    said(&pair(9, "0"), "cannot-write");
+    said(&pair(8, "0"), "not-joined");
     said(&pair(5, "1e-8"), "not-joined");
     let met = open(&pair(5, "0"));
     assert_eq!(ids(&met), ["nameless"], "{:?}", reported(&met));
@@ -235,6 +236,9 @@ fn families_contain_their_coarse_grids() {
         "geometric(0, 1, refined_step(.01), refined(25))",
         "geometric2(0, 1, refined_step(.01), refined_step(.005), refined(25))",
         "cosine(0, 1, refined(25))",
+        "uniform(0, 1, refined(25))",
+        "redist(geometric(0, 1, .01, 20), refined(25))",
+        "redist(d_tanh(0, 1, refined_step(.01), 0, refined(25)), refined(13))",
     ] {
         let mut rows = Vec::new();
         for level in 0..3 {
@@ -252,8 +256,13 @@ fn families_contain_their_coarse_grids() {
             assert!(off.fold(0.0, f64::max) < 1e-15, "{law} at {level}");
         }
     }
-    let mut document = open("farray a = geometric(0, 1, .01, refined(25));");
-    assert!(document.diagnostics().is_empty());
-    document.refine(1).unwrap();
-    assert_eq!(ids(&document), ["not-nested"]);
+    for law in [
+        "geometric(0, 1, .01, refined(25))",
+        "redist(d_tanh(0, 1, refined_step(.01), 0, refined(25)), refined(17))",
+    ] {
+        let mut document = open(&format!("farray a = {law};"));
+        assert!(document.diagnostics().is_empty());
+        document.refine(1).unwrap();
+        assert_eq!(ids(&document), ["not-nested"], "{law}");
+    }
 }

@@ -17,7 +17,15 @@ fn largest(a: &SurfaceGrid<f64>, b: &SurfaceGrid<f64>) -> f64 {
 }
 
 fn laplace(sweeps: usize, omega: f64) -> Elliptic<'static, f64> {
-    Elliptic { method: Method::Laplace, sweeps, tolerance: 1e-14, omega, walls: vec![], on: None }
+    Elliptic {
+        method: Method::Laplace,
+        sweeps,
+        tolerance: 1e-14,
+        omega,
+        walls: vec![],
+        periodic: None,
+        on: None,
+    }
 }
 
 fn stretch(x: f64) -> f64 {
@@ -230,6 +238,7 @@ fn sorenson_gives_walls_their_spacing_and_right_angles() {
         tolerance: 1e-10,
         omega: 1.0,
         walls,
+        periodic: None,
         on: None,
     };
     let off = |grid: &SurfaceGrid<f64>| {
@@ -271,6 +280,7 @@ fn two_walls_converge() {
         tolerance: 1e-9,
         omega: 1.0,
         walls,
+        periodic: None,
         on: None,
     };
     let done = elliptic(&start, &options).unwrap();
@@ -420,6 +430,7 @@ fn derivatives_flow_through_sweeps() {
                 spacing: vec![h * 0.1],
                 angle: T::from(1.4),
             }],
+            periodic: None,
             on: None,
         };
         elliptic(&grid, &options).unwrap().grid
@@ -489,4 +500,61 @@ fn metrics_of_known_cells() {
         )
         .is_empty()
     );
+}
+
+/// A ring between two circles, its cut anywhere.
+fn ring(m: usize, n: usize, cut: f64) -> SurfaceGrid<f64> {
+    SurfaceGrid::from_fn(m, n, |i, j| {
+        let angle = cut + std::f64::consts::TAU * (i % (m - 1)) as f64 / (m - 1) as f64;
+        let share = j as f64 / (n - 1) as f64;
+        let radius = 1.0 + 3.0 * share;
+        Vec3::of(0.8 * share + radius * libm::cos(angle), radius * libm::sin(angle), 0.0)
+    })
+}
+
+#[test]
+fn the_cut_of_a_ring_leaves_no_trace() {
+    // The smoothed ring is the same wherever its cut is: points of one cut are those of another.
+    let (m, n, shift) = (37, 13, 9);
+    for (edges, sweeps) in [(PeriodicEdges::I, 4000), (PeriodicEdges::J, 4000)] {
+        let smooth = |cut: f64| {
+            let start = ring(m, n, cut);
+            let start = if edges == PeriodicEdges::I { start } else { start.transposed() };
+            let options = Elliptic { periodic: Some(edges), ..laplace(sweeps, 1.2) };
+            let done = elliptic(&start, &options).unwrap();
+            assert!(done.converged, "{}", done.change);
+            if edges == PeriodicEdges::I { done.grid } else { done.grid.transposed() }
+        };
+        let one = smooth(0.0);
+        let other = smooth(std::f64::consts::TAU * shift as f64 / (m - 1) as f64);
+        let mut worst: f64 = 0.0;
+        let mut moved: f64 = 0.0;
+        for i in 0..m {
+            for j in 0..n {
+                let p = one.at((i + shift) % (m - 1), j);
+                worst = worst.max(p.distance(other.at(i, j)));
+                moved = moved.max(one.at(i, j).distance(ring(m, n, 0.0).at(i, j)));
+            }
+        }
+        assert!(worst < 1e-10, "{worst:e}");
+        assert!(moved > 0.01);
+        // With the cut held there is a kink.
+        let fixed = elliptic(&ring(m, n, 0.7), &laplace(4000, 1.2)).unwrap().grid;
+        let free = elliptic(
+            &ring(m, n, 0.7),
+            &Elliptic { periodic: Some(PeriodicEdges::I), ..laplace(4000, 1.2) },
+        );
+        assert!(largest(&fixed, &free.unwrap().grid) > 0.01);
+    }
+}
+
+#[test]
+fn periodic_edges_are_the_same_line() {
+    let mut grid = ring(9, 5, 0.0);
+    grid.set(8, 2, grid.at(8, 2) + Vec3::of(0.0, 1e-3, 0.0));
+    let options = Elliptic { periodic: Some(PeriodicEdges::I), ..laplace(10, 1.0) };
+    match elliptic(&grid, &options) {
+        Err(GridError::NotPeriodic { at: [9, 3], gap }) => assert!((gap - 1e-3).abs() < 1e-12),
+        other => panic!("{other:?}"),
+    }
 }

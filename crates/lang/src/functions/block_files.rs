@@ -1,5 +1,6 @@
 //! Blocks as one mesh with named boundaries: joints, periodic boundaries, and the data for CGNS.
 
+use crate::functions::hanging::{HangingJoint, hanging};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
 use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
@@ -40,11 +41,37 @@ pub struct CgnsBlocks {
     pub boundaries: Vec<(FacePart, String, String)>,
 }
 
+/// A face that lies on another one, with points that are not the same.
+pub(crate) struct AbuttingFaces {
+    pub parts: [FacePart; 2],
+    /// Points along the axes of both.
+    pub sizes: [[usize; 2]; 2],
+    /// The greatest distance of the points of the first from the second.
+    pub gap: f64,
+}
+
 pub(crate) struct Connected {
     pub content: CgnsBlocks,
     pub partners: Vec<PeriodicPartner>,
     /// Parts of faces without a neighbour or a name.
     pub nameless: Vec<FacePart>,
+    /// Those that are one face with others, of finer or coarser cells.
+    pub hanging: Vec<HangingJoint>,
+    /// Those that lie on others but are not joined.
+    pub abutting: Vec<AbuttingFaces>,
+}
+
+impl Connected {
+    /// True of a part all of which is in hanging interfaces.
+    pub fn is_hanging(&self, part: &FacePart) -> bool {
+        let covered = self.hanging.iter().map(|joint| match joint.parts.map(|own| own == *part) {
+            [true, _] => joint.cells[0].iter().product(),
+            [_, true] => joint.cells[1].iter().product(),
+            _ => 0,
+        });
+        let cells = (0..3).map(|k| part.2[k].abs_diff(part.3[k]).max(1)).product::<usize>();
+        covered.sum::<usize>() == cells
+    }
 }
 
 /// The names of faces: "k1 = hull wall, i1 in = plane symmetry"; a surface has no faces k.
@@ -179,16 +206,17 @@ pub(crate) fn extruded(
     Ok((layers.collect(), PlaneAxes { axes, normal: normal.into() }))
 }
 
-/// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
-pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
+/// The blocks with common vertices where points of faces coincide.
+pub(crate) fn merged(blocks: &[NamedBlock]) -> Result<Blocks, Diagnostic> {
     let (positions, numbers) = shared_nodes(&volumes(blocks));
-    if let Some([a, b]) = thrice(blocks, &numbers) {
-        let [a, b] = [a, b].map(|block| &blocks[block].name);
-        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
-        return Err(Diagnostic::error("cannot-write", message)
-            .expected("blocks that do not overlap")
-            .help("write each block once"));
-    }
+    joined(blocks, positions, numbers)
+}
+
+fn joined(
+    blocks: &[NamedBlock],
+    positions: Vec<Vec3>,
+    numbers: Vec<Vec<usize>>,
+) -> Result<Blocks, Diagnostic> {
     let hexahedra = blocks
         .iter()
         .zip(numbers)
@@ -199,8 +227,21 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
             faces: Default::default(),
         })
         .collect();
-    let all = Blocks::new(positions, hexahedra)
-        .map_err(|error| Diagnostic::error("cannot-write", error.to_string()))?;
+    Blocks::new(positions, hexahedra)
+        .map_err(|error| Diagnostic::error("cannot-write", error.to_string()))
+}
+
+/// Joints and boundaries of the blocks, by coincident points, and the periodic ones.
+pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> {
+    let (positions, numbers) = shared_nodes(&volumes(blocks));
+    if let Some([a, b]) = thrice(blocks, &numbers) {
+        let [a, b] = [a, b].map(|block| &blocks[block].name);
+        let message = format!("a face of `{a}` and `{b}` belongs to more than two cells");
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected("blocks that do not overlap")
+            .help("write each block once"));
+    }
+    let all = joined(blocks, positions, numbers)?;
     let (joints, free) = all.interfaces();
     let joints = joints.iter().map(|joint| {
         let side = |k: usize| (joint.sides[k].0, joint.sides[k].1, joint.from[k], joint.to[k]);
@@ -229,7 +270,9 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     joints.extend(of_pairs);
     let names = blocks.iter().map(|block| block.name.clone()).collect();
     let content = CgnsBlocks { names, joints, boundaries };
-    Ok(Connected { content, partners, nameless })
+    let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let hanging = hanging(blocks, &nameless, SAME * size);
+    Ok(Connected { content, partners, nameless, hanging, abutting: Vec::new() })
 }
 
 /// Refuses a boundary of two types.
@@ -280,6 +323,9 @@ fn thrice(blocks: &[NamedBlock], numbers: &[Vec<usize>]) -> Option<[usize; 2]> {
     }
     None
 }
+
+/// Tolerance of the points of two faces that are one, relative to the size.
+const SAME: f64 = 1e-10;
 
 /// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;

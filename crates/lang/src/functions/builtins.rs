@@ -347,9 +347,26 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "write_blockmesh",
         action: Action::WriteGrids(&grid_formats::BLOCK_MESH),
-        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
+        doc: "Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept, or, \"graded\", with few blocks whose edges have the points of the grid; faces of equal name are one patch.",
         returns: "nothing",
-        help: BLOCKS_AND_FACES,
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            (
+                "words?",
+                "text",
+                "\"graded\": few blocks with curved, graded edges; blockMesh interpolates between the edges.",
+            ),
+            (
+                "b",
+                "block or surface …",
+                "Blocks, or surfaces in one plane; a list counts as its members.",
+            ),
+            (
+                "faces?",
+                "text",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\" (of a surface i1, im, j1, jn).",
+            ),
+        ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");",
     },
     Builtin {

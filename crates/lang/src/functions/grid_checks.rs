@@ -2,9 +2,12 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each, volumes,
+    AbuttingFaces, Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each,
+    volumes,
 };
 use crate::functions::grid_formats::GridFormat;
+use crate::functions::hanging::HangingJoint;
+use crate::functions::joint_report::part_text;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, SurfaceGrid, VolumeGrid, folded_cells};
 use moldloft_io::StructuredGrid;
@@ -52,9 +55,19 @@ pub(super) fn checked(
         false => blocks.to_vec(),
     };
     symmetry(&layers, &mut found);
-    let connected = connected(&layers)?;
+    let mut connected = connected(&layers)?;
     overlaps(&layers, &connected)?;
-    nameless(&layers, flat, &connected.nameless, &mut found);
+    if let (false, Some(joint)) = (format.hangs, connected.hanging.first()) {
+        return Err(hung(&layers, flat, joint));
+    }
+    // CGNS has boundaries there, which is said.
+    let said: Vec<FacePart> = match format.keeps_order && !format.plane {
+        true => connected.nameless.clone(),
+        false => {
+            connected.nameless.iter().filter(|part| !connected.is_hanging(part)).copied().collect()
+        }
+    };
+    connected.abutting = nameless(&layers, flat, &said, &mut found);
     Ok((found, Some(connected)))
 }
 
@@ -136,6 +149,18 @@ fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnost
     Ok(())
 }
 
+/// The fault of a hanging interface in a format of whole faces.
+fn hung(blocks: &[NamedBlock], flat: bool, joint: &HangingJoint) -> Diagnostic {
+    let [a, b] = joint.sides.map(|part| part_text(blocks, flat, &part));
+    let [own, theirs] = joint.cells.map(|[m, n]| format!("{m} x {n}"));
+    let message = format!("{a} and {b} are one face, of {own} and {theirs} cells");
+    Diagnostic::error("cannot-write", message)
+        .expected("the same cells on both sides: the format joins whole faces of cells")
+        .help(
+            "give both blocks the same counts there, or name both faces, as boundaries that the solver joins",
+        )
+}
+
 /// The number of cells that are turned over at a corner, and the first of them.
 fn turned(grid: &VolumeGrid<f64>) -> (usize, Option<usize>) {
     let quality = grid.cell_quality();
@@ -204,15 +229,21 @@ fn symmetry(blocks: &[NamedBlock], found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Faces without a name: coincident ones, and the existence of others.
-fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut Vec<Diagnostic>) {
+/// Faces without a name: coincident ones, which are returned, and the existence of others.
+fn nameless(
+    blocks: &[NamedBlock],
+    flat: bool,
+    parts: &[FacePart],
+    found: &mut Vec<Diagnostic>,
+) -> Vec<AbuttingFaces> {
     let word = |part: &FacePart| match (flat, GridFace::ALL[part.1].word()) {
         (true, "in") => "im",
         (_, word) => word,
     };
     let called = |part: &FacePart| format!("{} of `{}`", word(part), blocks[part.0].name);
+    let mut abutting = Vec::new();
     if parts.is_empty() {
-        return;
+        return abutting;
     }
     // The faces of each block, once, in their order.
     let mut seen: Vec<(usize, Vec<&str>)> = Vec::new();
@@ -229,15 +260,15 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
         .iter()
         .map(|(block, face, from, to)| part_of(&blocks[*block].grid, *face, *from, *to))
         .collect();
-    let mut abutting = false;
     for (a, mesh) in meshes.iter().enumerate() {
         for (b, other) in meshes.iter().enumerate() {
             if a == b || parts[a].0 == parts[b].0 || (a > b && lies_on(other, mesh).is_some()) {
                 continue;
             }
             if let Some(gap) = lies_on(mesh, other) {
-                abutting = true;
                 let ([m, n], [p, q]) = (mesh.size, other.size);
+                let sizes = [[m, n], [p, q]];
+                abutting.push(AbuttingFaces { parts: [parts[a], parts[b]], sizes, gap });
                 let (this, that) = (called(&parts[a]), called(&parts[b]));
                 let message = format!("{this} lies on {that}, but they are not joined");
                 found.push(
@@ -251,7 +282,7 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
             }
         }
     }
-    if !abutting {
+    if abutting.is_empty() {
         let all: Vec<String> = seen
             .iter()
             .map(|(block, faces)| format!("{} of `{}`", faces.join(", "), blocks[*block].name))
@@ -262,6 +293,7 @@ fn nameless(blocks: &[NamedBlock], flat: bool, parts: &[FacePart], found: &mut V
                 .help("name them behind the block: \"i1 = inlet inflow, k1 = body wall\""),
         );
     }
+    abutting
 }
 
 /// Distance of a face from another that contains it; `None` if none does.
@@ -303,7 +335,7 @@ fn distance_to(p: Vec3, face: &FaceMesh) -> f64 {
 }
 
 /// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-fn nearest_of(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(super) fn nearest_of(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {

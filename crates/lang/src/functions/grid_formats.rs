@@ -1,12 +1,15 @@
 //! The formats of grid files that programs write: one row each.
 
-use crate::functions::block_files::{CgnsBlocks, Connected, NamedBlock, extruded, one_mesh, whole};
+use crate::functions::block_files::{
+    CgnsBlocks, Connected, NamedBlock, connected, extruded, merged, one_mesh, volumes, whole,
+};
 use crate::functions::plots::plot;
 use crate::functions::solver_conditions::{conditions, map_entries};
 use crate::run::usage;
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
-use moldloft_grid::HexMesh;
+use moldloft_grid::{HexMesh, VolumeGrid};
+use moldloft_io::graded_blocks::{GradedPatch, graded_block_mesh};
 use moldloft_io::hexahedra::PeriodicPartner;
 use moldloft_io::neutral_map::neutral_map;
 use moldloft_io::plot3d::{self, Laid, Variant};
@@ -43,6 +46,8 @@ pub(crate) struct GridFormat {
     pub blanking: bool,
     /// True if surfaces in one plane are a mesh, with their edges as boundaries.
     pub plane: bool,
+    /// True if faces of unequal cells may meet.
+    pub hangs: bool,
     /// True if cells keep the order of the points, right-handed or not.
     pub keeps_order: bool,
     /// True if it checks the budget itself; others are watched from outside.
@@ -58,6 +63,7 @@ pub(crate) const PLAIN: GridFormat = GridFormat {
     joins: false,
     plane: false,
     blanking: false,
+    hangs: false,
     keeps_order: false,
     watches: false,
     words: &[],
@@ -106,7 +112,7 @@ pub(crate) static CSV: GridFormat = PLAIN;
 
 /// `write_cgns`.
 pub(crate) static CGNS: GridFormat =
-    GridFormat { blocks: true, joins: true, keeps_order: true, encode: cgns, ..PLAIN };
+    GridFormat { blocks: true, joins: true, hangs: true, keeps_order: true, encode: cgns, ..PLAIN };
 
 /// `write_su2`.
 pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
@@ -115,7 +121,8 @@ pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
 pub(crate) static GMSH: GridFormat = GridFormat { encode: gmsh, ..JOINED_MESH };
 
 /// `write_blockmesh`.
-pub(crate) static BLOCK_MESH: GridFormat = GridFormat { encode: block_mesh, ..JOINED_MESH };
+pub(crate) static BLOCK_MESH: GridFormat =
+    GridFormat { words: &[GRADED], encode: block_mesh, ..JOINED_MESH };
 
 /// `write_polymesh`.
 pub(crate) static POLY_MESH: GridFormat = GridFormat { encode: poly_mesh, ..JOINED_MESH };
@@ -129,7 +136,8 @@ pub(crate) static NEUTRAL_MAP: GridFormat =
     GridFormat { plane: false, keeps_order: true, encode: neutral_map_file, ..JOINED_MESH };
 
 /// `interfaces`, which writes nothing.
-pub(crate) static CONNECTIONS: GridFormat = GridFormat { keeps_order: true, ..JOINED_MESH };
+pub(crate) static CONNECTIONS: GridFormat =
+    GridFormat { hangs: true, keeps_order: true, ..JOINED_MESH };
 
 /// `plot`.
 pub(crate) static PICTURE: GridFormat = GridFormat {
@@ -372,8 +380,9 @@ fn check_wedges(mesh: &HexMesh) -> Result<(), Diagnostic> {
 
 /// The mesh for OpenFOAM, which has a plane mesh as one layer of cells between two empty sides, and its periodic
 /// boundaries.
-fn foam_mesh(file: GridFile<'_>) -> Result<(HexMesh, Vec<PeriodicPartner>), Diagnostic> {
-    option(&file, "")?;
+fn foam_mesh(
+    file: GridFile<'_>,
+) -> Result<(Vec<NamedBlock>, HexMesh, Vec<PeriodicPartner>), Diagnostic> {
     let blocks = match are_flat(&file.blocks)? {
         true => extruded(&file.blocks, FRONT_AND_BACK)?.0,
         false => file.blocks,
@@ -381,18 +390,69 @@ fn foam_mesh(file: GridFile<'_>) -> Result<(HexMesh, Vec<PeriodicPartner>), Diag
     let mesh = one_mesh(&blocks);
     check_wedges(&mesh)?;
     let partners = file.connected.map(|connected| connected.partners).unwrap_or_default();
-    Ok((mesh, partners))
+    Ok((blocks, mesh, partners))
 }
 
 fn block_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    let graded = option(&file, GRADED)?;
     let path = file.path;
-    let (mesh, partners) = foam_mesh(file)?;
-    Ok(one(path, openfoam::block_mesh(&mesh, &partners)))
+    let (blocks, mesh, partners) = foam_mesh(file)?;
+    let bytes = match graded {
+        true => graded_mesh(blocks, &mesh, &partners)?,
+        false => openfoam::block_mesh(&mesh, &partners).map_err(cannot)?,
+    };
+    Ok(one(path, bytes))
+}
+
+/// The word for a blockMeshDict with blocks of many cells.
+const GRADED: &str = "graded";
+
+/// A dictionary with few blocks, whose edges have the points of the grid. Left-handed blocks are turned over.
+fn graded_mesh(
+    blocks: Vec<NamedBlock>,
+    mesh: &HexMesh,
+    partners: &[PeriodicPartner],
+) -> Result<Vec<u8>, Diagnostic> {
+    if let Some(own) = partners.first() {
+        let message =
+            format!("a graded blockMeshDict has no periodic boundary, as is `{}`", own.name);
+        return Err(Diagnostic::error("cannot-write", message)
+            .expected(
+                "other boundaries: blockMesh orders the faces of blocks of many cells by itself",
+            )
+            .help("write the mesh itself: write_polymesh(\"constant/polyMesh\", ...)"));
+    }
+    let volumes: Vec<f64> = volumes(&blocks).iter().map(VolumeGrid::volume).collect();
+    let turned = |(mut block, volume): (NamedBlock, f64)| {
+        if volume < 0.0 {
+            let ni = block.grid.size[0];
+            for plane in &mut block.grid.planes {
+                plane.chunks_mut(ni).for_each(<[f64]>::reverse);
+            }
+            block.faces.swap(0, 1);
+        }
+        block
+    };
+    let blocks: Vec<NamedBlock> = blocks.into_iter().zip(volumes).map(turned).collect();
+    let entries = openfoam::boundary_entries(mesh, partners);
+    let patches: Vec<GradedPatch> = connected(&blocks)?
+        .content
+        .boundaries
+        .into_iter()
+        .filter_map(|((block, face, from, to), name, _)| {
+            let (_, entries) = entries.iter().find(|(own, _)| *own == name)?;
+            let low = std::array::from_fn(|k: usize| from[k].min(to[k]));
+            let high = std::array::from_fn(|k: usize| from[k].max(to[k]));
+            Some(GradedPatch { block, face, from: low, to: high, name, entries: entries.clone() })
+        })
+        .collect();
+    Ok(graded_block_mesh(&merged(&blocks)?, &patches, 0))
 }
 
 fn poly_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+    option(&file, "")?;
     let folder = file.path.trim_end_matches('/');
-    let (mesh, partners) = foam_mesh(file)?;
+    let (_, mesh, partners) = foam_mesh(file)?;
     let parts = openfoam::poly_mesh(&mesh, &partners).map_err(cannot)?;
     let named = |(name, bytes): openfoam::FoamFile| (format!("{folder}/{name}"), bytes);
     Ok(EncodedFiles { files: parts.into_iter().map(named).collect(), cgns: None })

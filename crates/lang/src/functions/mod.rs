@@ -13,6 +13,7 @@ mod grid_checks;
 mod grid_files;
 pub(crate) mod grid_formats;
 pub(crate) mod grid_values;
+mod hanging;
 mod joint_report;
 pub mod plots;
 mod shape_measures;

@@ -21,6 +21,22 @@ fn steps_of(name: &str) -> Option<(&'static [usize], bool)> {
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// Notes a `redist` of a refined row between whose points its own lie: it interpolates in one row in the coarse run, and
+    /// in another one here.
+    fn redistributed(&mut self, args: &[Value<T>], coarse: f64, span: Span) {
+        let Some(Value::Numbers(given)) = args.first() else { return };
+        let count = given.items.len() as f64;
+        let Some(given) = self.refined.counts.get(&count.to_bits()) else { return };
+        if (given - 1.0) % (coarse - 1.0) != 0.0 {
+            let message = "the points of the coarse run are not among those of this redist, whose row has a refined number of points";
+            self.report(
+                Diagnostic::remark("not-nested", message)
+                    .at(span)
+                    .help("give it a row of a fixed number of points"),
+            );
+        }
+    }
+
     /// The row of a distribution with cells in a refined run; `None` of any other call.
     pub(super) fn nested_row(
         &mut self,
@@ -31,9 +47,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if self.refined.counts.is_empty() {
             return None;
         }
-        let (steps, cells) = steps_of(&row.name)?;
         let Some(Value::Number(n)) = args.last() else { return None };
         let coarse = *self.refined.counts.get(&n.re().to_bits())?;
+        if row.name == "redist" {
+            self.redistributed(args, coarse, span);
+        }
+        let (steps, cells) = steps_of(&row.name)?;
         let mut coarse_args = args.to_vec();
         *coarse_args.last_mut()? = Value::Number(T::from(coarse));
         for &k in steps {
