@@ -499,6 +499,8 @@ impl SketchSession {
             "GENERATE" | "CREATE" => self.generate(args),
             "FACE" => self.face(args),
             "CHOOSE" => self.choose(args),
+            "OFFSET" => self.offset(args),
+            "SWEEP" => self.sweep_section(args),
             "EXTRUDE" => self.extrude(args),
             "REVOLVE" => self.revolve(args),
             "CLEAN" => self.clean(args),
