@@ -43,7 +43,7 @@ def comb(rng: np.random.Generator, grid: bool) -> Corners:
         (lambda a, b: float(rng.integers(a, b)))
         if grid
         else (lambda a, b: float(rng.uniform(a, b)))
-    )  # noqa: E501
+    )
     x, up = 0.0, []
     for _ in range(int(rng.integers(2, 5))):
         width, gap, height = size(3, 12), size(2, 9), size(8, 30)

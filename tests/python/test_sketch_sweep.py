@@ -118,7 +118,7 @@ def test_pipes_are_those_of_pappus_and_occt(seed: int, tmp_path) -> None:
     # A change of the path, and a bar through the first side.
     sketch.run(f"USING WAY; SET A0.R {2 * wide!r}", strict=False)
     sketch.run(
-        f"SKETCH BAR 2D XZ\nCIRCLE DIAMETER {0.2 * wide!r} AT 0 {2 * wide!r}\n"
+        f"SKETCH BAR 2D XZ\nCIRCLE DIAMETER {0.2 * wide!r} AT {centre!r} {2 * wide!r}\n"
         f"EXTRUDE BAR {6 * wide!r}\nMOVE BAR 0 {-3 * wide!r} 0\nCUT PIPE BAR INTO DRILLED"
     )
     assert sketch.objects["DRILLED"]["volume"] < sketch.objects["PIPE"]["volume"]

@@ -61,6 +61,13 @@ export function shapes(d: Drawn, chosen: Set<string>): Shape[] {
       command: (x) => `SWEEP ${d.object} ALONG ${x}`,
       last: true,
     })
+    made.push({
+      words: 'Loft',
+      key: '',
+      asks: 'to the sections of names',
+      command: (x) => `LOFT ${d.object} ${x.replace(/,/g, ' ')}`,
+      last: true,
+    })
     made.push({ words: 'Extrude', key: '', asks: 'depth', command: (x) => `EXTRUDE ${x}`, last: true })
   } else if (last) {
     made.push({

@@ -175,6 +175,8 @@ pub enum FeatureKind {
     Extrude(DimensionExpr),
     /// The first operand, a section, moved along the second, a chain of lines and arcs.
     Sweep,
+    /// The body between convex sections in parallel planes.
+    Loft,
     /// A section turned about the line between two of its points, by an angle in degrees.
     Revolve {
         /// The points.
@@ -244,7 +246,10 @@ impl FeatureKind {
     pub fn takes_section(&self) -> bool {
         let solid = matches!(
             self,
-            FeatureKind::Revolve { .. } | FeatureKind::Extrude(_) | FeatureKind::Sweep
+            FeatureKind::Revolve { .. }
+                | FeatureKind::Extrude(_)
+                | FeatureKind::Sweep
+                | FeatureKind::Loft
         );
         solid || self.makes_section()
     }
@@ -252,7 +257,10 @@ impl FeatureKind {
     /// The expressions of the feature, mutable.
     pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
         match self {
-            FeatureKind::Boolean(_) | FeatureKind::OnFace(_) | FeatureKind::Sweep => vec![],
+            FeatureKind::Boolean(_)
+            | FeatureKind::OnFace(_)
+            | FeatureKind::Sweep
+            | FeatureKind::Loft => vec![],
             FeatureKind::Offset { distance, .. } | FeatureKind::Extrude(distance) => vec![distance],
             FeatureKind::Revolve { angle, .. } => vec![angle],
             FeatureKind::Place(place) => place.numbers_mut(),

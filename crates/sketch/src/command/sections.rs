@@ -1,4 +1,4 @@
-//! OFFSET, SWEEP, and EXTRUDE of sections that are kept: features of cross sections.
+//! OFFSET, SWEEP, LOFT, and EXTRUDE of sections that are kept: features of cross sections.
 
 use super::CommandError;
 use super::args::Args;
@@ -106,6 +106,34 @@ impl SketchSession {
         self.make_with(Feature { kind: FeatureKind::Sweep, operands }, Vec::new(), &target, |_| {
             None
         })
+    }
+
+    /// `LOFT a b … [INTO c]`.
+    pub(super) fn loft(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let mut sections: Vec<Arc<SketchObject>> = Vec::new();
+        while sections.len() < 2 || (args.len() > 0 && !args.tokens_at(0, "INTO")) {
+            let name = args.name("the name of a cross section")?;
+            let object = self.operand(&name)?;
+            self.section_axis(&object)?;
+            if sections.iter().any(|s| s.name.eq_ignore_ascii_case(&object.name)) {
+                return Err(CommandError::text(
+                    format!("LOFT wants different sections, not {} twice", object.name),
+                    "COPY makes another",
+                )
+                .about(ReplySubject::of("object-twice").names([&object.name])));
+            }
+            sections.push(object);
+        }
+        let target = self.target(args, &sections[0].name)?;
+        args.end()?;
+        let mut operands = Vec::new();
+        for section in sections {
+            let section = self.section_with_faces(section)?;
+            let follows = self.follows(&section.name, &target);
+            operands.push((section, follows));
+        }
+        let operands = Feature::operands(operands);
+        self.make_with(Feature { kind: FeatureKind::Loft, operands }, Vec::new(), &target, |_| None)
     }
 
     /// An extrusion that follows its section.

@@ -500,6 +500,7 @@ impl SketchSession {
             "FACE" => self.face(args),
             "CHOOSE" => self.choose(args),
             "OFFSET" => self.offset(args),
+            "LOFT" => self.loft(args),
             "SWEEP" => self.sweep_section(args),
             "EXTRUDE" => self.extrude(args),
             "REVOLVE" => self.revolve(args),

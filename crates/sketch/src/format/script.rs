@@ -142,6 +142,7 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
             let [section, path] = [0, 1].map(|k| quoted(&feature.operands[k].object.name));
             format!("SWEEP {section} ALONG {path} INTO {name}")
         }
+        FeatureKind::Loft => format!("LOFT {parts} INTO {name}"),
         FeatureKind::Extrude(distance) => {
             format!("EXTRUDE {parts} {} INTO {name}", own_value(distance))
         }

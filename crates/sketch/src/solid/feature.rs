@@ -5,12 +5,14 @@ use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
 use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
+use super::loft::lofted;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
 use super::one_sided::confirm;
 use super::operation::Operation;
 use super::outline::FacetDensity;
 use super::outline_offset::offset_outline;
+use super::outline_sides::outline_sides;
 use super::place::Similarity;
 use super::sweep_path::{SweepPath, border_path, drawn_path};
 use super::swept::{extruded, swept};
@@ -512,6 +514,19 @@ impl Feature {
                 let mut made = swept(section, &moved.rings, &moved.spans, &name);
                 made.density = plan.density();
                 valid(made).map_err(NoBody::Flaw)
+            }
+            (FeatureKind::Loft, sections) if sections.len() > 1 => {
+                let outline = |k: usize| {
+                    let FeatureOperand { object, prefix, .. } = &self.operands[k];
+                    let name = |e: usize| {
+                        let name = side_name(object, &sections[k], e)?;
+                        Some(format!("{prefix}{name}").into())
+                    };
+                    outline_sides(&sections[k], &name)
+                };
+                let outlines = (0..sections.len()).map(outline).collect::<Result<Vec<_>, _>>();
+                let made = outlines.and_then(|all| lofted(&all)).map_err(NoBody::Treatment)?;
+                valid(SketchSolid { density: plan.density(), ..made }).map_err(NoBody::Flaw)
             }
             (FeatureKind::Revolve { line, angle }, [section]) => {
                 let (planes, own) = &laid[0];

@@ -24,6 +24,7 @@ mod finer_mesh;
 pub(crate) mod gradient;
 mod hole;
 mod joined_round;
+mod loft;
 pub(crate) mod mass;
 mod meeting;
 pub mod merge;

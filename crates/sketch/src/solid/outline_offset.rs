@@ -7,7 +7,7 @@
 
 use super::edges::TreatmentFault;
 use super::outline_pieces::{BorderPiece, Margin, border};
-use super::outline_sides::{OutlineSide, SideArc, outline_sides};
+use super::outline_sides::{BorderSide, SideArc, outline_sides};
 use super::{SketchSolid, SolidEdge, SolidFace, Vertex};
 use crate::PointId;
 use crate::feature::OffsetCorner;
@@ -44,9 +44,9 @@ pub(super) fn offset_outline<T: Real>(
     }
     let plane = outline.plane;
     let moved = moved_sides(&outline.loops, by, corner, plane)?;
-    let loops = outline.loops.iter().map(|l| l.iter().map(OutlineSide::re).collect()).collect();
+    let loops = outline.loops.iter().map(|l| l.iter().map(BorderSide::re).collect()).collect();
     let margin = Margin { by: by.re(), mitred: corner == OffsetCorner::Mitred, loops, plane };
-    let plain_moved: Vec<OutlineSide<f64>> = moved.iter().map(OutlineSide::re).collect();
+    let plain_moved: Vec<BorderSide<f64>> = moved.iter().map(BorderSide::re).collect();
     let found = border(&plain_moved, &margin, outline.size)?;
     if found.is_empty() {
         let largest = largest(&margin, corner, outline.size)?;
@@ -73,23 +73,22 @@ fn largest(margin: &Margin, corner: OffsetCorner, size: f64) -> Result<f64, Trea
         }
     }
     // The interval contains it: the upper end in seven figures is it within its width.
-    let figures = Real::powf(10.0, 6.0 - high.log10().floor());
-    Ok((high * figures).round() / figures)
+    Ok(format!("{high:.6e}").parse().unwrap_or(high))
 }
 
 /// The sides of all loops moved by a distance, with what joins them at corners.
 fn moved_sides<T: Real>(
-    loops: &[Vec<OutlineSide<T>>],
+    loops: &[Vec<BorderSide<T>>],
     by: T,
     corner: OffsetCorner,
     plane: Vec3,
-) -> Result<Vec<OutlineSide<T>>, TreatmentFault> {
+) -> Result<Vec<BorderSide<T>>, TreatmentFault> {
     let mut all = Vec::new();
     for sides in loops {
         let n = sides.len();
-        let mut own: Vec<Option<OutlineSide<T>>> =
+        let mut own: Vec<Option<BorderSide<T>>> =
             sides.iter().map(|s| s.moved(by, plane)).collect();
-        let mut joints: Vec<Vec<OutlineSide<T>>> = vec![Vec::new(); n];
+        let mut joints: Vec<Vec<BorderSide<T>>> = vec![Vec::new(); n];
         for k in 0..n {
             let next = (k + 1) % n;
             let (a, b) = (&sides[k], &sides[next]);
@@ -119,7 +118,7 @@ fn moved_sides<T: Real>(
                 OffsetCorner::Round => {
                     let sweep = turn.abs().atan2(m.dot(q));
                     let arc = SideArc { centre: at, radius: by.abs(), left: by.re() > 0.0, sweep };
-                    joints[k].push(OutlineSide { ends: [from, to], arc: Some(arc), name });
+                    joints[k].push(BorderSide { ends: [from, to], arc: Some(arc), name });
                 }
                 OffsetCorner::Mitred => {
                     if m.re().dot(q.re()) < REVERSAL {
@@ -133,9 +132,7 @@ fn moved_sides<T: Real>(
                     for (side, end, ends) in [(k, 1, [from, tip]), (next, 0, [tip, to])] {
                         match &mut own[side] {
                             Some(moved) if moved.arc.is_none() => moved.ends[end] = tip,
-                            _ => {
-                                joints[k].push(OutlineSide { ends, arc: None, name: name.clone() })
-                            }
+                            _ => joints[k].push(BorderSide { ends, arc: None, name: name.clone() }),
                         }
                     }
                 }
@@ -149,17 +146,17 @@ fn moved_sides<T: Real>(
     Ok(all)
 }
 
-fn joined_name<T>(a: &OutlineSide<T>, b: &OutlineSide<T>) -> Option<Arc<str>> {
+fn joined_name<T>(a: &BorderSide<T>, b: &BorderSide<T>) -> Option<Arc<str>> {
     Some(format!("{}+{}", a.name.as_deref()?, b.name.as_deref()?).into())
 }
 
 /// A loop of pieces as sides with derivatives.
 fn exact_loop<T: Real>(
     cycle: &[BorderPiece],
-    moved: &[OutlineSide<T>],
+    moved: &[BorderSide<T>],
     plane: Vec3,
     size: f64,
-) -> Result<Vec<OutlineSide<T>>, TreatmentFault> {
+) -> Result<Vec<BorderSide<T>>, TreatmentFault> {
     let n = cycle.len();
     let mut corners = Vec::new();
     for k in 0..n {
@@ -182,8 +179,8 @@ fn exact_loop<T: Real>(
 
 /// The point at which one moved side ends and another starts, near a place.
 fn corner_of<T: Real>(
-    a: &OutlineSide<T>,
-    b: &OutlineSide<T>,
+    a: &BorderSide<T>,
+    b: &BorderSide<T>,
     place: Vec3,
     plane: Vec3,
     size: f64,
@@ -204,8 +201,8 @@ fn corner_of<T: Real>(
 
 /// The common point of the lines or circles of two sides near another one.
 fn common_point<T: Real>(
-    a: &OutlineSide<T>,
-    b: &OutlineSide<T>,
+    a: &BorderSide<T>,
+    b: &BorderSide<T>,
     start: Vec3<T>,
     plane: Vec3,
 ) -> Option<Vec3<T>> {
@@ -223,13 +220,13 @@ fn common_point<T: Real>(
 
 /// Loops as a flat body: those around a region, each with its holes.
 fn finished<T: Real>(
-    loops: &[Vec<OutlineSide<T>>],
+    loops: &[Vec<BorderSide<T>>],
     plane: Vec3,
 ) -> Result<SketchSolid<T>, TreatmentFault> {
     let mut out = SketchSolid::<T> { flat: true, ..SketchSolid::default() };
-    let plain: Vec<Vec<OutlineSide<f64>>> =
-        loops.iter().map(|l| l.iter().map(OutlineSide::re).collect()).collect();
-    let areas: Vec<f64> = plain.iter().map(|l| OutlineSide::area(l, plane)).collect();
+    let plain: Vec<Vec<BorderSide<f64>>> =
+        loops.iter().map(|l| l.iter().map(BorderSide::re).collect()).collect();
+    let areas: Vec<f64> = plain.iter().map(|l| BorderSide::area(l, plane)).collect();
     let mut face_of: Vec<Option<usize>> = vec![None; loops.len()];
     for k in 0..loops.len() {
         if areas[k] > 0.0 {
@@ -244,7 +241,7 @@ fn finished<T: Real>(
         }
         let at = plain[k][0].at(0.5, plane);
         let around = (0..loops.len())
-            .filter(|&j| areas[j] > 0.0 && OutlineSide::winding(&plain[j], at, plane) != 0);
+            .filter(|&j| areas[j] > 0.0 && BorderSide::winding(&plain[j], at, plane) != 0);
         let outer = around.min_by(|&i, &j| areas[i].total_cmp(&areas[j]));
         let Some(face) = outer.and_then(|j| face_of[j]) else {
             return Err(TreatmentFault::new(
@@ -262,7 +259,7 @@ fn finished<T: Real>(
 /// Adds the vertices and edges of a loop; arcs of more than a quarter turn become several.
 fn put_loop<T: Real>(
     out: &mut SketchSolid<T>,
-    sides: &[OutlineSide<T>],
+    sides: &[BorderSide<T>],
     plane: Vec3,
 ) -> Vec<(usize, bool)> {
     let mut points: Vec<(Vec3<T>, Option<SideArc<T>>, Option<Arc<str>>)> = Vec::new();
@@ -286,7 +283,7 @@ fn put_loop<T: Real>(
     let mut cycle = Vec::new();
     for (k, (at, arc, name)) in points.into_iter().enumerate() {
         let ends = [first + k, first + (k + 1) % n];
-        let side = OutlineSide { ends: [at, out.vertices[ends[1]].at], arc, name };
+        let side = BorderSide { ends: [at, out.vertices[ends[1]].at], arc, name };
         let piece = side.arc.as_ref().map(|arc| side.arc_piece(arc, plane));
         cycle.push((out.edges.len(), true));
         out.edges.push(SolidEdge { ends, piece, name: side.name, ..SolidEdge::default() });

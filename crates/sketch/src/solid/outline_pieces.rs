@@ -1,7 +1,7 @@
 //! The pieces of moved sides that bound a margin, linked to loops.
 
 use super::edges::TreatmentFault;
-use super::outline_sides::OutlineSide;
+use super::outline_sides::BorderSide;
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
@@ -21,7 +21,7 @@ pub(super) struct Margin {
     pub by: f64,
     /// True if it contains the mitres of its corners.
     pub mitred: bool,
-    pub loops: Vec<Vec<OutlineSide<f64>>>,
+    pub loops: Vec<Vec<BorderSide<f64>>>,
     pub plane: Vec3,
 }
 
@@ -42,7 +42,7 @@ impl Margin {
         let width = self.by.abs();
         let sides = self.loops.iter().flatten();
         let away = sides.map(|s| s.distance(p, self.plane)).fold(f64::INFINITY, f64::min);
-        let turns = self.loops.iter().map(|l| OutlineSide::winding(l, p, self.plane));
+        let turns = self.loops.iter().map(|l| BorderSide::winding(l, p, self.plane));
         let inside = turns.sum::<i64>() > 0;
         if inside == (self.by > 0.0) {
             return width.max(away);
@@ -81,14 +81,14 @@ impl Margin {
 }
 
 /// Points within a tolerance as one.
-struct Nodes {
+struct BorderNodes {
     at: Vec<Vec3>,
     tolerance: f64,
     // Only for look-ups.
     cells: HashMap<[i64; 3], Vec<usize>>,
 }
 
-impl Nodes {
+impl BorderNodes {
     fn number(&mut self, p: Vec3) -> usize {
         let cell = p.to_array().map(|x| (x / (4.0 * self.tolerance)).floor() as i64);
         for i in -1..=1 {
@@ -112,12 +112,12 @@ impl Nodes {
 
 /// The loops of pieces of moved sides that bound a margin on its other side than the border.
 pub(super) fn border(
-    moved: &[OutlineSide<f64>],
+    moved: &[BorderSide<f64>],
     margin: &Margin,
     size: f64,
 ) -> Result<Vec<Vec<BorderPiece>>, TreatmentFault> {
     let [tolerance, depth] = [SAME, DEPTH].map(|part| part * (size + margin.by.abs()));
-    let mut nodes = Nodes { at: Vec::new(), tolerance, cells: HashMap::new() };
+    let mut nodes = BorderNodes { at: Vec::new(), tolerance, cells: HashMap::new() };
     let mut pieces = divided(moved, margin.plane, tolerance, &mut nodes);
     let mitres = margin.mitres();
     pieces.retain(|piece| {
@@ -131,10 +131,10 @@ pub(super) fn border(
 
 /// All sides divided at their crossings, with the fractions of the ends of the pieces.
 fn divided(
-    moved: &[OutlineSide<f64>],
+    moved: &[BorderSide<f64>],
     plane: Vec3,
     tolerance: f64,
-    nodes: &mut Nodes,
+    nodes: &mut BorderNodes,
 ) -> Vec<(BorderPiece, [f64; 2])> {
     let mut cuts: Vec<Vec<f64>> = vec![vec![0.0, 1.0]; moved.len()];
     let boxes: Vec<[Vec3; 2]> = moved.iter().map(bounds).collect();
@@ -182,7 +182,7 @@ fn divided(
     all
 }
 
-fn bounds(side: &OutlineSide<f64>) -> [Vec3; 2] {
+fn bounds(side: &BorderSide<f64>) -> [Vec3; 2] {
     let [p, q] = side.ends;
     match &side.arc {
         None => [
@@ -197,7 +197,7 @@ fn bounds(side: &OutlineSide<f64>) -> [Vec3; 2] {
 }
 
 /// Common points of the lines and circles of two sides.
-fn crossings(a: &OutlineSide<f64>, b: &OutlineSide<f64>, plane: Vec3, tolerance: f64) -> Vec<Vec3> {
+fn crossings(a: &BorderSide<f64>, b: &BorderSide<f64>, plane: Vec3, tolerance: f64) -> Vec<Vec3> {
     // Points of a circle at a distance from a foot, both ways along a direction.
     let around = |foot: Vec3, along: Vec3, square: f64, radius: f64| {
         if square < -4.0 * radius * tolerance {

@@ -12,7 +12,7 @@ const MAX_SIDES: usize = 2000;
 
 /// A side of an outline.
 #[derive(Clone, Debug)]
-pub(super) struct OutlineSide<T> {
+pub(super) struct BorderSide<T> {
     pub ends: [Vec3<T>; 2],
     pub arc: Option<SideArc<T>>,
     pub name: Option<Arc<str>>,
@@ -31,7 +31,7 @@ pub(super) struct SideArc<T> {
 
 /// The loops of a section.
 pub(super) struct SectionOutlines<T> {
-    pub loops: Vec<Vec<OutlineSide<T>>>,
+    pub loops: Vec<Vec<BorderSide<T>>>,
     /// The unit normal about which loops around a region are counter-clockwise.
     pub plane: Vec3,
     /// Diagonal of the box around them.
@@ -57,7 +57,7 @@ pub(super) fn outline_sides<T: Real>(
     let mut plane = [0.0; 3];
     plane[k] = area[k].signum();
     let plane = Vec3::from(plane);
-    let mut left: Vec<(usize, [usize; 2], OutlineSide<T>)> = Vec::new();
+    let mut left: Vec<(usize, [usize; 2], BorderSide<T>)> = Vec::new();
     for (e, forward) in halves().filter(|h| uses[h.0] == 1) {
         let [a, b] = section.edges[e].ends;
         let ends = if forward { [a, b] } else { [b, a] };
@@ -73,7 +73,7 @@ pub(super) fn outline_sides<T: Real>(
                 )
             })?),
         };
-        left.push((e, ends, OutlineSide { ends: at, arc, name: name(e) }));
+        left.push((e, ends, BorderSide { ends: at, arc, name: name(e) }));
     }
     if left.len() > MAX_SIDES {
         let text = format!("an outline of {} sides", left.len());
@@ -142,16 +142,16 @@ impl<T: Real> SideArc<T> {
     }
 }
 
-impl<T: Real> OutlineSide<T> {
+impl<T: Real> BorderSide<T> {
     /// The side without derivatives.
-    pub fn re(&self) -> OutlineSide<f64> {
+    pub fn re(&self) -> BorderSide<f64> {
         let arc = self.arc.map(|a| SideArc {
             centre: a.centre.re(),
             radius: a.radius.re(),
             left: a.left,
             sweep: a.sweep.re(),
         });
-        OutlineSide { ends: self.ends.map(Vec3::re), arc, name: self.name.clone() }
+        BorderSide { ends: self.ends.map(Vec3::re), arc, name: self.name.clone() }
     }
 
     /// The curve of a round side.
@@ -171,7 +171,7 @@ impl<T: Real> OutlineSide<T> {
     }
 
     /// The side moved along its normals; `None` if an arc is turned inside out.
-    pub fn moved(&self, by: T, plane: Vec3) -> Option<OutlineSide<T>> {
+    pub fn moved(&self, by: T, plane: Vec3) -> Option<BorderSide<T>> {
         let ends = [0, 1].map(|k| self.ends[k] + self.normal(k, plane) * by);
         let arc = match self.arc {
             None => None,
@@ -183,13 +183,13 @@ impl<T: Real> OutlineSide<T> {
                 Some(SideArc { radius, ..arc })
             }
         };
-        Some(OutlineSide { ends, arc, name: self.name.clone() })
+        Some(BorderSide { ends, arc, name: self.name.clone() })
     }
 
     /// The same line or circle between other ends.
-    pub fn ending(&self, ends: [Vec3<T>; 2], plane: Vec3) -> OutlineSide<T> {
+    pub fn ending(&self, ends: [Vec3<T>; 2], plane: Vec3) -> BorderSide<T> {
         let arc = self.arc.map(|arc| arc.between(ends, plane));
-        OutlineSide { ends, arc, name: self.name.clone() }
+        BorderSide { ends, arc, name: self.name.clone() }
     }
 
     /// Distance of a point from the line or circle, and its gradient.
@@ -207,7 +207,7 @@ impl<T: Real> OutlineSide<T> {
     }
 }
 
-impl OutlineSide<f64> {
+impl BorderSide<f64> {
     /// The point at a fraction of the side.
     pub fn at(&self, s: f64, plane: Vec3) -> Vec3 {
         match &self.arc {
@@ -273,8 +273,8 @@ impl OutlineSide<f64> {
     }
 
     /// Winding number of a loop about a point that is not on it.
-    pub fn winding(sides: &[OutlineSide<f64>], p: Vec3, plane: Vec3) -> i64 {
-        let turn = |side: &OutlineSide<f64>| {
+    pub fn winding(sides: &[BorderSide<f64>], p: Vec3, plane: Vec3) -> i64 {
+        let turn = |side: &BorderSide<f64>| {
             let [a, b] = side.ends.map(|e| e - p);
             let chord = Real::atan2(plane.dot(a.cross(b)), a.dot(b));
             let Some(arc) = &side.arc else { return chord };
@@ -290,9 +290,9 @@ impl OutlineSide<f64> {
     }
 
     /// The area inside of a loop, negative if it is clockwise.
-    pub fn area(sides: &[OutlineSide<f64>], plane: Vec3) -> f64 {
+    pub fn area(sides: &[BorderSide<f64>], plane: Vec3) -> f64 {
         let origin = sides[0].ends[0];
-        let part = |side: &OutlineSide<f64>| {
+        let part = |side: &BorderSide<f64>| {
             let [a, b] = side.ends.map(|e| e - origin);
             let chord = 0.5 * plane.dot(a.cross(b));
             let Some(arc) = &side.arc else { return chord };

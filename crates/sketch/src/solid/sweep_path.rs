@@ -174,7 +174,7 @@ pub(super) fn border_path<T: Real>(
         let text = format!("the path {name} has {} outlines", outline.loops.len());
         return Err(TreatmentFault::new(text, None, "sweep along one of them"));
     };
-    let piece = |side: &super::outline_sides::OutlineSide<T>| match &side.arc {
+    let piece = |side: &super::outline_sides::BorderSide<T>| match &side.arc {
         None => PathPiece::Straight(side.ends),
         Some(arc) => PathPiece::Round(side.arc_piece(arc, outline.plane)),
     };

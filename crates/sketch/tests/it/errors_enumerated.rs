@@ -436,7 +436,19 @@ const CASES: &[(&str, &str)] = &[
          DIM Z 1 2 30; DIM X 2 3 40; DIM Y 3 4 20",
         "REFERENCE 1 0 0 -15; SWEEP DISC ALONG WAY INTO P",
     ),
+    ("LOFTED", "LOFT A A INTO C"),
+    ("LOFTED", "LOFT A B INTO C"),
+    ("LOFTED; CIRCLE DIAMETER 2 AT 4 4; MOVE B 0 0 9", "LOFT A B INTO C"),
+    ("LOFTED; SKETCH C 2D XZ; RECTANGLE 9 9", "LOFT A C INTO D"),
+    (
+        "LOFTED; SKETCH E 2D XY; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POINT 4 5 9; POINT 5 5 4; POINT 6 0 4; \
+         POLYLINE 1 2 3 4 5 6 CLOSE; DIM X 1 2 9; DIM Y 2 3 9; DIM X 1 4 5; DIM Y 1 6 4; MOVE E 0 0 9",
+        "LOFT A E INTO C",
+    ),
 ];
+
+/// Two sections in one plane.
+const LOFTED: &str = "SKETCH A 2D XY; RECTANGLE 20 20; SKETCH B 2D XY; RECTANGLE 9 9";
 
 /// A disc across the start of an angle.
 const PIPE: &str = "SKETCH RING 2D XZ; RECTANGLE 40 20; CIRCLE DIAMETER 4 AT 20 10; GENERATE FACES; OFFSET RING 1; \
@@ -453,6 +465,7 @@ fn prepared(before: &str) -> SketchSession {
         "PYRAMID" => (PYRAMID.to_owned(), rest.to_owned()),
         "ELL" => (ELL.to_owned(), rest.to_owned()),
         "HOLED" => (HOLED.to_owned(), rest.to_owned()),
+        "LOFTED" => (LOFTED.to_owned(), rest.to_owned()),
         "PIPE" => (PIPE.to_owned(), rest.to_owned()),
         "BENT" => (BENT.to_owned(), rest.to_owned()),
         // Its gable has five corners, and one of its lines is to be bent out of its plane.

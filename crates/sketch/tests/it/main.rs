@@ -18,6 +18,7 @@ mod holes;
 mod json;
 mod language;
 mod letters;
+mod lofts;
 mod near_misses;
 mod offsets;
 mod pictures;
