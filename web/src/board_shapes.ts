@@ -47,6 +47,27 @@ export function shapes(d: Drawn, chosen: Set<string>): Shape[] {
         command: (x) => `REVOLVE ${lines[0]} ${x}`,
         last: true,
       })
+    made.push({
+      words: 'Offset',
+      key: '',
+      asks: 'distance, negative for inwards, into a name',
+      command: (x) => `OFFSET ${d.object} ${x.replace(/\binto\b/i, 'INTO')}`,
+      last: true,
+    })
+    made.push({
+      words: 'Sweep',
+      key: '',
+      asks: 'along the path of a name',
+      command: (x) => `SWEEP ${d.object} ALONG ${x}`,
+      last: true,
+    })
+    made.push({
+      words: 'Loft',
+      key: '',
+      asks: 'to the sections of names',
+      command: (x) => `LOFT ${d.object} ${x.replace(/,/g, ' ')}`,
+      last: true,
+    })
     made.push({ words: 'Extrude', key: '', asks: 'depth', command: (x) => `EXTRUDE ${x}`, last: true })
   } else if (last) {
     made.push({

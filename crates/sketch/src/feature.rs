@@ -150,11 +150,33 @@ impl Hole {
     }
 }
 
+/// What an offset has at corners where its sides separate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OffsetCorner {
+    /// An arc about the corner.
+    Round,
+    /// The straight continuation of both sides.
+    Mitred,
+}
+
 /// Operation of a feature.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureKind {
     /// Two bodies combined.
     Boolean(Operation),
+    /// A section with its outline moved.
+    Offset {
+        /// The distance, outwards.
+        distance: DimensionExpr,
+        /// Corners where its sides separate.
+        corner: OffsetCorner,
+    },
+    /// A section moved along the axis across it.
+    Extrude(DimensionExpr),
+    /// The first operand, a section, moved along the second, a chain of lines and arcs.
+    Sweep,
+    /// The body between convex sections in parallel planes.
+    Loft,
     /// A section turned about the line between two of its points, by an angle in degrees.
     Revolve {
         /// The points.
@@ -215,10 +237,31 @@ impl Placement {
 }
 
 impl FeatureKind {
+    /// True if it makes a section of a section.
+    pub fn makes_section(&self) -> bool {
+        matches!(self, FeatureKind::Offset { .. })
+    }
+
+    /// True if its first operand is a section.
+    pub fn takes_section(&self) -> bool {
+        let solid = matches!(
+            self,
+            FeatureKind::Revolve { .. }
+                | FeatureKind::Extrude(_)
+                | FeatureKind::Sweep
+                | FeatureKind::Loft
+        );
+        solid || self.makes_section()
+    }
+
     /// The expressions of the feature, mutable.
     pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
         match self {
-            FeatureKind::Boolean(_) | FeatureKind::OnFace(_) => vec![],
+            FeatureKind::Boolean(_)
+            | FeatureKind::OnFace(_)
+            | FeatureKind::Sweep
+            | FeatureKind::Loft => vec![],
+            FeatureKind::Offset { distance, .. } | FeatureKind::Extrude(distance) => vec![distance],
             FeatureKind::Revolve { angle, .. } => vec![angle],
             FeatureKind::Place(place) => place.numbers_mut(),
             FeatureKind::Pattern { step, count } => {

@@ -16,10 +16,10 @@ __all__ = ["Statement", "Token", "block", "replaced", "statements", "units"]
 
 #: What makes a body of a drawing, or looks at it: drawing and dimensions are written before it.
 _SOLID = {
-    "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "EXTRUDE", "REVOLVE", "CLEAN", "MEASURE",
-    "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE", "PATTERN", "FILLET", "CHAMFER",
-    "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR", "SCALE", "SAVE", "EXPORT",
-    "ESTIMATE",
+    "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "OFFSET", "SWEEP", "LOFT", "EXTRUDE",
+    "REVOLVE", "CLEAN", "MEASURE", "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE",
+    "PATTERN", "FILLET", "CHAMFER", "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR",
+    "SCALE", "SAVE", "EXPORT", "ESTIMATE",
 }  # fmt: skip
 
 

@@ -148,12 +148,16 @@ impl SketchSession {
             Ok(solid) => solid,
             Err(why) => return Err(refused(why).unwrap_or_else(|| no_body(&made, why))),
         };
+        let mass = solid.mass();
+        let measure = match solid.flat {
+            true => format!("area {}", plain(mass.area)),
+            false => format!("volume {}", plain(mass.volume)),
+        };
         let text = format!(
-            "{target}: {} vertices, {} edges, {} faces, volume {}",
+            "{target}: {} vertices, {} edges, {} faces, {measure}",
             solid.vertices.len(),
             solid.edges.len(),
             solid.faces.len(),
-            plain(solid.mass().volume)
         );
         self.out.push(CommandReply::note(text));
         let key = made.name.to_lowercase();
@@ -169,7 +173,7 @@ impl SketchSession {
             false => Some(args.name("the name of a cross section")?),
         };
         let line = args.line()?;
-        let mut object = match named {
+        let object = match named {
             Some(name) => self.operand(&name)?,
             None => self.active_arc()?,
         };
@@ -180,15 +184,15 @@ impl SketchSession {
         };
         let target = self.target(args, &object.name)?;
         args.end()?;
-        let line = super::draw::require_line(&object, line)?;
-        if object.drawing.section.is_none() {
-            return Err(CommandError::new(
-                113,
-                format!("{} is not a cross section", object.name),
-                "SKETCH name 2D starts one",
+        if object.feature.is_some() && object.drawing.section.is_some() {
+            return Err(CommandError::text(
+                format!("{} has no lines to turn about", object.name),
+                "REVOLVE a drawn section, or EXTRUDE this one",
             )
             .about(ReplySubject::of("no-cross-section").names([&object.name])));
         }
+        let line = super::draw::require_line(&object, line)?;
+        self.section_axis(&object)?;
         if angle.literal().is_some_and(|a| a == 0.0 || !a.is_finite()) {
             return Err(CommandError::new(
                 300,
@@ -196,13 +200,7 @@ impl SketchSession {
                 "give an angle in degrees",
             ));
         }
-        self.placed(&object)?;
-        if object.faces.is_empty() {
-            self.state.active = Some(object.name.to_lowercase());
-            self.generate(&mut Args::new(&[super::solids::faces_word()], ""))?;
-            object = self.active_arc()?;
-        }
-        self.require_body(&object)?;
+        let object = self.section_with_faces(object)?;
         // Its numbers keep their names.
         let operands = vec![FeatureOperand::part(object)];
         let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };

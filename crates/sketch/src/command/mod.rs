@@ -14,6 +14,7 @@ mod no_body;
 mod objects;
 mod others;
 mod question;
+mod sections;
 mod sensitivity;
 mod session;
 mod shapes;

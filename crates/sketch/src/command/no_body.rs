@@ -99,7 +99,7 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             let mut about = ReplySubject::of("treatment");
             about.place = fault.at.map(|p| p.to_array());
             let text = format!("{name}: {}{place}", fault.text);
-            CommandError::new(701, text, fault.next).about(about)
+            CommandError::new(701, text, fault.next.clone()).about(about)
         }
         NoBody::Axis => CommandError::new(
             701,

@@ -435,24 +435,17 @@ impl SketchSession {
 
     pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let axis_next = args.peek().is_some_and(|t| CoordinateAxis::of(&t.text).is_some());
-        if !axis_next && !args.at_number() && args.len() > 1 {
-            if let Some(token) = args.peek() {
-                self.known(&token.text)?;
-            }
-            self.take_object(args)?;
-        }
-        let axis = args.axis();
-        let object = self.active()?.clone();
-        let value = args.value(object.units.as_deref())?;
-        args.end()?;
-        let Some(normal) = object.drawing.section else {
-            return Err(CommandError::new(
-                113,
-                format!("{} is not a cross section", object.name),
-                "SKETCH name 2D starts one",
-            )
-            .about(ReplySubject::of("no-cross-section").names([&object.name])));
+        let named = !axis_next && !args.at_number() && args.len() > 1 && !args.tokens_at(1, "INTO");
+        let object = match named {
+            true => self.operand(&args.name("the name of a cross section")?)?,
+            false => self.active_arc()?,
         };
+        let axis = args.axis();
+        let value = args.value(object.units.as_deref())?;
+        let follows = args.len() > 0 || object.feature.is_some();
+        let target = self.target(args, &object.name)?;
+        args.end()?;
+        let normal = self.section_axis(&object)?;
         if axis.is_some_and(|a| a != normal) {
             return Err(CommandError::new(
                 113,
@@ -461,6 +454,10 @@ impl SketchSession {
             )
             .about(ReplySubject::of("no-cross-section").names([&object.name]).axis(normal)));
         }
+        if follows {
+            return self.extrude_section(object, value, &target);
+        }
+        self.state.active = Some(object.name.to_lowercase());
         if 2 * object.drawing.points.len() > MAX_POINTS {
             return Err(CommandError::new(
                 200,

@@ -14,13 +14,13 @@ use crate::{CoordinateAxis, SketchObject, Variable};
 use std::sync::Arc;
 
 /// Numbers of a feature itself: each becomes a variable, so that SET changes it.
-struct OwnNumbers {
+pub(super) struct OwnNumbers {
     probe: SketchObject,
-    made: Vec<Variable>,
+    pub made: Vec<Variable>,
 }
 
 impl OwnNumbers {
-    fn of(object: &Arc<SketchObject>) -> Self {
+    pub fn of(object: &Arc<SketchObject>) -> Self {
         // The names that the feature takes over.
         let nothing = [0.0; 3].map(DimensionExpr::number);
         let feature = Feature {
@@ -30,7 +30,7 @@ impl OwnNumbers {
         OwnNumbers { probe: feature.object(&object.name), made: Vec::new() }
     }
 
-    fn add(&mut self, stem: &str, value: DimensionExpr) -> Result<DimensionExpr, CommandError> {
+    pub fn add(&mut self, stem: &str, value: DimensionExpr) -> Result<DimensionExpr, CommandError> {
         let name = self.probe.fresh_name(stem);
         let variable = Variable { name: name.clone(), value, range: None };
         self.probe.variables.insert(name.to_ascii_lowercase(), variable.clone());

@@ -1,7 +1,7 @@
 //! An object as the commands that make it: the file format.
 
 use crate::feature::{
-    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, HoleHead, Placement,
+    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, HoleHead, OffsetCorner, Placement,
 };
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
@@ -131,6 +131,21 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
     let own: Vec<&crate::Variable> = own.collect();
     let command = match &feature.kind {
         FeatureKind::Boolean(operation) => format!("{} {parts} INTO {name}", operation.word()),
+        FeatureKind::Offset { distance, corner } => {
+            let corner = match corner {
+                OffsetCorner::Round => "ROUND",
+                OffsetCorner::Mitred => "MITRED",
+            };
+            format!("OFFSET {parts} {} {corner} INTO {name}", own_value(distance))
+        }
+        FeatureKind::Sweep => {
+            let [section, path] = [0, 1].map(|k| quoted(&feature.operands[k].object.name));
+            format!("SWEEP {section} ALONG {path} INTO {name}")
+        }
+        FeatureKind::Loft => format!("LOFT {parts} INTO {name}"),
+        FeatureKind::Extrude(distance) => {
+            format!("EXTRUDE {parts} {} INTO {name}", own_value(distance))
+        }
         FeatureKind::Revolve { line: [p, q], angle } => {
             let section = &feature.operands[0].object.drawing;
             let line = section.line_between(*p, *q).map_or(0, |l| l.0);

@@ -129,6 +129,23 @@ impl<T: Real> SmoothPiece<T> {
         }
     }
 
+    /// The image by an affine map.
+    #[must_use]
+    pub(crate) fn mapped(&self, map: &dyn Fn(Vec3<T>) -> Vec3<T>) -> SmoothPiece<T> {
+        match *self {
+            SmoothPiece::Conic { centre, a, b, sweep } => {
+                let c = map(centre);
+                SmoothPiece::Conic {
+                    centre: c,
+                    a: map(centre + a) - c,
+                    b: map(centre + b) - c,
+                    sweep,
+                }
+            }
+            SmoothPiece::Cubic(points) => SmoothPiece::Cubic(points.map(map)),
+        }
+    }
+
     /// Its length, by Gauss's rule (to rounding for arcs, to about nine digits for cubics).
     pub fn length(&self) -> T {
         let mut sum = T::zero();

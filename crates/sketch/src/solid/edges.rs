@@ -17,12 +17,12 @@ pub struct TreatmentFault {
     /// Position.
     pub at: Option<Vec3>,
     /// Remedy.
-    pub next: &'static str,
+    pub next: String,
 }
 
 impl TreatmentFault {
-    pub(crate) fn new(text: impl Into<String>, at: Option<Vec3>, next: &'static str) -> Self {
-        TreatmentFault { text: text.into(), at, next }
+    pub(crate) fn new(text: impl Into<String>, at: Option<Vec3>, next: impl Into<String>) -> Self {
+        TreatmentFault { text: text.into(), at, next: next.into() }
     }
 }
 

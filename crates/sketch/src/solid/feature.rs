@@ -5,12 +5,17 @@ use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
 use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
+use super::loft::lofted;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
 use super::one_sided::confirm;
 use super::operation::Operation;
 use super::outline::FacetDensity;
+use super::outline_offset::offset_outline;
+use super::outline_sides::outline_sides;
 use super::place::Similarity;
+use super::sweep_path::{SweepPath, border_path, drawn_path};
+use super::swept::{extruded, swept};
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
@@ -278,13 +283,14 @@ pub(super) fn body_at<T: Real>(
 impl Feature {
     /// An object defined by this feature. The numbers of its operands become its variables.
     pub fn object(self, name: &str) -> SketchObject {
-        let mut out = SketchObject::new(name, None);
+        let section = self.operands.first().and_then(|first| first.object.drawing.section);
+        let mut out = SketchObject::new(name, section.filter(|_| self.kind.makes_section()));
         if let Some(first) = self.operands.first() {
             out.units.clone_from(&first.object.units);
             let drawing = out.draw();
             drawing.projection = first.object.drawing.projection;
             drawing.letters = first.object.drawing.letters;
-            if first.object.drawing.section.is_some() {
+            if section.is_some() && drawing.section.is_none() {
                 drawing.projection = crate::Projection::default();
             }
         }
@@ -437,8 +443,13 @@ impl Feature {
     ) -> Result<SketchSolid<T>, NoBody> {
         let value = |e: &DimensionExpr| number(layout, e);
         // An object that is followed may have become a solid, or a section.
-        let section = matches!(self.kind, FeatureKind::Revolve { .. });
-        let other = self.operands.iter().find(|o| o.object.drawing.section.is_some() != section);
+        let section = self.kind.takes_section();
+        let made_of = match self.kind {
+            FeatureKind::Sweep => 1,
+            _ => self.operands.len(),
+        };
+        let mut operands = self.operands.iter().take(made_of);
+        let other = operands.find(|o| o.object.drawing.section.is_some() != section);
         if let Some(operand) = other {
             return Err(NoBody::Section { name: operand.object.name.clone(), wanted: section });
         }
@@ -448,7 +459,7 @@ impl Feature {
         let mut empty = Vec::new();
         let used = match self.kind {
             FeatureKind::OnFace(_) => 1,
-            _ => self.operands.len(),
+            _ => made_of,
         };
         for (k, own) in laid.iter().enumerate().take(used) {
             let body = self.operand_body(k, own, plan, &images);
@@ -474,6 +485,48 @@ impl Feature {
             (_, [..]) if empty.contains(&true) => Err(nothing()),
             (FeatureKind::Boolean(operation), [a, b]) => {
                 combined([a, b], *operation).map_err(NoBody::Combine)
+            }
+            (FeatureKind::Offset { distance, corner }, [section]) => {
+                let name = |e: usize| side_name(&self.operands[0].object, section, e);
+                let mut made = offset_outline(section, value(distance)?, *corner, &name)
+                    .map_err(NoBody::Treatment)?;
+                made.density = plan.density();
+                valid(made).map_err(NoBody::Flaw)
+            }
+            (FeatureKind::Extrude(distance), [section]) => {
+                let object = &self.operands[0].object;
+                let axis = object.drawing.section.ok_or(NoBody::Unfinished)?;
+                let mut by = [T::zero(); 3];
+                by[axis.index()] = value(distance)?;
+                let name = |e: usize| side_name(object, section, e);
+                let mut made = extruded(section, by.into(), &name).ok_or_else(no_length)?;
+                made.density = plan.density();
+                valid(made).map_err(NoBody::Flaw)
+            }
+            (FeatureKind::Sweep, [section]) => {
+                let object = &self.operands[0].object;
+                let path = self.path(&laid[1], plan)?;
+                let axis = object.drawing.section.ok_or(NoBody::Unfinished)?;
+                let mut normal = [0.0; 3];
+                normal[axis.index()] = 1.0;
+                let moved = path.rings(section, normal.into()).map_err(NoBody::Treatment)?;
+                let name = |e: usize| side_name(object, section, e);
+                let mut made = swept(section, &moved.rings, &moved.spans, &name);
+                made.density = plan.density();
+                valid(made).map_err(NoBody::Flaw)
+            }
+            (FeatureKind::Loft, sections) if sections.len() > 1 => {
+                let outline = |k: usize| {
+                    let FeatureOperand { object, prefix, .. } = &self.operands[k];
+                    let name = |e: usize| {
+                        let name = side_name(object, &sections[k], e)?;
+                        Some(format!("{prefix}{name}").into())
+                    };
+                    outline_sides(&sections[k], &name)
+                };
+                let outlines = (0..sections.len()).map(outline).collect::<Result<Vec<_>, _>>();
+                let made = outlines.and_then(|all| lofted(&all)).map_err(NoBody::Treatment)?;
+                valid(SketchSolid { density: plan.density(), ..made }).map_err(NoBody::Flaw)
             }
             (FeatureKind::Revolve { line, angle }, [section]) => {
                 let (planes, own) = &laid[0];
@@ -525,6 +578,20 @@ impl Feature {
                 Err(NoBody::Operand { name, number: k, why: Box::new(why) })
             }
         }
+    }
+
+    /// The path of a sweep: a drawn chain, or the border of a section that was made of another one.
+    fn path<T: Real>(
+        &self,
+        laid: &(Planes, DimensionLayout<T>),
+        plan: &FacetPlan,
+    ) -> Result<SweepPath<T>, NoBody> {
+        let object = &self.operands[1].object;
+        let path = match object.feature {
+            None => drawn_path(object, &laid.0, &laid.1),
+            Some(_) => border_path(&object.name, &self.operand_body(1, laid, plan, &[])?),
+        };
+        path.map_err(NoBody::Treatment)
     }
 
     /// A section turned about the line through two points, by an angle in degrees.
@@ -708,14 +775,21 @@ pub(super) fn copies<T: Real>(
     if whole { Ok(n as usize) } else { Err(NoBody::Copies(n)) }
 }
 
-/// The name of the face that an edge of a section becomes when it is turned: its curve's, or `L` and the number
-/// of its line.
+fn no_length() -> NoBody {
+    let text = "an extrusion of length 0 has no volume";
+    NoBody::Treatment(TreatmentFault::new(text, None, "give a length"))
+}
+
+/// The name of the face that an edge of a section becomes: its own, its curve's, or `L` and the number of its line.
 fn side_name<T: Real>(
     object: &SketchObject,
     section: &SketchSolid<T>,
     edge: usize,
 ) -> Option<Arc<str>> {
     let edge = &section.edges[edge];
+    if edge.name.is_some() {
+        return edge.name.clone();
+    }
     if let Some((_, curve)) = edge.curve.and_then(|k| object.curves.get_index(k)) {
         return Some(curve.name.as_str().into());
     }

@@ -24,6 +24,7 @@ mod finer_mesh;
 pub(crate) mod gradient;
 mod hole;
 mod joined_round;
+mod loft;
 pub(crate) mod mass;
 mod meeting;
 pub mod merge;
@@ -35,10 +36,15 @@ mod offset_section;
 mod one_sided;
 pub mod operation;
 mod outline;
+mod outline_offset;
+mod outline_pieces;
+mod outline_sides;
 pub mod place;
 pub(crate) mod ruled_faces;
 pub mod shapes;
 pub mod surface;
+mod sweep_path;
+mod swept;
 mod tangent_ruling;
 mod turn;
 pub mod validity;
@@ -71,6 +77,8 @@ pub struct SolidEdge<T> {
     pub curve: Option<usize>,
     /// Its points, if it has no closed form: the edge of a combined body.
     pub trace: Option<IntersectionEdge<T>>,
+    /// The name of the face that it becomes, if its line or curve in a drawing does not tell.
+    pub(crate) name: Option<Arc<str>>,
     /// Its ends as its own two surfaces move them, where more surfaces meet at a vertex than fix it.
     pub(crate) own_ends: Option<[Vec3<T>; 2]>,
 }

@@ -78,18 +78,7 @@ pub fn turned<T: Real>(
     }
     let mut copy: HashMap<(usize, usize), usize> = HashMap::new();
     let mut arc: HashMap<(usize, usize), usize> = HashMap::new();
-    let turned_piece = |piece: &SmoothPiece<T>, k: usize| match *piece {
-        SmoothPiece::Conic { centre, a, b, sweep } => {
-            let c = turn(k, centre);
-            SmoothPiece::Conic {
-                centre: c,
-                a: turn(k, centre + a) - c,
-                b: turn(k, centre + b) - c,
-                sweep,
-            }
-        }
-        SmoothPiece::Cubic(points) => SmoothPiece::Cubic(points.map(|p| turn(k, p))),
-    };
+    let turned_piece = |piece: &SmoothPiece<T>, k: usize| piece.mapped(&|p| turn(k, p));
     for ring in 0..rings {
         for (s, side) in sides.iter().enumerate() {
             let ends = side.ends.map(|v| vertex[&(v, ring)]);
