@@ -4139,10 +4139,11 @@ def elliptic(
     spacing: _Number | None = ...,
     angle: _Number | None = ...,
     omega: _Number | None = ...,
+    periodic: _Text | None = ...,
     folded: _Text | None = ...,
 ) -> AnyShape:
     """A grid smoothed by the elliptic equations a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0;
-    its edges are fixed.
+    its edges are fixed, except periodic ones.
 
     `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (propagates the spacing of the edges
     inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
@@ -4151,8 +4152,10 @@ def elliptic(
     after `n` sweeps, or when no point moves by more than `tol` of the size and the walls have the
     requested spacing and angle; without convergence a note gives the residual. For "sorenson"
     `walls` names edges, "i1", "im", "j1", "jn", separated by blanks, `spacing` is the first cell
-    height there, `angle` the angle of the grid lines to the wall. A result with folded cells is an
-    error, unless `folded` is "allow".
+    height there, `angle` the angle of the grid lines to the wall. `periodic` names two opposite edges
+    of a plane grid that are one line, the second moved by a constant vector (the cut of an O-grid, the
+    sides of a cascade): their points move like those inside, except the ends. A result with folded
+    cells is an error, unless `folded` is "allow".
 
     Parameters
     ----------
@@ -4161,8 +4164,8 @@ def elliptic(
     n : integer, optional
         Maximum number of sweeps. 0 to 1e+06, default 5000.
     tol : number, optional
-        Convergence: maximum displacement of a point in a sweep, relative to the size. At least
-        0, default 1e-08.
+        Convergence: maximum displacement of a point in a sweep, relative to the size; 1:
+        exactly `n` sweeps. At least 0, default 1e-08.
     method : text, optional
         "laplace", "middlecoff" or "sorenson". Default laplace.
     on : surface, optional
@@ -4175,6 +4178,8 @@ def elliptic(
         Angle to the walls; default: a right angle. Default 1.5708.
     omega : number, optional
         Over-relaxation. 0.01 to 1.99, default 1.3.
+    periodic : text, optional
+        Periodic edges: "i1 im" or "j1 jn".
     folded : text, optional
         "refuse" or "allow" folded cells in the result. Default refuse.
 
@@ -4334,8 +4339,8 @@ def c_grid(
 
     The section is a closed curve from tail to tail, in either direction, with the tail at its
     greatest x. The wake is parallel to x over the length `wake`, with `n` cells that grow from the
-    cell at the tail; both its sides have identical points. A blunt tail is an error: close it, or
-    make an O-grid.
+    cell at the tail; both its sides have identical points. A blunt tail is an error: `c_blocks` of
+    topologies.sdl makes its C-grid with the block behind the base.
 
     Parameters
     ----------
@@ -5693,20 +5698,22 @@ def write_gmsh(
 def write_blockmesh(
     *args: object,
 ) -> AnyShape:
-    """Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.
+    """Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept, or, "graded", with few blocks whose edges have the points of the grid; faces of equal name are one patch.
 
-    Called as `write_blockmesh(name, b, [faces], ...)`.
+    Called as `write_blockmesh(name, [words], b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
+    words : text, optional
+        "graded": few blocks with curved, graded edges; blockMesh interpolates between the
+        edges.
     b : list of block or surface
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
         Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        a surface i1, im, j1, jn).
 
     Returns
     -------

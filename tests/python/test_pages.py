@@ -369,7 +369,9 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
 
     images = DOCS / "images"
     drawn = runpy.run_path(str(DOCS / "pictures.py"))
-    names = {f"{name}.png" for kind in ("MODELS", "PROGRAMS", "PLOTS", "STUDIES") for name in drawn[kind]}
+    names = {
+        f"{name}.png" for kind in ("MODELS", "PROGRAMS", "PLOTS", "STUDIES") for name in drawn[kind]
+    }
     names.add("deformation.png")
     for script in ("desk_pictures.py", "making_pictures.py"):
         text = (DOCS / script).read_text(encoding="utf-8")

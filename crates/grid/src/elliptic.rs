@@ -4,7 +4,7 @@
 
 use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
 use crate::lines::{Change, Control, ZebraRows, larger, transposed_control};
-use crate::periodic::{Seam, crossed};
+use crate::periodic::{PeriodicSeam, crossed};
 use crate::zebra::Banks;
 use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_budget::Budget;
@@ -136,11 +136,12 @@ fn smoothed<T: Real, const L: usize>(
     grid.check_count(3)?;
     grid.check_finite()?;
     let size = grid.size();
-    let seam = options.periodic.map(|_| Seam::of(grid)).transpose()?;
+    let seam = options.periodic.map(|_| PeriodicSeam::of(grid)).transpose()?;
     assert!(seam.is_none() || options.on.is_none(), "periodic edges are in a plane");
     let original = grid;
-    let grid = &seam.as_ref().map_or_else(|| grid.clone(), |_| Seam::widened(grid));
-    let specified = &seam.as_ref().map_or_else(|| options.walls.clone(), |_| Seam::walls(options));
+    let grid = &seam.as_ref().map_or_else(|| grid.clone(), |_| PeriodicSeam::widened(grid));
+    let specified =
+        &seam.as_ref().map_or_else(|| options.walls.clone(), |_| PeriodicSeam::walls(options));
     let (m, n) = (grid.m, grid.n);
     // A component that is the same everywhere stays so.
     let varies = |c: &usize| {
@@ -230,7 +231,7 @@ fn smoothed<T: Real, const L: usize>(
     }
     let grid = merged(&points, turned);
     let walls = wall_reports(&grid, specified);
-    let grid = seam.map_or(grid.clone(), |_| Seam::narrowed(&grid, original));
+    let grid = seam.map_or(grid.clone(), |_| PeriodicSeam::narrowed(&grid, original));
     let change = history.last().copied().unwrap_or(f64::INFINITY);
     Ok(Smoothed { grid, sweeps: done, change, history, walls, converged })
 }

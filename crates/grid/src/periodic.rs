@@ -9,11 +9,11 @@ use crate::{Elliptic, GridError, GridSide, PeriodicEdges, SurfaceGrid, Wall};
 use moldloft_num::{Real, Vec3};
 
 /// The vectors from the points of the first row to those of the last.
-pub struct Seam<T> {
+pub struct PeriodicSeam<T> {
     steps: Vec<Vec3<T>>,
 }
 
-impl<T: Real> Seam<T> {
+impl<T: Real> PeriodicSeam<T> {
     pub fn of(grid: &SurfaceGrid<T>) -> Result<Self, GridError> {
         let (first, last) = (grid.edge(GridSide::FirstI), grid.edge(GridSide::LastI));
         let steps: Vec<Vec3<T>> = first.iter().zip(&last).map(|(a, b)| *b - *a).collect();

@@ -33,6 +33,7 @@ mod roots;
 mod shape;
 mod solid;
 pub mod trace;
+mod triangle;
 pub mod union_find;
 mod vec3;
 
@@ -61,4 +62,5 @@ pub use shape::{
     field_differences, line_crossings, slope_scale,
 };
 pub use solid::{Solid, SolidFormula, SolidJet};
+pub use triangle::{nearest_on_triangle, triangle_foot};
 pub use vec3::{Vec2, Vec3};

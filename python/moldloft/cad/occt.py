@@ -285,7 +285,8 @@ def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
             whole = Sewn.of(_compound(sheets), 0.0)
             parts += [whole] if whole.found else [Sewn(sheet) for sheet in sheets]
             _collect(document, parts, found, source.names)
-            _name_curves(found, source.curve_names)
+            if isinstance(source, StepText):
+                _name_curves(found, source.curve_names)
             if whole.found:
                 whole.say(found.remarks, iges=False)
     return found, done

@@ -12,7 +12,7 @@ use crate::expr::interval::Interval;
 use crate::expr::second_order::HessianRange;
 use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use crate::measure::taylor::{self, Combination, TaylorRoom};
-use moldloft_num::{Box3, Vec3};
+use moldloft_num::{Box3, Vec3, nearest_on_triangle};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -253,42 +253,6 @@ pub(super) fn gathered(open: &[Unresolved], step: f64) -> Vec<Unresolved> {
 /// are not missed.
 const NEAR: f64 = 0.15;
 
-/// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let sum = va + vb + vc;
-    if sum == 0.0 {
-        return a;
-    }
-    a + ab * (vb / sum) + ac * (vc / sum)
-}
-
 /// Unresolved positions that the triangles do not represent: an edge or a corner that enters a cell
 /// without reaching its corners may be on the triangles beside it.
 pub(super) fn not_shown(
@@ -324,7 +288,7 @@ pub(super) fn not_shown(
         let mut best = (f64::INFINITY, 0.0);
         for t in around(u.witness).filter_map(|b| bins.get(&b)).flatten() {
             let [a, b, c] = triangles[*t as usize].1.map(|v| positions[v as usize]);
-            let away = u.witness - nearest(u.witness, [a, b, c]);
+            let away = u.witness - nearest_on_triangle(u.witness, [a, b, c]);
             let far = away.norm();
             let side = (b - a).cross(c - a).dot(away);
             // Of triangles with the same nearest point the one with the most frontal view

@@ -9,7 +9,9 @@ use self::signed_side::SignedSide;
 use crate::expr::interval::Interval;
 use crate::expr::oracle::Oracle;
 use moldloft_locate::{NearestCurve, NearestSurface, PlainCurve, PlainSurface};
-use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{
+    Box3, Curve, CurveJet, Field, Order, Real, SurfJet, Surface, Vec3, triangle_foot,
+};
 use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef, TriangleBody};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -324,7 +326,7 @@ impl Tree {
             for k in node.triangles.clone() {
                 let t = self.order[k as usize];
                 let [a, b, c] = corners(points, triangles[t as usize]);
-                let (weights, feature) = foot(p, a, b, c);
+                let (weights, feature) = triangle_foot(p, [a, b, c]);
                 let q = a * weights[0] + b * weights[1] + c * weights[2];
                 let d = (p - q).norm_sq();
                 if d < best.0 || d == best.0 && t < best.1 {
@@ -334,43 +336,6 @@ impl Tree {
         }
         (best.1, best.2, self.sides[best.1 as usize][best.3])
     }
-}
-
-/// Weights of the point of a triangle nearest to `p`, and its feature: corners 0 to 2, edges 3 to 5
-/// from these, or 6 for the inside (Ericson, Real-Time Collision Detection, 5.1.5).
-fn foot(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> ([f64; 3], usize) {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return ([1.0, 0.0, 0.0], 0);
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return ([0.0, 1.0, 0.0], 1);
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = d1 / (d1 - d3);
-        return ([1.0 - v, v, 0.0], 3);
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return ([0.0, 0.0, 1.0], 2);
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = d2 / (d2 - d6);
-        return ([1.0 - w, 0.0, w], 5);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return ([0.0, 1.0 - w, w], 4);
-    }
-    let all = va + vb + vc;
-    ([va / all, vb / all, vc / all], 6)
 }
 
 impl<T: Real> Field<T> for Inside<T> {

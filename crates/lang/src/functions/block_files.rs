@@ -1,6 +1,7 @@
 //! Blocks as one mesh with named boundaries: joints, periodic boundaries, and the data for CGNS.
 
 use crate::functions::hanging::{HangingJoint, hanging};
+use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
 use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
@@ -9,19 +10,8 @@ use moldloft_mesh::{Blocks, HexBlock};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
-/// A block that is written, and the names of its faces.
-#[derive(Clone)]
-pub(crate) struct NamedBlock {
-    pub grid: StructuredGrid,
-    pub name: String,
-    pub faces: FaceNames,
-}
-
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
-
-/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last node (i, j, k) from 0.
-pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 
 /// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
 pub type PeriodicJoint = ([f64; 3], [f64; 3], [f64; 3]);
@@ -329,27 +319,6 @@ const SAME: f64 = 1e-10;
 
 /// Tolerance of the points of two periodic faces, relative to the size.
 const SAME_PERIODIC: f64 = 1e-8;
-
-/// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
-pub(super) fn face_points(
-    blocks: &[NamedBlock],
-    part: &FacePart,
-) -> (Vec<Vec3>, [usize; 2], [usize; 2]) {
-    let (block, face, from, to) = part;
-    let axis = GridFace::ALL[*face].axis;
-    let [a, b] = [[1, 2], [0, 2], [0, 1]][axis];
-    let range = |k: usize| (from[k].min(to[k]), from[k].max(to[k]));
-    let ((a0, a1), (b0, b1)) = (range(a), range(b));
-    let mut points = Vec::new();
-    for i in a0..=a1 {
-        for j in b0..=b1 {
-            let mut at = *from;
-            (at[a], at[b]) = (i, j);
-            points.push(blocks[*block].grid.at(at));
-        }
-    }
-    (points, [a, b], [a1 - a0 + 1, b1 - b0 + 1])
-}
 
 fn mean(points: &[Vec3]) -> Vec3 {
     points.iter().fold(Vec3::zero(), |sum, p| sum + *p) / points.len() as f64

@@ -2,17 +2,17 @@
 //! type, coincident faces that are not joined.
 
 use crate::functions::block_files::{
-    AbuttingFaces, Connected, FacePart, NamedBlock, are_across, connected, extruded, one_type_each,
-    volumes,
+    AbuttingFaces, Connected, are_across, connected, extruded, one_type_each, volumes,
 };
 use crate::functions::grid_formats::GridFormat;
 use crate::functions::hanging::HangingJoint;
 use crate::functions::joint_report::part_text;
+use crate::functions::named_blocks::{FacePart, NamedBlock};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, SurfaceGrid, VolumeGrid, folded_cells};
 use moldloft_io::StructuredGrid;
 use moldloft_io::hexahedra::is_plane;
-use moldloft_num::{Box3, Vec3};
+use moldloft_num::{Box3, Vec3, nearest_on_triangle};
 
 /// Distance, relative to their size, within which unnamed faces coincide: facets of one curved
 /// surface with different numbers of points differ by less.
@@ -328,41 +328,8 @@ fn distance_to(p: Vec3, face: &FaceMesh) -> f64 {
     for quad in &face.quads {
         let [a, b, c, d] = quad.map(|n| face.points[n]);
         for triangle in [[a, b, c], [a, c, d]] {
-            least = least.min(p.distance(nearest_of(p, triangle)));
+            least = least.min(p.distance(nearest_on_triangle(p, triangle)));
         }
     }
     least
-}
-
-/// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-pub(super) fn nearest_of(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    a + ab * (vb * scale) + ac * (vc * scale)
 }

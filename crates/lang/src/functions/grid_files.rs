@@ -3,12 +3,13 @@
 //! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
 //! host writes: the run keeps the blocks and their names for it.
 
-use crate::functions::block_files::{NamedBlock, face_names};
+use crate::functions::block_files::face_names;
 use crate::functions::builtins::RowFormat;
 use crate::functions::grid_checks;
 use crate::functions::grid_formats::{CONNECTIONS, EncodedFiles, GridFile, GridFormat};
 use crate::functions::grid_values::grid_of;
 use crate::functions::joint_report::joint_report;
+use crate::functions::named_blocks::NamedBlock;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;

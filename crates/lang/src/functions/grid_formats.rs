@@ -1,8 +1,9 @@
 //! The formats of grid files that programs write: one row each.
 
 use crate::functions::block_files::{
-    CgnsBlocks, Connected, NamedBlock, connected, extruded, merged, one_mesh, volumes, whole,
+    CgnsBlocks, Connected, connected, extruded, merged, one_mesh, volumes, whole,
 };
+use crate::functions::named_blocks::NamedBlock;
 use crate::functions::plots::plot;
 use crate::functions::solver_conditions::{conditions, map_entries};
 use crate::run::usage;

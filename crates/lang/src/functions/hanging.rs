@@ -1,8 +1,7 @@
 //! Hanging interfaces: two faces that are one, whose cells divide each other.
 
-use crate::functions::block_files::{FacePart, NamedBlock, face_points};
-use crate::functions::grid_checks::nearest_of;
-use moldloft_num::{Box3, Vec3};
+use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
+use moldloft_num::{Box3, Vec3, nearest_on_triangle};
 
 /// Two parts of faces with the same corners. Along each axis the cells of one are whole multiples of those of the other, and
 /// the points that both should have coincide.
@@ -199,5 +198,8 @@ fn off(
     let ([i0, i1], [j0, j1]) = (span(0), span(1));
     let [a, b, c, d] = [[i0, j0], [i1, j0], [i1, j1], [i0, j1]].map(corner);
     let triangles = [[a, b, c], [a, c, d], [a, b, d], [b, c, d]];
-    triangles.into_iter().map(|t| p.distance(nearest_of(p, t))).fold(f64::INFINITY, f64::min)
+    triangles
+        .into_iter()
+        .map(|t| p.distance(nearest_on_triangle(p, t)))
+        .fold(f64::INFINITY, f64::min)
 }

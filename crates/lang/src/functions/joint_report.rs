@@ -1,6 +1,7 @@
 //! `interfaces`: the connections and boundaries of blocks as text.
 
-use crate::functions::block_files::{Connected, FacePart, NamedBlock};
+use crate::functions::block_files::Connected;
+use crate::functions::named_blocks::{FacePart, NamedBlock};
 use moldloft_grid::GridFace;
 use std::fmt::Write;
 

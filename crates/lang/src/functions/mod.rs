@@ -15,6 +15,7 @@ pub(crate) mod grid_formats;
 pub(crate) mod grid_values;
 mod hanging;
 mod joint_report;
+pub mod named_blocks;
 pub mod plots;
 mod shape_measures;
 mod solver_conditions;

@@ -1,6 +1,7 @@
 //! Boundary conditions by the names and numbers of FUN3D, and files that need them: neutral maps and UGRID.
 
-use crate::functions::block_files::{Connected, FacePart, NamedBlock, face_points};
+use crate::functions::block_files::Connected;
+use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, HexMesh};
 use moldloft_io::neutral_map::{MapEntry, MapFace};
