@@ -215,11 +215,11 @@ impl Data {
         // A datum without tolerance stays on the curve.
         for k in (0..radii.len()).filter(|&k| radii[k] == 0.0) {
             let (columns, factors) = layout.rows.row(k);
-            if columns.iter().all(|&c| frozen[c as usize]) {
-                continue;
-            }
             // At an end all but one of the factors are zero: that control point is the datum.
             let parts = || columns.iter().zip(factors).filter(|(_, f)| **f != 0.0);
+            if parts().all(|(&c, _)| frozen[c as usize]) {
+                continue;
+            }
             if parts().count() == 1 {
                 parts().for_each(|(&c, _)| frozen[c as usize] = true);
                 continue;

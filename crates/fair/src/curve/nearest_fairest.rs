@@ -19,7 +19,7 @@ const REACHED: f64 = 1.0 - 1e-4;
 const STRICT: f64 = 1e-9;
 
 /// Rounds of the search for a polynomial within the tolerances.
-const ROUNDS: usize = 100;
+const ROUNDS: usize = 2000;
 
 /// A smooth piece of a curve: its sites, and its control points.
 struct Piece {
@@ -131,7 +131,13 @@ fn inside(
         if shares.iter().all(|&s| s < 1.0 - STRICT) {
             return Some(coefficients);
         }
-        let total: f64 = shares.iter().zip(&weights).map(|(s, w)| s * w).sum();
+        // Over the radii the weighted mean of the squares is less than the square of the smallest largest one.
+        let own = || limited.iter().zip(&weights).map(|((_, _, radius), w)| w * radius * radius);
+        let mean = own().zip(&shares).map(|(w, s)| w * s * s).sum::<f64>();
+        let total: f64 = own().sum();
+        if mean >= total {
+            return None;
+        }
         for (w, s) in weights.iter_mut().zip(&shares) {
             *w *= s / total;
         }

@@ -457,6 +457,32 @@ fn third_derivatives_add_no_bends() {
     }
 }
 
+/// Tolerances of a range of points alone: the others stay on the curve, whose control points about them are the same to
+/// the bit.
+#[test]
+fn a_range_is_faired_alone() {
+    let mut g = Lcg::new(3);
+    let at = |k: usize| 100.0 * k as f64 / 59.0;
+    let height = |x: f64| 10.0 * (std::f64::consts::PI * x / 100.0).sin();
+    let points: Vec<_> =
+        (0..60).map(|k| Vec3::of(at(k), height(at(k)) + 0.04 * g.unit(), 0.0)).collect();
+    for (from, to) in [(20, 40), (0, 20), (33, 60), (5, 9)] {
+        let mut request = CurveRequest::of(&points, 0.02);
+        (0..60).filter(|k| !(from..to).contains(k)).for_each(|k| request.tolerances[k] = 0.0);
+        for goal in [request.goal, Goal::Fairest] {
+            let made = CurveRequest { goal, ..request.clone() }.curve(&points).unwrap();
+            let fit = &made.fit;
+            for k in 0..60 {
+                let most = if (from..to).contains(&k) { 0.02 * (1.0 + 1e-9) } else { 1e-13 };
+                assert!(fit.residuals[k] <= most, "{from} {to} {k}: {:e}", fit.residuals[k]);
+            }
+            let kept = (0..60).filter(|&c| c + 3 < from || c > to + 3);
+            kept.for_each(|c| assert_eq!(fit.points[c], fit.original[c], "{from} {to} {c}"));
+            assert!(goal != Goal::Fairest || moved(fit) > 1e-3);
+        }
+    }
+}
+
 #[test]
 fn data_without_tolerance_and_repeated_data() {
     let (_, points, a) = case("sac", "jitter", 1);
