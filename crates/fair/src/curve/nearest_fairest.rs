@@ -22,7 +22,7 @@ const STRICT: f64 = 1e-9;
 const ROUNDS: usize = 2000;
 
 /// A smooth piece of a curve: its sites, and its control points.
-struct Piece {
+struct PieceBetweenBreaks {
     sites: Vec<usize>,
     control: std::ops::RangeInclusive<usize>,
     ends: [f64; 2],
@@ -198,12 +198,12 @@ impl Data {
     }
 
     /// The pieces between breaks.
-    fn pieces(&self) -> Vec<Piece> {
+    fn pieces(&self) -> Vec<PieceBetweenBreaks> {
         let layout = &self.layout;
         let (start, end) = layout.space.domain();
         if !layout.interpolates() {
             let control = 0..=layout.space.count() - 1;
-            return vec![Piece {
+            return vec![PieceBetweenBreaks {
                 sites: (0..layout.sites.len()).collect(),
                 control,
                 ends: [start, end],
@@ -212,7 +212,7 @@ impl Data {
         let last = layout.sites.len() - 1;
         let inner = layout.marks.iter().copied().filter(|&m| 0 < m && m < last);
         let bounds: Vec<usize> = [0].into_iter().chain(inner).chain([last]).collect();
-        let piece = |w: &[usize]| Piece {
+        let piece = |w: &[usize]| PieceBetweenBreaks {
             sites: (w[0]..=w[1]).collect(),
             control: w[0]..=w[1],
             ends: [layout.sites[w[0]], layout.sites[w[1]]],
@@ -227,7 +227,7 @@ impl Data {
         most: usize,
         frozen: &[bool],
         frame: &MotionAxes,
-        piece: &Piece,
+        piece: &PieceBetweenBreaks,
         curve: &Optimum,
     ) -> Result<Option<Polynomial>, FairError> {
         let layout = &self.layout;
@@ -295,6 +295,7 @@ impl Data {
             frozen: (0..=degree).map(still).collect(),
             held: HeldDirections::default(),
             conditions: Vec::new(),
+            refined: false,
             halves: Vec::new(),
             squares: None,
             reach: vec![reach; degree + 1],

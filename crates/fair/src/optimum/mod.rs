@@ -685,6 +685,7 @@ impl<'a> Parts<'a> {
             frozen: (0..n).map(|i| frozen[i] || ties.leader(i) != i).collect(),
             held,
             conditions,
+            refined: matches!(self.bounded, Bounded::Data(_)),
             reach,
             begin: self.begin.iter().map(|&v| frame.down(v)).collect(),
         }

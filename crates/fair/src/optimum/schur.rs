@@ -22,15 +22,17 @@ pub(crate) struct Schur {
     rows: Vec<Vec<f64>>,
     matrix: Vec<f64>,
     /// The products of the conditions themselves, by which what rounding leaves of them is taken out.
-    products: Vec<f64>,
+    products: Option<Vec<f64>>,
 }
 
 impl Schur {
-    /// The system of `n` conditions; `inverse` solves with the factored matrix, in place.
+    /// The system of `n` conditions; `inverse` solves with the factored matrix, in place. With `refined` directions meet
+    /// them to rounding.
     pub fn new<const D: usize>(
         conditions: &[LinearConstraint<D>],
         unknowns: usize,
         inverse: &dyn Fn(&mut [f64]),
+        refined: bool,
     ) -> Self {
         let row = |c: &LinearConstraint<D>| {
             let mut by_point = vec![[0.0; D]; unknowns];
@@ -62,7 +64,7 @@ impl Schur {
             }
             matrix
         };
-        let (matrix, products) = (products(&columns), products(&rows));
+        let (matrix, products) = (products(&columns), refined.then(|| products(&rows)));
         Self { columns, rows, matrix, products }
     }
 
@@ -93,7 +95,9 @@ impl Schur {
                 *x -= nu * y;
             }
         }
-        self.refine(conditions, now, x);
+        if let Some(products) = &self.products {
+            self.refine(products.clone(), conditions, now, x);
+        }
         nu
     }
 
@@ -101,6 +105,7 @@ impl Schur {
     /// left of them.
     fn refine<const D: usize>(
         &self,
+        mut products: Vec<f64>,
         conditions: &[LinearConstraint<D>],
         now: &[V<D>],
         x: &mut [f64],
@@ -110,7 +115,7 @@ impl Schur {
             condition.value - met(condition, now) - here
         };
         let mut by: Vec<f64> = self.rows.iter().zip(conditions).map(short).collect();
-        if moldloft_num::solve_dense(&mut self.products.clone(), &mut by).is_err() {
+        if moldloft_num::solve_dense(&mut products, &mut by).is_err() {
             return;
         }
         for (row, by) in self.rows.iter().zip(&by) {
