@@ -232,7 +232,8 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
     parts = get_args(thing)
     if parts and all(inspect.isclass(part) for part in parts):
         return any(_is_of(value, p.__name__, {p.__name__: p}) for p in parts)
-    return not inspect.isclass(thing) or isinstance(value, thing)
+    # From Python 3.11 on `Any` is a class that nothing is an instance of.
+    return thing is Any or not inspect.isclass(thing) or isinstance(value, thing)
 
 
 def _thing(head: str, names: Mapping[str, Any]) -> Any:

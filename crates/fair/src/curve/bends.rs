@@ -1,37 +1,26 @@
 //! Curves that bend no more often than they have to.
 
-use crate::curve::data::{Data, DataFit, DataOptions, SignSearch};
+use crate::curve::data::{Data, DataFit, DataOptions};
 use crate::curve::job::Job;
 use crate::interrogate::shape::{self, Sample};
+use crate::interrogate::soft_counts::{EARLY, LATE, SoftCounts};
 use crate::interrogate::spans::SpanBasis;
-use crate::optimum::goal::{Goal, GoalOptimum};
-use crate::{FairError, Measure, ShapeConstraints, Space};
+use crate::optimum::goal::GoalOptimum;
+use crate::{FairError, Measure, Space};
 use moldloft_num::Vec3;
-
-/// Search under signs, when its only purpose is to remove turns: relative change of the measure at
-/// convergence, maximum number of linearisations, and the number of those after the signs hold.
-const SETTLED: f64 = 1e-3;
-const ROUNDS: usize = 12;
-const FEW: usize = 4;
 
 /// Fraction of a tolerance from which it counts as reached.
 const REACHED: f64 = 1.0 - 1e-4;
 
-/// If there are more points, and the fairest curve has more turns than this, the turns are due to
-/// rounding: sixth differences of such short steps have no digits left, and their signs are
-/// meaningless.
-const MANY: usize = 2000;
-const ROUNDED_TURNS: usize = 32;
+/// Steps from the measure to that of bending.
+const STEPS: usize = 8;
 
-/// Steps, and halvings of one of them, of the interpolation between two curves.
-const SHARES: usize = 32;
-const HALVINGS: usize = 6;
+/// Excess of an inflection from which a curve has it.
+pub(super) const HELD: f64 = 0.5;
 
-/// Counts of a curve, all on the same samples.
+/// Counts of a curve, on the same samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BendCounts {
-    /// Reversals of the tangent's turning.
-    turns: usize,
     /// Changes of the curvature's sign.
     pub signs: usize,
     /// Monotone pieces of the curvature.
@@ -40,11 +29,8 @@ pub(super) struct BendCounts {
 
 impl BendCounts {
     pub fn of(samples: &[Sample]) -> Self {
-        Self {
-            turns: shape::reversals(samples),
-            signs: shape::inflections(samples),
-            pieces: shape::monotone_pieces(samples, shape::UNCOUNTED),
-        }
+        let pieces = shape::monotone_pieces(samples, shape::UNCOUNTED);
+        Self { signs: shape::inflections(samples), pieces }
     }
 }
 
@@ -64,122 +50,72 @@ impl<'a> BendCounter<'a> {
         basis.samples(self.space, points)
     }
 
-    pub fn of(&self, points: &[Vec3<f64>]) -> BendCounts {
-        BendCounts::of(&self.samples(points))
+    pub fn soft(&self, points: &[Vec3<f64>], ramp: [f64; 2]) -> SoftCounts {
+        SoftCounts::of(&self.samples(points), &self.space.corners(), ramp)
     }
 }
 
 impl Data {
-    /// The curve of a goal, or a nearby one without unnecessary turns. Third derivatives may trade
-    /// smoothness for a turn; then the signs of curvature of the fairest curve, or of the one with
-    /// the least bending, become conditions. If no such curve is found, the result is an
-    /// interpolation between the curve and the fairest, which is within the tolerances because both
-    /// are.
+    /// The curve of a goal, or a nearby one without unnecessary inflections. Third derivatives may
+    /// trade smoothness for a turn; then bending is added to the measure, until the curve has no
+    /// more inflections than the one of least bending. How much is an integral of counts in which
+    /// an inflection counts by its height, and therefore a continuous function of the data.
     pub(super) fn without_bends(
         &self,
         options: &DataOptions,
         job: &Job,
         plain: DataFit,
-        fairest: Vec<Vec3<f64>>,
         counter: &BendCounter<'_>,
     ) -> Result<DataFit, FairError> {
         let space = &self.layout.space;
-        let counted = |points: &[Vec3<f64>]| counter.of(points);
-        let (own_counts, signs) = (counted(&plain.points), counted(&job.points).signs);
-        if own_counts.turns == 0 && own_counts.signs <= signs {
+        let counted = |points: &[Vec3<f64>], ramp| counter.soft(points, ramp).inflections;
+        let own = counted(&plain.points, EARLY);
+        if own == 0.0 {
             return Ok(plain);
         }
-        let fairest = if fairest.is_empty() { self.fairest(options, job)? } else { fairest };
-        let mut starts = vec![(counted(&fairest).turns, fairest)];
         let stiffest = self.least_bending(options, job)?;
-        let count = counted(&stiffest).turns;
-        starts.insert(usize::from(count >= starts[0].0), (count, stiffest));
-        let most = starts[0].0;
-        let well = |points: &[Vec3<f64>]| {
-            let counts = counted(points);
-            counts.turns <= most && counts.signs <= signs
-        };
-        if well(&plain.points) {
+        let most = counted(&stiffest, LATE);
+        let over = |points: &[Vec3<f64>]| ((counted(points, EARLY) - most) / HELD).clamp(0.0, 1.0);
+        let mut excess = over(&plain.points);
+        if excess == 0.0 {
             return Ok(plain);
-        }
-        let least = plain.least;
-        // The gap includes the cost of the signs.
-        let priced = |mut made: DataFit| {
-            made.certificate.gap = made.certificate.gap.max(made.certificate.value - least);
-            made.least = least;
-            made.fairest_used = plain.fairest_used;
-            made
-        };
-        let known = job.points.len() <= MANY || most <= ROUNDED_TURNS;
-        for (_, start) in starts.iter().filter(|s| known && s.0 <= most) {
-            let Some(shape) = ShapeConstraints::pattern(space, start) else { continue };
-            // First with the weight of the goal's own curve: without signs that curve is optimal in
-            // the weighted sum, which therefore is a lower bound.
-            let search = SignSearch {
-                weight: Some(plain.weight),
-                settled: SETTLED,
-                rounds: ROUNDS,
-                least: self.weighed_value(&plain),
-            };
-            let signed = DataOptions { shape: shape.clone(), ..options.clone() };
-            let first = match self.with_signs(&signed, job, shape.clone(), start, search) {
-                Ok(first) if well(&first.points) => first,
-                Ok(_) | Err(FairError::Shape { .. }) => continue,
-                Err(other) => return Err(other),
-            };
-            if options.goal == Goal::Fairest {
-                return Ok(priced(first));
-            }
-            let then = SignSearch { settled: f64::INFINITY, rounds: FEW, ..SignSearch::WHOLE };
-            return match self.with_signs(&signed, job, shape, &first.points, then) {
-                Ok(more) if well(&more.points) => Ok(priced(more)),
-                Ok(_) | Err(FairError::Shape { .. }) => Ok(priced(first)),
-                Err(other) => Err(other),
-            };
         }
         let norm = options.measure.norm();
         let rows = options.measure.rows(space)?;
-        // As much bending beside the measure as keeps the turns.
         let stiff = Measure::Bending.rows(space)?;
         let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
         let ratio = low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE);
+        // Of several optima the nearest is one of bending.
+        let bending = DataOptions { measure: Measure::Bending, ..options.clone() };
         let mut parts = self.parts(options, job)?;
-        for factor in [0.1, 1.0, 10.0, 100.0].into_iter().filter(|_| known) {
-            parts.measure = rows.clone().joined(&stiff.clone().scaled(factor * ratio.sqrt()));
-            let mut made = self.along(options, job, &mut parts)?;
-            if well(&made.points) {
-                made.certificate.value = crate::measure::value(&rows, norm, &made.points);
-                return Ok(priced(made));
+        let mut made = |s: f64| {
+            if s <= 0.0 {
+                return Ok(plain.clone());
             }
-        }
-        let (_, start) = &starts[0];
-        let between = |share: f64| -> Vec<Vec3<f64>> {
-            let both = start.iter().zip(&plain.points);
-            both.map(|(p, q)| *p + (*q - *p) * share).collect()
+            if s >= 1.0 {
+                return Ok(self.between_optima(stiffest.clone(), 0.0, job));
+            }
+            let odds = s / (1.0 - s);
+            let weight = ratio * odds * odds * odds * odds;
+            parts.measure = rows.clone().joined(&stiff.clone().scaled(weight.sqrt()));
+            self.along(&bending, job, &mut parts)
         };
-        let shares = (0..SHARES).rev().map(|k| k as f64 / SHARES as f64);
-        if let Some(mut low) = shares.into_iter().find(|&s| well(&between(s))) {
-            let mut high = low + 1.0 / SHARES as f64;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                *(if well(&between(middle)) { &mut low } else { &mut high }) = middle;
+        let mut s = 0.0;
+        for k in 0..STEPS {
+            if k > 0 {
+                excess = excess.min(over(&made(k as f64 / STEPS as f64)?.points));
             }
-            let points = between(low);
-            let value = crate::measure::value(&rows, norm, &points);
-            let mut made = self.between_optima(points, value, job);
-            made.certificate.gap = value;
-            return Ok(priced(made));
+            if excess == 0.0 {
+                break;
+            }
+            s += excess / STEPS as f64;
         }
-        let bends = own_counts.signs.saturating_sub(signs);
-        if bends == 0 || !options.conditions.is_empty() || !self.layout.interpolates() {
-            return Ok(DataFit { bends, ..plain });
-        }
-        // The curve through the data bends no more often than itself.
-        let value = crate::measure::value(&rows, norm, &job.points);
-        let mut kept = self.fit(GoalOptimum::unmoved(&job.points, value, false), job);
-        kept.least = least;
-        kept.bends = bends;
-        Ok(kept)
+        let mut made = made(s)?;
+        // The gap includes the cost of fewer inflections.
+        made.certificate.value = crate::measure::value(&rows, norm, &made.points);
+        made.certificate.gap = made.certificate.gap.max(made.certificate.value - plain.least);
+        (made.least, made.fairest_used) = (plain.least, plain.fairest_used);
+        Ok(made)
     }
 
     /// The fit of a curve between optima; its gap is set by the caller.

@@ -13,6 +13,7 @@ use crate::curve::bends::BendCounter;
 use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
+use crate::curve::nearest_fairest::order_of;
 use crate::curve::thinning::CurvesBesideData;
 use crate::optimum::goal::{Adaptation, Goal, GoalOptimum, RegularizationPath, rounding};
 use crate::optimum::ties::Ties;
@@ -95,9 +96,6 @@ pub struct DataFit {
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
-    /// Inflections that the goal would add to those of the interpolating curve. If no curve without
-    /// them is found, the interpolating curve is the result, unless there are conditions.
-    pub bends: usize,
     /// Arcs among the shape conditions.
     pub arcs: Vec<FoundArc>,
     /// Distance that the curve was moved from the goal's own curve (0) towards the fairest (1; up
@@ -210,14 +208,18 @@ impl Data {
         for c in self.fixed_control(&radii) {
             frozen[c] = true;
         }
+        let mut short = layout.short_conditions(&mut frozen);
+        let rigid = short.len();
+        short.append(&mut conditions);
+        let mut conditions = short;
         // A datum without tolerance stays on the curve.
         for k in (0..radii.len()).filter(|&k| radii[k] == 0.0) {
             let (columns, factors) = layout.rows.row(k);
-            if columns.iter().all(|&c| frozen[c as usize]) {
-                continue;
-            }
             // At an end all but one of the factors are zero: that control point is the datum.
             let parts = || columns.iter().zip(factors).filter(|(_, f)| **f != 0.0);
+            if parts().all(|(&c, _)| frozen[c as usize]) {
+                continue;
+            }
             if parts().count() == 1 {
                 parts().for_each(|(&c, _)| frozen[c as usize] = true);
                 continue;
@@ -272,6 +274,7 @@ impl Data {
             norm: options.measure.norm(),
             frozen,
             conditions,
+            rigid,
             own,
             bounded: Bounded::Data(DataLimits { rows, radii: own_radii, offsets, reach }),
             halves: Vec::new(),
@@ -412,8 +415,7 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     }
     let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
     let mut parts = data.parts(options, &job)?;
-    let mut found = data.found(options, &job, &mut parts)?;
-    let fairest = std::mem::take(&mut found.fairest);
+    let found = data.found(options, &job, &mut parts)?;
     let plain = data.fit(found, &job);
     if options.bends || jumps || plain.points == job.points {
         return Ok(plain);
@@ -422,7 +424,7 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     if shape::plane_normal(&counter.samples(&plain.points)).is_none() {
         return Ok(plain);
     }
-    data.without_bends(options, &job, plain, fairest, &counter)
+    data.without_bends(options, &job, plain, &counter)
 }
 
 /// Times that signs and lines are made linear again at most.
@@ -439,9 +441,6 @@ const INSIDE: f64 = 1e-2;
 /// Relative change of the measure at which the search for the minimum under signs ends.
 const SETTLED: f64 = 1e-8;
 
-/// Accuracy of the solutions in such a search, relative to `settled`.
-const ROUGHLY: f64 = 1e-3;
-
 /// Minimum budget, relative to the squares of the curve in the middle of the tolerances, counted
 /// from the minimum.
 const ROOM: f64 = 1.5;
@@ -450,28 +449,6 @@ const ROOM: f64 = 1.5;
 /// which on they have.
 const QUIET: f64 = 1e-3;
 const NOISE: f64 = 1e-2;
-
-/// Successive fractions by which a curve is moved towards one with the required signs.
-const PULLED: [f64; 3] = [1e-5, 1e-4, 1e-3];
-
-/// Parameters of the search for a curve under signs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SignSearch {
-    /// The weight of the data; without one the goal's is found in each round.
-    pub weight: Option<f64>,
-    /// Relative change of the measure at convergence.
-    pub settled: f64,
-    pub rounds: usize,
-    /// Lower bound of the measure plus weighted squares; a curve within `settled` of it is
-    /// accepted.
-    pub least: f64,
-}
-
-impl SignSearch {
-    /// The least of a goal.
-    pub const WHOLE: Self =
-        Self { weight: None, settled: SETTLED, rounds: ROUNDS, least: f64::NEG_INFINITY };
-}
 
 impl Data {
     /// The mean of squared residuals over tolerances, over 1/3.
@@ -515,12 +492,12 @@ impl Data {
         }
         let stiffest = self.least_bending(options, job)?;
         let plain = options.shape.without_pieces().by(space, &stiffest);
-        let mut made = match self.with_signs(options, job, plain, &stiffest, SignSearch::WHOLE) {
+        let mut made = match self.with_signs(options, job, plain, &stiffest) {
             // Signs may be too far from those of the first start.
             Err(e @ FairError::Shape { .. }) => {
                 let start = self.fairest(options, job)?;
                 let again = options.shape.without_pieces().by(space, &start);
-                self.with_signs(options, job, again, &start, SignSearch::WHOLE).map_err(|_| e)?
+                self.with_signs(options, job, again, &start).map_err(|_| e)?
             }
             other => other?,
         };
@@ -531,7 +508,7 @@ impl Data {
         // The pattern of curvature extrema is taken from fairer and fairer curves.
         for start in [made.points.clone(), self.fairest(options, job)?, stiffest] {
             let shape = options.shape.by(space, &start);
-            match self.with_signs(options, job, shape, &start, SignSearch::WHOLE) {
+            match self.with_signs(options, job, shape, &start) {
                 Ok(tried) => match options.shape.counted(space, &tried.points) {
                     None => return Ok(DataFit { arcs: options.shape.arcs.clone(), ..tried }),
                     Some((_, count)) => fewest = fewest.min(count),
@@ -595,7 +572,6 @@ impl Data {
         job: &Job,
         shape: ShapeConstraints,
         start: &[Vec3<f64>],
-        search: SignSearch,
     ) -> Result<DataFit, FairError> {
         let mut control = shape.projected(start);
         let slack = self.slack();
@@ -606,16 +582,10 @@ impl Data {
         let mut best: Option<DataFit> = None;
         let mut missed = (f64::INFINITY, 0);
         let unshaped = self.unshaped_parts(&options, job)?;
-        for round in 0..search.rounds {
+        for round in 0..ROUNDS {
             let mut parts = unshaped.clone();
             self.shape_parts(&mut parts, &options, &control);
-            let tried = match search.weight {
-                Some(weight) => {
-                    parts.accuracy = parts.accuracy.max(search.settled * ROUGHLY);
-                    self.weighed(job, &mut parts, weight)
-                }
-                None => self.along(&options, job, &mut parts),
-            };
+            let tried = self.along(&options, job, &mut parts);
             let made = match tried {
                 Err(FairError::Contradiction { conditions, ends, miss }) => {
                     // The shape's own equations come after the caller's.
@@ -634,19 +604,9 @@ impl Data {
                 other => other?,
             };
             missed = options.shape.miss(self, &made.points, slack);
-            if missed.0 > 0.0 && search.least.is_finite() {
-                // The violation is small: a slight move towards the first curve, which has the
-                // signs, removes it.
-                if let Some(pulled) = self.pulled_back(&options, &made, start, slack) {
-                    let above = self.weighed_value(&pulled) - search.least;
-                    if above <= search.settled * search.least.abs() {
-                        return Ok(self.exact(&options.shape, pulled));
-                    }
-                }
-            }
             let settled = best.as_ref().is_some_and(|b| {
                 let (was, now) = (b.certificate.value, made.certificate.value);
-                (was - now).abs() <= search.settled * now.abs()
+                (was - now).abs() <= SETTLED * now.abs()
             });
             let far = if round < WHOLE { 1.0 } else { 0.5 };
             for (c, p) in control.iter_mut().zip(&made.points) {
@@ -656,42 +616,13 @@ impl Data {
                 options.shape.margin = (options.shape.margin + 2.0 * missed.0).min(most);
             }
             if missed.0 <= 0.0 {
-                let above = self.weighed_value(&made) - search.least;
-                let near = search.least.is_finite() && above <= search.settled * search.least.abs();
-                let settled = settled || near;
                 best = Some(self.exact(&options.shape, made));
-                if settled || search.settled.is_infinite() {
+                if settled {
                     break;
                 }
             }
         }
         best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
-    }
-
-    /// The curve a little towards one that has the signs, as far as it takes to have them, too.
-    fn pulled_back(
-        &self,
-        options: &DataOptions,
-        made: &DataFit,
-        start: &[Vec3<f64>],
-        slack: f64,
-    ) -> Option<DataFit> {
-        for share in PULLED {
-            let both = made.points.iter().zip(start);
-            let points: Vec<Vec3<f64>> = both.map(|(p, q)| *p + (*q - *p) * share).collect();
-            if options.shape.miss(self, &points, slack).0 > 0.0 {
-                continue;
-            }
-            let rows = options.measure.rows(&self.layout.space).ok()?;
-            let value = crate::measure::value(&rows, options.measure.norm(), &points);
-            let residuals = self.residuals(&points);
-            let mut pulled = DataFit { residuals, points, ..made.clone() };
-            pulled.used = self.used(&pulled.residuals);
-            pulled.certificate.gap += (value - made.certificate.value).max(0.0);
-            pulled.certificate.value = value;
-            return Some(pulled);
-        }
-        None
     }
 
     /// The optimum of a goal.
@@ -702,27 +633,6 @@ impl Data {
         parts: &mut Parts<'_>,
     ) -> Result<DataFit, FairError> {
         Ok(self.fit(self.found(options, job, parts)?, job))
-    }
-
-    /// The optimum of the measure and the squared residuals of this weight.
-    fn weighed(&self, job: &Job, parts: &mut Parts<'_>, weight: f64) -> Result<DataFit, FairError> {
-        let pull = self.pull(parts);
-        parts.pull = (weight > 0.0).then(|| pull.scaled(weight.sqrt()));
-        let optimum = parts.solve()?;
-        let value = crate::measure::value(&parts.measure, parts.norm, &optimum.points);
-        let mut found = GoalOptimum::unmoved(&optimum.points, value, false);
-        found.optimum =
-            Optimum { certificate: Certificate { value, ..optimum.certificate }, ..optimum };
-        found.weight = weight;
-        let mut made = self.fit(found, job);
-        made.used = self.used(&made.residuals);
-        Ok(made)
-    }
-
-    /// The measure of a curve and its squares by their weight.
-    pub(super) fn weighed_value(&self, made: &DataFit) -> f64 {
-        let count = self.pulls().into_iter().filter(|p| *p).count().max(1);
-        made.certificate.value + made.weight * made.used * count as f64 / 3.0
     }
 
     pub(super) fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
@@ -738,7 +648,6 @@ impl Data {
             active: found.optimum.active,
             points: found.optimum.points,
             original: job.points.clone(),
-            bends: 0,
             arcs: Vec::new(),
             fairer: 0.0,
         }
@@ -789,6 +698,13 @@ impl Data {
             let value = crate::measure::value(&rows, norm, &job.points);
             return Ok(GoalOptimum::unmoved(&job.points, value, still));
         }
+        let order = order_of(options.measure);
+        let order = order.filter(|_| !conditioned && parts.halves.is_empty());
+        let frozen = parts.frozen.clone();
+        let nearest = order.map(|order| {
+            let frozen = &frozen;
+            move |fairest: Optimum| self.nearest_fairest(order, frozen, fairest)
+        });
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
@@ -801,6 +717,7 @@ impl Data {
             adapts: Adaptation::None,
             known: None,
             moves: self.layout.thin.as_ref().map(|thin| self.moves(thin)),
+            nearest: nearest.as_ref().map(|nearest| nearest as &dyn Fn(Optimum) -> _),
         };
         let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
         path.follow(goal, norm, conditioned, parts, &pull)

@@ -5,7 +5,8 @@ use crate::Certificate;
 use crate::FairError;
 use crate::curve::data::{Data, DataFit, DataOptions};
 use crate::curve::job::Job;
-use crate::optimum::goal::{Goal, GoalOptimum, worth};
+use crate::curve::nearest_fairest::order_of;
+use crate::optimum::goal::{Goal, GoalOptimum, rounding, worth};
 use crate::optimum::{BudgetOptimum, Optimum};
 
 impl Data {
@@ -24,9 +25,20 @@ impl Data {
         if let (true, Some(share)) = (own, share) {
             let pull = self.pull(&parts);
             let mean = pull.len() as f64 / 3.0;
-            if let Some(found) = parts.within(&pull, share * mean)? {
+            if let Some(mut found) = parts.within(&pull, share * mean)? {
                 let energy =
                     |points: &[_]| crate::measure::value(&parts.measure, parts.norm, points);
+                if let Some(order) = order_of(options.measure) {
+                    let near = found.optimum.clone();
+                    let near = self.nearest_fairest(order, &parts.frozen, near)?;
+                    let both = near.points.iter().zip(&job.points);
+                    let moved: Vec<_> = both.map(|(p, q)| *p - *q).collect();
+                    let noise = rounding(&parts.measure, parts.norm, &job.points);
+                    let least = energy(&near.points) <= energy(&found.optimum.points).max(noise);
+                    if least && pull.sum_sq(&moved) <= share * mean {
+                        found.optimum = near;
+                    }
+                }
                 return Ok(self.settled(&options, &job, found, energy));
             }
             parts.pull = None;

@@ -1,10 +1,11 @@
 //! Splines with knots at the data: parameters of the data, and the interpolating spline.
 
+use crate::curve::condition::AXES;
 use crate::curve::fit::{fit_with, values};
 
 use crate::curve::moving::{MapReal, MovingSpace};
 use crate::curve::thinning::CurvesBesideData;
-use crate::{FairError, Space, SparseRows, fit};
+use crate::{Condition, FairError, Space, SparseRows, fit};
 use moldloft_num::{Banded, Real, Vec3};
 use moldloft_spline::KnotVector;
 
@@ -521,6 +522,41 @@ impl InterpolationSpace {
         Ok(true)
     }
 
+    /// The conditions that pieces with fewer data than control points stay polynomials of the degree that these
+    /// determine: differences of their control points vanish. Where all data of such a piece stay, so does the piece.
+    pub(crate) fn short_conditions(&self, frozen: &mut [bool]) -> Vec<Condition> {
+        let mut out = Vec::new();
+        if !self.polynomial || self.thin.is_some() || self.space.is_closed() {
+            return out;
+        }
+        let degree = self.space.degree();
+        let known = |k: usize| self.owner[k].is_some();
+        let mut first = 0;
+        for last in 1..self.sites.len() {
+            if !(self.marks.contains(&last) || last + 1 == self.sites.len()) {
+                continue;
+            }
+            let sites = first..=last;
+            let count = sites.clone().filter(|&k| known(k)).count();
+            if count <= degree && last - first == degree {
+                if count == 2 && frozen[first] && frozen[last] {
+                    frozen[sites].fill(true);
+                } else {
+                    let factors = differences(count);
+                    for from in first..=last - count {
+                        for axis in AXES {
+                            let entries = factors.iter().enumerate();
+                            let entries = entries.map(|(j, &f)| (from + j, axis * f)).collect();
+                            out.push(Condition { entries, value: 0.0 });
+                        }
+                    }
+                }
+            }
+            first = last;
+        }
+        out
+    }
+
     /// The data that a site depends on.
     pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
         self.sources.row(site).0.iter().map(|&c| c as usize)
@@ -676,6 +712,16 @@ impl InterpolationSpace {
         let few = Self { sites, rows, thin: None, ..self.clone() };
         few.reach(&chosen.iter().map(|&k| radii[k]).collect::<Vec<f64>>())
     }
+}
+
+/// The factors of the differences of an order.
+fn differences(order: usize) -> Vec<f64> {
+    let mut out = vec![1.0];
+    for _ in 0..order {
+        let before = out.iter().chain([&0.0]).zip([0.0].iter().chain(&out));
+        out = before.map(|(a, b)| b - a).collect();
+    }
+    out
 }
 
 /// Interpolation between two items of a list.

@@ -23,6 +23,7 @@ pub(crate) mod monotone;
 pub(crate) mod moving;
 pub(crate) mod multilevel;
 pub(crate) mod near;
+mod nearest_fairest;
 pub(crate) mod request;
 pub(crate) mod shape_condition;
 pub(crate) mod shaping;

@@ -8,22 +8,23 @@
 //! counts by its persistence (Edelsbrunner, Letscher and Zomorodian 2002); it is therefore a
 //! continuous function of the data.
 
-use crate::curve::bends::{BendCounter, BendCounts};
+use crate::curve::bends::{BendCounter, BendCounts, HELD};
 use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
 use crate::curve::job::Job;
 use crate::interrogate::shape::{self, Sample};
-use crate::interrogate::soft_counts::SoftCounts;
+use crate::interrogate::soft_counts::{EARLY, LATE, SoftCounts};
 use crate::optimum::Parts;
 use crate::optimum::goal::Goal;
 use crate::{FairError, InterpolationSpace, SparseRows};
 use moldloft_num::Vec3;
 
 /// Steps of the integral from the goal's budget to that of the fairest, and back to chord lengths.
-const BUDGET_STEPS: usize = 20;
+const BUDGET_STEPS: usize = 10;
 const PARAMETER_STEPS: usize = 4;
 
-/// Step of the final search by exact counts.
-const COUNTED_STEP: f64 = 0.05;
+/// Excess of the fairest curve from which it has more bends than allowed: from [`HELD`] to this the
+/// path goes on beyond it.
+const EXCEEDS: f64 = 0.9;
 
 /// Monotone pieces that the curve near its data may have more than the fairest.
 const MORE_PIECES: f64 = 2.0;
@@ -31,12 +32,6 @@ const MORE_PIECES: f64 = 2.0;
 /// Minimum ratio of the fairest curve's squares to the goal's budget, so that the path has a
 /// length.
 const LEAST_WAY: f64 = 1.05;
-
-/// Persistences at which a ripple starts to count and counts fully. Ripples of the curve count
-/// earlier than those of the fairest, so that a curve within the soft limits is within the exact
-/// ones.
-const EARLY: [f64; 2] = [0.8, 1.0];
-const LATE: [f64; 2] = [1.0, 1.25];
 
 /// Fraction of the distance from the data below which the budget is taken from the goal and not
 /// from the curve.
@@ -50,36 +45,22 @@ const SHAPED_STEPS: usize = 5;
 pub(super) type Relaid = (Option<InterpolationSpace>, DataFit);
 
 /// Limits of a curve: the counts of the fairest plus some pieces.
-struct CountLimits {
-    soft: SoftCounts,
-    signs: usize,
-    pieces: f64,
-}
+struct CountLimits(SoftCounts);
 
 impl CountLimits {
-    /// Limits from fairest curves, the first of which is the final one.
-    fn of(fairest: &[Vec<Sample>], more: f64) -> Self {
-        let all: Vec<SoftCounts> = fairest.iter().map(|s| SoftCounts::of(s, LATE)).collect();
-        let least = |of: fn(&SoftCounts) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+    /// Limits from counts of fairest curves.
+    fn of(fairest: &[SoftCounts], more: f64) -> Self {
+        let least =
+            |of: fn(&SoftCounts) -> f64| fairest.iter().map(of).fold(f64::INFINITY, f64::min);
         let (inflections, pieces) = (least(|c| c.inflections), least(|c| c.pieces) + more);
-        let counts = BendCounts::of(&fairest[0]);
-        Self {
-            soft: SoftCounts { inflections, pieces },
-            signs: counts.signs,
-            pieces: counts.pieces as f64 + more,
-        }
+        Self(SoftCounts { inflections, pieces })
     }
 
     /// Excess of a curve over the limits, from 0 to 1.
-    fn beyond(&self, samples: &[Sample]) -> f64 {
-        let own = SoftCounts::of(samples, EARLY);
-        let signs = own.inflections - self.soft.inflections;
-        signs.max(own.pieces - self.soft.pieces).clamp(0.0, 1.0)
-    }
-
-    fn hold(&self, samples: &[Sample]) -> bool {
-        let own = BendCounts::of(samples);
-        own.signs <= self.signs && own.pieces as f64 <= self.pieces
+    fn beyond(&self, counter: &BendCounter<'_>, points: &[Vec3<f64>]) -> f64 {
+        let own = counter.soft(points, EARLY);
+        let signs = own.inflections - self.0.inflections;
+        signs.max(own.pieces - self.0.pieces).clamp(0.0, 1.0)
     }
 }
 
@@ -208,11 +189,37 @@ impl FairingPath<'_> {
         }
     }
 
-    fn samples(&self, layout: Option<&InterpolationSpace>, fit: &DataFit) -> Vec<Sample> {
-        match layout {
-            Some(layout) => BendCounter::new(&layout.space).samples(&fit.points),
-            None => self.counter.samples(&fit.points),
+    /// The position from which on no curve of the path has more bends than allowed: an integral of
+    /// the largest excess from each position on.
+    fn position(&mut self, limits: &CountLimits) -> Result<f64, FairError> {
+        // Few knots have few ripples, and many data take long.
+        let steps = if self.data.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };
+        let fairest = limits.beyond(&self.counter, &self.fairest);
+        let (mut x, mut over) = (0.0, fairest);
+        for k in (0..steps).rev() {
+            if over < HELD {
+                let points = self.rough(k as f64 / steps as f64)?;
+                over = over.max(limits.beyond(&self.counter, &points));
+            }
+            x += (over / HELD).min(1.0) / steps as f64;
         }
+        let on = ((fairest - HELD) / (EXCEEDS - HELD)).clamp(0.0, 1.0);
+        if on == 0.0 {
+            return Ok(x);
+        }
+        let (mut y, mut over) = (0.0, 0.0_f64);
+        for k in (0..PARAMETER_STEPS).rev() {
+            if over < HELD {
+                let (layout, fit) = self.made(1.0 + k as f64 / PARAMETER_STEPS as f64)?;
+                let beyond = match &layout {
+                    Some(layout) => limits.beyond(&BendCounter::new(&layout.space), &fit.points),
+                    None => limits.beyond(&self.counter, &fit.points),
+                };
+                over = over.max(beyond);
+            }
+            y += (over / HELD).min(1.0) / PARAMETER_STEPS as f64;
+        }
+        Ok(x + on * y)
     }
 
     /// A curve between optima; its gap is its excess over the minimum.
@@ -242,23 +249,20 @@ impl Data {
         let (used, fairest_used) = (found.used, found.fairest_used);
         let goal = self.fit(found, job);
         let counter = BendCounter::new(&self.layout.space);
-        let samples = counter.samples(&goal.points);
-        if fairest.is_empty() || shape::plane_normal(&samples).is_none() {
+        let plane = || shape::plane_normal(&counter.samples(&goal.points)).is_some();
+        if fairest.is_empty() || !plane() {
             return Ok((None, goal));
         }
         let calm = {
             let options = DataOptions { goal: Goal::Fairest, ..options.clone() };
             fair_data(turned.as_ref().map_or(self, |t| t.lengths), &options)?
         };
-        let calm_samples = match &turned {
-            Some(t) => BendCounter::new(&t.lengths.layout.space).samples(&calm.points),
-            None => counter.samples(&calm.points),
+        let least_bent = match &turned {
+            Some(t) => BendCounter::new(&t.lengths.layout.space).soft(&calm.points, LATE),
+            None => counter.soft(&calm.points, LATE),
         };
-        let fairest_samples = counter.samples(&fairest);
-        let limits = CountLimits::of(&[calm_samples, fairest_samples], more_pieces(options.goal));
-        if limits.beyond(&samples) == 0.0 && limits.hold(&samples) {
-            return Ok((None, goal));
-        }
+        let both = [least_bent, counter.soft(&fairest, LATE)];
+        let limits = CountLimits::of(&both, more_pieces(options.goal));
         let pull = self.pull(&parts);
         let mean = (pull.len() as f64 / 3.0).max(f64::MIN_POSITIVE);
         let own = match options.goal {
@@ -283,33 +287,9 @@ impl Data {
             turned,
             counter,
         };
-        // Running minimum of the excess: the path ends where it is 0.
-        let (mut x, mut over) = (0.0, 1.0_f64);
-        // Few knots have few ripples, and many data take long.
-        let steps = if self.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };
-        for k in 0..steps {
-            let points = path.rough(k as f64 / steps as f64)?;
-            over = over.min(limits.beyond(&path.counter.samples(&points)));
-            if over == 0.0 {
-                break;
-            }
-            x += over / steps as f64;
-        }
-        for k in 0..PARAMETER_STEPS {
-            if over == 0.0 {
-                break;
-            }
-            let (layout, fit) = path.made(1.0 + k as f64 / PARAMETER_STEPS as f64)?;
-            over = over.min(limits.beyond(&path.samples(layout.as_ref(), &fit)));
-            x += over / PARAMETER_STEPS as f64;
-        }
-        loop {
-            let (layout, fit) = path.made(x)?;
-            if x >= 2.0 || limits.hold(&path.samples(layout.as_ref(), &fit)) {
-                return Ok((layout, DataFit { fairest_used, fairer: x, ..fit }));
-            }
-            x = (x + COUNTED_STEP).min(2.0);
-        }
+        let x = path.position(&limits)?;
+        let (layout, fit) = path.made(x)?;
+        Ok((layout, DataFit { fairest_used, fairer: x, ..fit }))
     }
 }
 
@@ -355,12 +335,19 @@ impl Data {
         if !allowed(BendCounts::of(&calm).pieces) {
             return self.under_shape(options, job);
         }
-        let mut limits = CountLimits::of(&[calm], more_pieces(options.goal));
-        if let Some(most) = asked.map(|most| most as f64) {
-            limits.pieces = limits.pieces.min(most);
-            limits.soft.pieces = limits.soft.pieces.min(most);
+        let mut limits =
+            CountLimits::of(&[counter.soft(&fairest.points, LATE)], more_pieces(options.goal));
+        let counts = BendCounts::of(&calm);
+        let mut most = counts.pieces as f64 + more_pieces(options.goal);
+        if let Some(asked) = asked.map(|asked| asked as f64) {
+            most = most.min(asked);
+            limits.0.pieces = limits.0.pieces.min(asked);
         }
-        if limits.beyond(&samples) == 0.0 && limits.hold(&samples) {
+        let held = |samples: &[Sample]| {
+            let own = BendCounts::of(samples);
+            own.signs <= counts.signs && own.pieces as f64 <= most
+        };
+        if limits.beyond(&counter, &goal.points) == 0.0 && held(&samples) {
             return Ok(goal);
         }
         let begin = goal.used.max(f64::MIN_POSITIVE);
@@ -369,11 +356,11 @@ impl Data {
             let goal = Goal::Budget(begin * libm::pow(end / begin, x));
             self.under_shape(&DataOptions { goal, ..loose.clone() }, job)
         };
-        let (mut x, mut over) = (0.0, limits.beyond(&samples));
+        let (mut x, mut over) = (0.0, limits.beyond(&counter, &goal.points));
         for k in 0..SHAPED_STEPS {
             if k > 0 {
                 let fit = made(k as f64 / SHAPED_STEPS as f64)?;
-                over = over.min(limits.beyond(&counter.samples(&fit.points)));
+                over = over.min(limits.beyond(&counter, &fit.points));
             }
             if over == 0.0 {
                 break;
@@ -382,7 +369,7 @@ impl Data {
         }
         while x < 1.0 {
             let fit = made(x)?;
-            if limits.hold(&counter.samples(&fit.points)) {
+            if held(&counter.samples(&fit.points)) {
                 return Ok(DataFit { fairer: x, fairest_used: fairest.used, ..fit });
             }
             x += 1.0 / SHAPED_STEPS as f64;

@@ -321,26 +321,6 @@ impl ShapeConstraints {
             && self.pieces.is_none()
     }
 
-    /// The signs of a curve's curvature span by span, where it has one: no inflection but its own.
-    pub(crate) fn pattern(space: &Space, control: &[Vec3<f64>]) -> Option<Self> {
-        let plane = CurvePlane::of(space, control)?;
-        let mut out = Self { plane: Some(plane), ..Self::default() };
-        for span in space.spans() {
-            let all = SignedQuantity::Turn.coefficients(&out.bezier(space, span, control));
-            let (some, none) = (all.iter().any(|&c| c > 0.0), all.iter().any(|&c| c < 0.0));
-            if some != none {
-                out.signs.push(Signed {
-                    span,
-                    what: SignedQuantity::Turn,
-                    positive: some,
-                    slack: 0.0,
-                    owner: usize::MAX,
-                });
-            }
-        }
-        Some(out)
-    }
-
     fn bezier(&self, space: &Space, span: isize, control: &[Vec3<f64>]) -> Vec<P<f64>> {
         let plane = self.plane.expect("signs of curvature require a plane curve");
         let columns: Vec<usize> = space.columns(span).collect();

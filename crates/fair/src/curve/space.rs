@@ -126,6 +126,14 @@ impl Space {
         }
     }
 
+    /// Interior knots at which splines are only continuous.
+    pub(crate) fn corners(&self) -> Vec<f64> {
+        let (start, end) = self.domain();
+        let groups = self.knots.chunk_by(|a, b| a == b);
+        let corners = groups.filter(|g| g.len() >= self.degree && start < g[0] && g[0] < end);
+        corners.map(|g| g[0]).collect()
+    }
+
     /// First and last parameter.
     pub fn domain(&self) -> (f64, f64) {
         match self.period {

@@ -216,18 +216,6 @@ pub(crate) fn report_of(
             "the tolerance is reached at every datum: it is smaller than the noise".to_string(),
         );
     }
-    if made.bends > 0 {
-        let what = if made.points == job.points {
-            "the curve through the data is unchanged"
-        } else {
-            "the conditions leave no other curve"
-        };
-        notes.push(format!(
-            "the goal adds {} inflections to those of the curve through the data: {what}; a larger \
-             tolerance, the goal `fairest`, or `bends` to allow them",
-            made.bends
-        ));
-    }
     let report = FairingReport {
         deviation: deviation(&job, &made.points),
         points: made.points.clone(),

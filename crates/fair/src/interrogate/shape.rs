@@ -162,20 +162,24 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
     }
 }
 
-/// The monotone pieces of a curve's curvature, one at least: reversals below `share` of its range are
+/// The monotone pieces of a curve's curvature, one at least of each part between corners: reversals below `share` of its range are
 /// not counted, nor those of a straight line's or a circle's curvature, nor those that a cubic has between
 /// its knots because its second derivative is linear there, nor where the points at the knots are on one
 /// circle those that a spline has between such points.
 ///
 /// Samples are those of [`samples`], the same number on each span.
 pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
-    let Some(floors) = curvature_floors(samples, share) else { return 1 };
-    runs_above(&curvatures(samples), &floors).max(1)
+    let parts = parts_between_corners(samples);
+    let Some(floors) = curvature_floors(samples, share) else { return parts.len() };
+    let values = curvatures(samples);
+    let runs =
+        |part: std::ops::Range<usize>| runs_above(&values[part.clone()], &floors[part]).max(1);
+    parts.into_iter().map(runs).sum()
 }
 
 /// Reversal of the curvature at each sample below which it does not count; `None` if the whole
 /// range does not count.
-pub(crate) fn curvature_floors(samples: &[Sample], share: f64) -> Option<Vec<f64>> {
+fn curvature_floors(samples: &[Sample], share: f64) -> Option<Vec<f64>> {
     let values = curvatures(samples);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -317,7 +321,7 @@ fn felt(widths: &[f64]) -> Vec<f64> {
 }
 
 /// Relative range of curvature of a circle: the ripple of a cubic with about forty spans around it.
-const SAME: f64 = 4e-3;
+pub(crate) const SAME: f64 = 4e-3;
 
 /// Additional reversals of curvature of a cubic through points on a circle at uneven spacing, in
 /// squares of the angle of the longest span: the factor per ratio of the longest to the shortest
@@ -393,7 +397,7 @@ fn runs_above(values: &[f64], floors: &[f64]) -> usize {
 }
 
 /// The turn over a whole curve's extent, in radians, below which a curvature is that of a straight line.
-const STRAIGHT: f64 = 1e-8;
+pub(crate) const STRAIGHT: f64 = 1e-8;
 
 /// The curvature, at each sample, that rounding of the points leaves of a straight line, or [`STRAIGHT`].
 fn straight_floors(samples: &[Sample]) -> Vec<f64> {
@@ -407,6 +411,25 @@ fn straight_floors(samples: &[Sample]) -> Vec<f64> {
         out[span].iter_mut().for_each(|f| *f = f.max(floor));
     }
     out
+}
+
+/// The turn of the tangent at a knot, in radians, from which it is a corner.
+const CORNER: f64 = 1e-6;
+
+/// Jump of the derivative at a knot, relative to the largest, that rounding leaves.
+const SMOOTH_JUMP: f64 = 1e-9;
+
+/// The samples of each part between corners.
+fn parts_between_corners(samples: &[Sample]) -> Vec<std::ops::Range<usize>> {
+    let largest = samples.iter().map(|s| s.derivatives[0].norm()).fold(0.0, f64::max);
+    let is_corner = |k: &usize| {
+        let [a, b] = [k - 1, *k].map(|k| samples[k].derivatives[0]);
+        let turns = a.cross(b).norm() > CORNER * a.norm() * b.norm() || a.dot(b) < 0.0;
+        samples[*k].t <= samples[k - 1].t && turns && (a - b).norm() > SMOOTH_JUMP * largest
+    };
+    let inner = (1..samples.len()).filter(is_corner);
+    let bounds: Vec<usize> = [0].into_iter().chain(inner).chain([samples.len()]).collect();
+    bounds.windows(2).map(|w| w[0]..w[1]).collect()
 }
 
 /// Minimum number of spans of a straight run; half as many at an end. Shorter straight parts occur
@@ -432,7 +455,7 @@ fn in_straight_runs(samples: &[Sample]) -> Vec<bool> {
     out
 }
 
-/// Number of sign changes of the curvature: reversals of x' x x''. A zero without a change of sign
+/// Number of sign changes of the curvature: reversals of x' x x'', of each part between corners. A zero without a change of sign
 /// counts as two inflections at one parameter; a straight part counts at its begin and at its end,
 /// but a straight run (four spans or more, two at an end) counts at most once, if the curve turns
 /// the other way after it. A curve that is straight within rounding has none.
@@ -444,14 +467,23 @@ pub fn inflections(samples: &[Sample]) -> usize {
     if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
         return 0;
     }
-    let runs = in_straight_runs(samples);
+    let (runs, floors) = (in_straight_runs(samples), straight_floors(samples));
+    let signs = |part: std::ops::Range<usize>| {
+        let straight = part.clone().all(|i| samples[i].curvature() <= floors[i]);
+        if straight { 0 } else { sign_changes(&samples[part.clone()], &runs[part]) }
+    };
+    parts_between_corners(samples).into_iter().map(signs).sum()
+}
+
+/// The inflections of a part without corners, with its straight runs.
+fn sign_changes(samples: &[Sample], runs: &[bool]) -> usize {
     let mut last: Option<Vec3<f64>> = None;
     let mut changes = 0;
     // Start and end of a straight part; both sides of a knot are the same parameter.
     let mut straight: Option<[f64; 2]> = None;
     // A zero next to a straight run is part of it.
     let mut after_run = false;
-    for (s, &run) in samples.iter().zip(&runs) {
+    for (s, &run) in samples.iter().zip(runs) {
         if run {
             (straight, after_run) = (None, true);
             continue;
@@ -480,40 +512,6 @@ pub fn inflections(samples: &[Sample]) -> usize {
     }
     let ends_straight = straight.is_some_and(|[from, to]| from < to);
     changes + usize::from(last.is_some() && ends_straight)
-}
-
-/// The turn of the tangent, in radians, below which a reversal is not counted as an inflection.
-const LEAST_TURN: f64 = 1e-4;
-
-/// Number of reversals of the tangent's rotation by more than a ten-thousandth of a radian, for
-/// plane curves; 0 for space curves, whose curvature has no sign.
-pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
-    reversals(&bends(space, points))
-}
-
-/// Number of reversals of the tangent's rotation, from samples of a curve.
-pub(crate) fn reversals(all: &[Sample]) -> usize {
-    let Some(normal) = plane_normal(all) else { return 0 };
-    let (mut angle, mut extreme, mut rising, mut count) = (0.0, 0.0, None, 0usize);
-    let mut before: Option<Vec3<f64>> = None;
-    for d in all.iter().map(|s| s.derivatives[0]).filter(|d| d.norm_sq() > 0.0) {
-        if let Some(b) = before {
-            angle += Real::atan2(b.cross(d).dot(normal), b.dot(d));
-        }
-        before = Some(d);
-        let on = match rising {
-            None => false,
-            Some(true) => angle >= extreme,
-            Some(false) => angle <= extreme,
-        };
-        if on {
-            extreme = angle;
-        } else if (angle - extreme).abs() > LEAST_TURN {
-            count += usize::from(rising.is_some());
-            (rising, extreme) = (Some(angle > extreme), angle);
-        }
-    }
-    count
 }
 
 /// Samples on each span for counts.

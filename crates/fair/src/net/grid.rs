@@ -385,6 +385,7 @@ impl GridData {
             norm: measure.norm(),
             frozen,
             conditions: held,
+            rigid: 0,
             own,
             bounded: Bounded::Data(DataLimits {
                 rows,
@@ -463,6 +464,7 @@ impl GridData {
             adapts: Adaptation::Surface,
             known: None,
             moves: None,
+            nearest: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());

@@ -791,6 +791,7 @@ impl LineFairing<'_> {
             adapts: Adaptation::None,
             known: known.filter(|known| known.weight > 0.0),
             moves: None,
+            nearest: None,
         };
         let goal = match self.share {
             Some(share) if wider.is_finite() && self.ties == (0.0, 0) => {

@@ -464,6 +464,7 @@ impl Network {
             held: &self.held,
             ties: Ties::default(),
             conditions,
+            rigid: 0,
             own: 0,
             bounded: match bound {
                 Bound::Bezier if self.runs_through_points() => Bounded::Data(self.along_curves()?),

@@ -171,6 +171,7 @@ impl Network {
             adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
             known: None,
             moves: None,
+            nearest: None,
         };
         let mut found = path.follow(goal, norm, conditioned, parts, &pull)?;
         while self.limits_between() && between.extend(self, &found.optimum.points)? {

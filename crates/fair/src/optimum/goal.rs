@@ -217,6 +217,8 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub known: Option<BudgetOptimum>,
     /// Fraction of the move from an original that is the nearest of few control points; else by the gain.
     pub moves: Option<f64>,
+    /// Of several fairest the nearest to the original.
+    pub nearest: Option<&'a dyn Fn(Optimum) -> Result<Optimum, FairError>>,
 }
 
 /// Dependence of the budget of `near` on the squares of the fairest.
@@ -244,6 +246,8 @@ pub(crate) struct GoalOptimum {
     pub fairest_used: f64,
     /// True if the budget depends on the squares of the fairest.
     pub between: bool,
+    /// True if it is the nearest of several fairest.
+    pub several: bool,
 }
 
 impl GoalOptimum {
@@ -260,6 +264,7 @@ impl GoalOptimum {
             fairest: Vec::new(),
             fairest_used: 0.0,
             between: false,
+            several: false,
         }
     }
 }
@@ -333,7 +338,13 @@ where
             // Nothing is left but rounding: not a bit moves.
             return Ok(GoalOptimum::unmoved(self.original, begin, false));
         }
-        let (fairest, _) = solve(parts, 0.0)?;
+        let (mut fairest, _) = solve(parts, 0.0)?;
+        let mut several = false;
+        if let Some(nearest) = self.nearest {
+            let solved = fairest.points.clone();
+            fairest = nearest(fairest)?;
+            several = fairest.points != solved;
+        }
         let least = (self.energy)(&fairest.points);
         let squares = (self.squares)(&fairest.points);
         let fairest_points = fairest.points.clone();
@@ -370,6 +381,7 @@ where
                 fairest: fairest_points.clone(),
                 fairest_used: squares / mean,
                 between,
+                several: several && weight == 0.0,
             })
         };
         // Between the data's own curve and the optimum, by what there is to gain: both are within
@@ -586,6 +598,9 @@ pub(crate) fn check_unique(
     if found.weight > 0.0 || found.share == 0.0 || parts.norm != RowNorm::Square {
         return Ok(());
     }
+    if found.several {
+        return Err(FairError::NoDerivative(SEVERAL));
+    }
     // Between the data and the optimum: where that is, the solver says again.
     parts.pull = None;
     let fairest = parts.solve()?.points;
@@ -601,13 +616,13 @@ pub(crate) fn check_unique(
     let between: Vec<Vec3<f64>> = other.iter().zip(&fairest).map(|(p, q)| *p - *q).collect();
     let far = (0..pull.len()).map(|k| pull.apply(k, &between).norm()).fold(0.0, f64::max);
     if far > APART {
-        return Err(FairError::NoDerivative(
-            "several results within the tolerance are equally fair, so no derivatives are \
-            available: use the goal \"budget\"",
-        ));
+        return Err(FairError::NoDerivative(SEVERAL));
     }
     Ok(())
 }
+
+const SEVERAL: &str = "several results within the tolerance are equally fair, so no derivatives are \
+    available: use the goal \"budget\"";
 
 /// Refuses derivatives of a fairest of which it is not decided which limits it reaches: what the solver
 /// has then is near the optimum and does not move as it does.

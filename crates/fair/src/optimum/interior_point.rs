@@ -453,7 +453,8 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
 
     /// The system of the conditions' multipliers by the factored matrix.
     pub fn schur(&self, band: &Band) -> Schur {
-        Schur::new(&self.conditions, self.x.len(), &|y| self.inverse(band, y.as_chunks_mut().0))
+        let inverse = |y: &mut [f64]| self.inverse(band, y.as_chunks_mut().0);
+        Schur::new(&self.conditions, self.x.len(), &inverse, self.p.refined)
     }
 
     /// Solves with the factored matrix, in place.

@@ -4,7 +4,7 @@ pub(crate) mod band;
 pub(crate) mod certificate;
 mod dual;
 pub(crate) mod goal;
-mod held;
+pub(crate) mod held;
 mod interior_point;
 mod polish;
 pub(crate) mod problem;
@@ -252,6 +252,8 @@ pub(crate) struct Parts<'a> {
     /// Points that move together.
     pub ties: Ties,
     pub conditions: Vec<Condition>,
+    /// The number of the first conditions whose values are the same wherever the points move.
+    pub rigid: usize,
     /// True if the measure is relative to the mean of the points, as of rational splines.
     pub centred: bool,
     /// The number of conditions that are not the caller's.
@@ -294,6 +296,7 @@ impl<'a> Parts<'a> {
             held: &[],
             ties: Ties::default(),
             conditions,
+            rigid: 0,
             own,
             bounded: match options.bound {
                 Bound::ControlPoints => Bounded::ControlPoints,
@@ -453,10 +456,10 @@ impl<'a> Parts<'a> {
             .collect();
         // Kept values move with the points; targets do not.
         let value = |(k, condition): (usize, &Condition)| {
-            if k < self.own {
+            if (self.rigid..self.own).contains(&k) {
                 return T::zero();
             }
-            let target = targets.get(k - self.own);
+            let target = k.checked_sub(self.own).and_then(|k| targets.get(k));
             let aim = target.map_or(T::zero(), |&t| t - T::from(t.re()));
             condition.entries.iter().fold(aim, |aim, (i, f)| {
                 let c = changes[*i];
@@ -682,6 +685,7 @@ impl<'a> Parts<'a> {
             frozen: (0..n).map(|i| frozen[i] || ties.leader(i) != i).collect(),
             held,
             conditions,
+            refined: matches!(self.bounded, Bounded::Data(_)),
             reach,
             begin: self.begin.iter().map(|&v| frame.down(v)).collect(),
         }

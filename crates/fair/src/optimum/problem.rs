@@ -76,6 +76,8 @@ pub(crate) struct Problem {
     /// Directions in which points do not move; factors of conditions and half-spaces have none there.
     pub held: HeldDirections,
     pub conditions: Vec<EqualityConstraint>,
+    /// True to meet the conditions to rounding: those of data on the curve, which do not depend on each other.
+    pub refined: bool,
     pub halves: Vec<InequalityConstraint>,
     /// Rows with their values at no displacement (none when empty), the sum of whose squares is at most a
     /// number.

@@ -21,14 +21,18 @@ pub(crate) struct Schur {
     /// Conditions over the unknowns.
     rows: Vec<Vec<f64>>,
     matrix: Vec<f64>,
+    /// The products of the conditions themselves, by which what rounding leaves of them is taken out.
+    products: Option<Vec<f64>>,
 }
 
 impl Schur {
-    /// The system of `n` conditions; `inverse` solves with the factored matrix, in place.
+    /// The system of `n` conditions; `inverse` solves with the factored matrix, in place. With `refined` directions meet
+    /// them to rounding.
     pub fn new<const D: usize>(
         conditions: &[LinearConstraint<D>],
         unknowns: usize,
         inverse: &dyn Fn(&mut [f64]),
+        refined: bool,
     ) -> Self {
         let row = |c: &LinearConstraint<D>| {
             let mut by_point = vec![[0.0; D]; unknowns];
@@ -47,17 +51,21 @@ impl Schur {
             })
             .collect();
         let m = rows.len();
-        let mut matrix = vec![0.0; m * m];
-        for i in 0..m {
-            for j in 0..m {
-                matrix[i * m + j] = rows[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
+        let products = |with: &[Vec<f64>]| {
+            let mut matrix = vec![0.0; m * m];
+            for i in 0..m {
+                for j in 0..m {
+                    matrix[i * m + j] = rows[i].iter().zip(&with[j]).map(|(a, b)| a * b).sum();
+                }
             }
-        }
-        // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
-        for i in 0..m {
-            matrix[i * m + i] *= 1.0 + 1e-13;
-        }
-        Self { columns, rows, matrix }
+            // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
+            for i in 0..m {
+                matrix[i * m + i] *= 1.0 + 1e-13;
+            }
+            matrix
+        };
+        let (matrix, products) = (products(&columns), refined.then(|| products(&rows)));
+        Self { columns, rows, matrix, products }
     }
 
     /// Turns the unconstrained direction into one that meets the conditions; returns their
@@ -87,7 +95,34 @@ impl Schur {
                 *x -= nu * y;
             }
         }
+        if let Some(products) = &self.products {
+            self.refine(products.clone(), conditions, now, x);
+        }
         nu
+    }
+
+    /// The smallest change of a direction by which it meets the conditions to rounding, whatever the matrix has
+    /// left of them.
+    fn refine<const D: usize>(
+        &self,
+        mut products: Vec<f64>,
+        conditions: &[LinearConstraint<D>],
+        now: &[V<D>],
+        x: &mut [f64],
+    ) {
+        let short = |(row, condition): (&Vec<f64>, &LinearConstraint<D>)| {
+            let here: f64 = row.iter().zip(&*x).map(|(a, b)| a * b).sum();
+            condition.value - met(condition, now) - here
+        };
+        let mut by: Vec<f64> = self.rows.iter().zip(conditions).map(short).collect();
+        if moldloft_num::solve_dense(&mut products, &mut by).is_err() {
+            return;
+        }
+        for (row, by) in self.rows.iter().zip(&by) {
+            for (x, a) in x.iter_mut().zip(row) {
+                *x += by * a;
+            }
+        }
     }
 
     /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
