@@ -24,6 +24,9 @@ _ENDINGS = {"stl", "obj", "ply", "off", "msh", "vtk", "vtu", "3mf", "glb"}
 _METRES = {"gdf", "mar", "dat", "pnl", "hst"}
 """Panel files of flow solvers: their numbers are metres."""
 
+_STATED = {"3dm"}
+"""Files that state their unit of length."""
+
 
 def holds_mesh(path: str | os.PathLike[str]) -> bool:
     """True if the extension is that of a readable mesh file.
@@ -39,7 +42,7 @@ def holds_mesh(path: str | os.PathLike[str]) -> bool:
     (True, False)
     """
     ending = Path(path).suffix.lower().lstrip(".")
-    return ending in _ENDINGS | _METRES
+    return ending in _ENDINGS | _METRES | _STATED
 
 
 def mesh_program(
@@ -53,10 +56,11 @@ def mesh_program(
         A file of triangles and quadrilaterals; panel files come with their images in planes of
         symmetry.
     units
-        The unit of the model, into which lengths are converted; by default that of the file.
+        The unit of the model, into which lengths are converted; by default that of the file, and
+        metres for 3DM files.
     file_units
-        The unit of the file's numbers: m, cm, mm, ft or in. By default metres for panel files;
-        other files do not state it.
+        The unit of the file's numbers: m, cm, mm, ft or in. By default metres for panel files, and
+        what a 3DM file states; other files do not state it.
 
     Raises
     ------
@@ -94,13 +98,16 @@ def mesh_of_file(
 
     path = Path(path)
     stated = file_units
-    if not stated and path.suffix.lower().lstrip(".") in _METRES:
+    ending = path.suffix.lower().lstrip(".")
+    if not stated and ending in _METRES:
         stated = "m"
+    if ending in _STATED:
+        units = units or "m"
     found = read(path, units=units, file_units=stated if units else "")
     if not len(found.faces):
         raise FileError(f"cannot read `{path}`: it contains no face")
     remarks = list(found.remarks)
-    if not stated:
+    if not stated and ending not in _STATED:
         remarks.append("the file does not state its unit of length")
     return units or stated, *_joined(found.points, found.faces), remarks
 

@@ -253,3 +253,24 @@ def test_files_without_shapes_are_refused(tmp_path: Path) -> None:
     path = written(file, tmp_path / "points.3dm")
     with pytest.raises(moldloft.FileError, match="no visible surface and no visible curve"):
         program(path)
+
+
+def test_meshes_are_read(tmp_path: Path) -> None:
+    """A box of triangles and quadrilaterals, in inches."""
+    file = file_of("Inches")
+    mesh = R.Mesh()
+    for x, y, z in np.ndindex(2, 2, 2):
+        mesh.Vertices.Add(3.0 * x, 2.0 * y, -1.0 * z)
+    for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (1, 5, 7, 3)):
+        mesh.Faces.AddFace(a, d, c, b)
+    mesh.Faces.AddFace(0, 2, 6)
+    mesh.Faces.AddFace(0, 6, 4)
+    file.Objects.AddMesh(mesh, R.ObjectAttributes())
+    path = written(file, tmp_path / "box.3dm")
+    with pytest.raises(moldloft.FileError, match="read_mesh"):
+        program(path)
+    model = moldloft.read_mesh(path)
+    found = model.mesh()
+    assert found.closed
+    assert abs(found.volume) == pytest.approx(6 * 0.0254**3, rel=1e-6)
+    assert len(moldloft.read_mesh(path, units="in").mesh().faces) == 7

@@ -39,9 +39,9 @@ pub struct Wall<T> {
 /// cascade. Their points move like those inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PeriodicEdges {
-    /// s[1,] and s[m,]
+    /// `s[1,]` and `s[m,]`
     I,
-    /// s[,1] and s[,n]
+    /// `s[,1]` and `s[,n]`
     J,
 }
 

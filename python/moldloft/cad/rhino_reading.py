@@ -20,22 +20,22 @@ import numpy as np
 from moldloft.cad import needed
 from moldloft.errors import FileError
 
-__all__ = ["step_text"]
+__all__ = ["meshes", "step_text"]
 
 _PREFIXES = {
-    "Nanometers": ".NANO.",
-    "Microns": ".MICRO.",
-    "Millimeters": ".MILLI.",
-    "Centimeters": ".CENTI.",
-    "Decimeters": ".DECI.",
-    "Meters": "$",
-    "Dekameters": ".DECA.",
-    "Hectometers": ".HECTO.",
-    "Kilometers": ".KILO.",
-    "Megameters": ".MEGA.",
-    "Gigameters": ".GIGA.",
+    "Nanometers": (".NANO.", 1e-9),
+    "Microns": (".MICRO.", 1e-6),
+    "Millimeters": (".MILLI.", 1e-3),
+    "Centimeters": (".CENTI.", 1e-2),
+    "Decimeters": (".DECI.", 1e-1),
+    "Meters": ("$", 1.0),
+    "Dekameters": (".DECA.", 10.0),
+    "Hectometers": (".HECTO.", 100.0),
+    "Kilometers": (".KILO.", 1e3),
+    "Megameters": (".MEGA.", 1e6),
+    "Gigameters": (".GIGA.", 1e9),
 }
-"""Prefixes of Part 41 for Rhino's units of length."""
+"""Prefixes of Part 41 for Rhino's units of length, and metres."""
 
 _OTHERS = {
     "Angstroms": ("ANGSTROM", 1e-10),
@@ -83,8 +83,59 @@ def step_text(path: Path, data: bytes) -> tuple[str, list[str]]:
         If it is not a 3DM file, or contains no surface and no curve.
     """
     rhino: Any = needed("rhino3dm", "rhino3dm", "reading 3DM")
+    try:
+        file = _opened(rhino, data)
+    except FileError as error:
+        raise FileError(f"cannot read `{path}`: {error}") from error
+    text = _StepText(rhino, file)
+    text.add_all()
+    if not text.products:
+        raise FileError(
+            f"cannot read `{path}`: it contains no visible surface and no visible curve"
+            + "".join(f"; {remark}" for remark in text.remarks)
+            + "\nhelp: `moldloft.read_mesh` reads its meshes"
+            * any(isinstance(o.Geometry, rhino.Mesh) for o in file.Objects)
+        )
+    return text.whole(), text.remarks
+
+
+def meshes(data: bytes) -> tuple[Any, Any, list[tuple[str, int, int]], float | None]:
+    """The visible meshes of a 3DM file.
+
+    Returns
+    -------
+    tuple
+        Points ``(n, 3)``; corners from 0 ``(m, 4)``, a triangle repeats its last; ranges of faces
+        by name of object; metres of the unit of length, None if the file states none.
+
+    Raises
+    ------
+    FileError
+        If it is not a 3DM file.
+    """
+    rhino: Any = needed("rhino3dm", "rhino3dm", "reading 3DM")
+    file = _opened(rhino, data)
+    points, faces, groups = [np.empty((0, 3))], [np.empty((0, 4), dtype=np.uint32)], []
+    first = start = 0
+    for thing in file.Objects:
+        mesh = thing.Geometry
+        if not isinstance(mesh, rhino.Mesh) or not thing.Attributes.Visible:
+            continue
+        vertices = [mesh.Vertices[k] for k in range(len(mesh.Vertices))]
+        points.append(np.array([(p.X, p.Y, p.Z) for p in vertices]).reshape(-1, 3))
+        corners = [mesh.Faces[k] for k in range(mesh.Faces.Count)]
+        faces.append(np.array(corners, dtype=np.uint32).reshape(-1, 4) + np.uint32(first))
+        if thing.Attributes.Name:
+            groups.append((str(thing.Attributes.Name), start, start + len(corners)))
+        first, start = first + len(vertices), start + len(corners)
+    unit = str(file.Settings.ModelUnitSystem).rsplit(".", 1)[-1]
+    _, metres = {**_PREFIXES, **_OTHERS}.get(unit, ("", None))
+    return np.concatenate(points), np.concatenate(faces), groups, metres
+
+
+def _opened(rhino: Any, data: bytes) -> Any:
     if not data.startswith(b"3D Geometry File Format"):
-        raise FileError(f"cannot read `{path}`: not a 3DM file (it must begin with 3D Geometry)")
+        raise FileError("not a 3DM file (it must begin with 3D Geometry)")
     with tempfile.TemporaryDirectory() as folder:
         # Its reader of bytes takes no file of versions 1 to 4.
         copy = Path(folder) / "model.3dm"
@@ -92,17 +143,10 @@ def step_text(path: Path, data: bytes) -> tuple[str, list[str]]:
         file = rhino.File3dm.Read(str(copy))
     if file is None:
         raise FileError(
-            f"cannot read `{path}`: rhino3dm does not read it; it is damaged, or of a version that "
-            "the installed rhino3dm does not know"
+            "rhino3dm does not read it; it is damaged, or of a version that the installed rhino3dm "
+            "does not know"
         )
-    text = _StepText(rhino, file)
-    text.add_all()
-    if not text.products:
-        raise FileError(
-            f"cannot read `{path}`: it contains no visible surface and no visible curve"
-            + "".join(f"; {remark}" for remark in text.remarks)
-        )
-    return text.whole(), text.remarks
+    return file
 
 
 class _StepText:
@@ -144,7 +188,7 @@ class _StepText:
                 self.remarks.append(
                     "the file states no unit of length: its numbers are taken as millimetres"
                 )
-            prefix = _PREFIXES.get(name, ".MILLI.")
+            prefix, _ = _PREFIXES.get(name, _PREFIXES["Millimeters"])
             unit = self.add(f"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT({prefix},.METRE.))")
         angle = self.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")
         solid = self.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")

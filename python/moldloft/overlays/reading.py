@@ -38,6 +38,9 @@ _MESHES = {
 }
 """By meshio."""
 
+_RHINO = {"3dm": "meshes of Rhino"}
+"""By rhino3dm."""
+
 _PANELS = {
     "gdf": "panels of WAMIT, low order",
     "mar": "panels of Nemoh",
@@ -58,7 +61,7 @@ _DRAWINGS = {
     "svg": "paths and basic shapes",
 }
 
-ENDINGS = {**_SURFACES, **_MESHES, **_PANELS, **_POINTS, **_DRAWINGS}
+ENDINGS = {**_SURFACES, **_MESHES, **_RHINO, **_PANELS, **_POINTS, **_DRAWINGS}
 """Extensions of readable files, with the content that is read."""
 
 
@@ -161,8 +164,12 @@ def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
         return parse_svg(path.name, data)
     if ending in _POINTS:
         return _points(path.name, ending, data), None
+    from moldloft.cad.rhino_reading import meshes
     from moldloft.overlays.meshes import mesh, panels, surface
 
+    if ending in _RHINO:
+        points, faces, groups, metres = meshes(data)
+        return Overlay(path.name, points, faces, tuple(groups)), metres
     if ending in _SURFACES:
         return surface(path.name, ending, data), None
     return (mesh if ending in _MESHES else panels)(path, ending), None
