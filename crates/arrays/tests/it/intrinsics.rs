@@ -406,6 +406,7 @@ fn grids_of_the_language() {
         Value::Unset,
         number(FRAC_PI_2),
         number(1.0),
+        Value::Unset,
         text("allow"),
     ];
     assert_eq!(points(&ok("elliptic", &allowed)), points(&folded));
