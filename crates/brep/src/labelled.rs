@@ -46,6 +46,8 @@ pub struct LabelledFacets {
     pub layers: Vec<Vec<String>>,
     /// Typical length of a triangle side. Deviations of triangles from an edge must be smaller for the edge to be found.
     pub step: f64,
+    /// True if every triangle is on the surface that it is labelled with; else few may be on the next one.
+    pub certain: bool,
 }
 
 /// Reason why triangles do not represent a body of faces.
@@ -103,7 +105,9 @@ impl Brep {
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
         let mut work = LabelledBody::new(facets, accuracy, size)?;
-        work.join_islands();
+        if !work.certain {
+            work.join_islands();
+        }
         work.pin()?;
         let places = work.places();
         work.cut()?;
@@ -130,6 +134,7 @@ struct LabelledBody {
     accuracy: f64,
     size: f64,
     step: f64,
+    certain: bool,
 }
 
 impl LabelledBody {
@@ -165,6 +170,7 @@ impl LabelledBody {
             accuracy,
             size,
             step: facets.step,
+            certain: facets.certain,
         })
     }
 
@@ -178,6 +184,19 @@ impl LabelledBody {
             }
         }
         FacetFault { kind, surfaces: names, place }
+    }
+
+    /// The typical length of sides round some borders: a small hole in a large disc has short ones.
+    fn step_along(&self, sides: impl Iterator<Item = (u32, u32)>) -> f64 {
+        if !self.certain {
+            return self.step;
+        }
+        let place = |v: u32| self.net.positions[v as usize];
+        sides.map(|(a, b)| place(a).distance(place(b))).fold(0.0, f64::max).min(self.step)
+    }
+
+    fn chain_step(&self, chain: &BorderChain) -> f64 {
+        self.step_along(chain.vertices.windows(2).map(|w| (w[0], w[1])))
     }
 
     /// Distance from a contact of surfaces within which they are less than a cell apart.
@@ -265,20 +284,27 @@ impl LabelledBody {
     /// Makes one vertex of those round the apex of a cone, or a point where two surfaces touch and their edges cross.
     fn pin(&mut self) -> Result<(), FacetFault> {
         let mut points: Vec<Vec3> = Vec::new();
-        let step = self.step;
-        let known = |points: &[Vec3], p: Vec3| points.iter().any(|q| q.distance(p) <= step);
+        let mut reaches: Vec<f64> = Vec::new();
+        let known =
+            |points: &[Vec3], p: Vec3, reach: f64| points.iter().any(|q| q.distance(p) <= reach);
+        let borders = self.borders();
         let mut shown: Vec<u32> = self.net.labels.clone();
         shown.sort_unstable();
         shown.dedup();
-        for apex in shown.iter().filter_map(|&l| self.surfaces[l as usize].apex()) {
-            if self.net.positions.iter().any(|p| p.distance(apex) <= 0.5 * self.step)
-                && !known(&points, apex)
+        for label in shown {
+            let Some(apex) = self.surfaces[label as usize].apex() else { continue };
+            let own = borders.iter().filter(|(_, both)| both.contains(&label));
+            let reach = self.step_along(own.map(|(side, _)| *side));
+            if self.net.positions.iter().any(|p| p.distance(apex) <= 0.5 * reach)
+                && !known(&points, apex, reach)
             {
                 points.push(apex);
+                reaches.push(reach);
             }
         }
         self.find_chains();
         for chain in std::mem::take(&mut self.chains) {
+            let reach = self.chain_step(&chain);
             let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
             let sine = |v: &u32| {
                 let p = self.net.positions[*v as usize];
@@ -297,19 +323,20 @@ impl LabelledBody {
                 }
                 let start = self.net.positions[v as usize];
                 if let Some(p) = crate::crossing::touch(both, start, NEAR * self.size)
-                    && p.distance(start) <= 2.0 * self.step
-                    && !known(&points, p)
+                    && p.distance(start) <= 2.0 * reach
+                    && !known(&points, p, reach)
                 {
                     points.push(p);
+                    reaches.push(reach);
                 }
             }
         }
         self.corners.clear();
-        for p in points {
+        for (p, reach) in points.into_iter().zip(reaches) {
             // The remaining triangles around it may fold; slightly different sizes avoid that.
             let net = [1.0, 0.7, 1.4, 0.5, 2.0]
                 .into_iter()
-                .find_map(|share| self.net.pinned(p, share * self.step));
+                .find_map(|share| self.net.pinned(p, share * reach));
             self.net = net.ok_or_else(|| self.fault(FacetFaultKind::NotClosed, &[], p))?;
         }
         Ok(())
@@ -373,6 +400,14 @@ impl LabelledBody {
                 known.extend(z.filter(|z| known.iter().all(|u| u.dot(*z).abs() < 1.0 - 1e-9)));
             }
         }
+        let mut sides: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count as usize];
+        for &(a, b) in borders.keys() {
+            for side in [(a, b), (b, a)] {
+                sides[self.net.groups[self.net.across[&side] as usize] as usize].push(side);
+            }
+        }
+        let steps: Vec<f64> =
+            sides.into_iter().map(|own| self.step_along(own.into_iter())).collect();
         for group in 0..count {
             let Some(k) = self.net.groups.iter().position(|g| *g == group) else { continue };
             let label = self.net.labels[k];
@@ -382,7 +417,7 @@ impl LabelledBody {
                 continue;
             }
             let place = self.net.corners(k)[0];
-            let scale = (self.size, self.step);
+            let scale = (self.size, steps[group as usize]);
             let beside = &beside[group as usize];
             let made = match &surface {
                 SurfaceShape::Image(image) => self.net.prepared_image(
@@ -460,7 +495,8 @@ impl LabelledBody {
         let near = NEAR * self.size;
         let cusp = self.cusp();
         let mut known: FxHashMap<[u32; 2], Vec<ExactCurve>> = FxHashMap::default();
-        for chain in &mut self.chains {
+        let steps: Vec<f64> = self.chains.iter().map(|chain| self.chain_step(chain)).collect();
+        for (chain, step) in self.chains.iter_mut().zip(steps) {
             let [a, b] = chain.surfaces;
             let curves = known.entry([a, b]).or_insert_with(|| {
                 meet(&self.surfaces[a as usize], &self.surfaces[b as usize], near, self.size)
@@ -469,7 +505,7 @@ impl LabelledBody {
             let strayed = |p: &Vec3| {
                 [a, b].into_iter().any(|k| {
                     let off = self.surfaces[k as usize].distance(*p);
-                    off.is_some_and(|d| d.abs() > STRAYED * self.step)
+                    off.is_some_and(|d| d.abs() > STRAYED * step)
                 })
             };
             let all = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
@@ -485,7 +521,7 @@ impl LabelledBody {
                 m.cross(n).norm() < TOUCHING
             });
             // Triangles end far from where surfaces touch.
-            let reach = if touching { cusp } else { self.step };
+            let reach = if touching { cusp } else { step };
             chain.exact = best.filter(|(far, _)| *far <= reach).map(|(_, c)| c);
         }
     }
@@ -506,6 +542,11 @@ impl LabelledBody {
                 self.corners.insert(v, fixed);
                 continue;
             }
+            let step = self.step_along(chains.iter().flat_map(|&k| {
+                let own = &self.chains[k].vertices;
+                let sides = own.windows(2).map(|w| (w[0], w[1]));
+                sides.filter(|&(a, b)| a == v || b == v).collect::<Vec<_>>()
+            }));
             let mut labels: Vec<u32> =
                 chains.iter().flat_map(|&k| self.chains[k].surfaces).collect();
             labels.sort_unstable();
@@ -514,7 +555,7 @@ impl LabelledBody {
                 labels.iter().map(|&l| self.surfaces[l as usize].clone()).collect();
             let tip = shapes.iter().filter_map(SurfaceShape::apex).find(|apex| {
                 let on = |s: &SurfaceShape| s.distance(*apex).is_some_and(|d| d.abs() <= near);
-                apex.distance(start) <= 0.1 * self.step && shapes.iter().all(on)
+                apex.distance(start) <= 0.1 * step && shapes.iter().all(on)
             });
             if let Some(apex) = tip {
                 self.corners.insert(v, apex);
@@ -548,7 +589,7 @@ impl LabelledBody {
                     .filter(|&&b| b > a)
                     .any(|&b| m.cross(self.surfaces[b as usize].normal(start)).norm() < TOUCHING)
             });
-            let reach = if touching { self.cusp() } else { 0.0 }.max(REACH * self.step);
+            let reach = if touching { self.cusp() } else { 0.0 }.max(REACH * step);
             let found = found.filter(|p| p.distance(start) <= reach);
             let Some(p) = found else {
                 return Err(self.fault(FacetFaultKind::Vertex, &labels, start));
@@ -576,27 +617,27 @@ impl LabelledBody {
                 made.map(|(curve, own)| (curve, Some(own)))
             }
             None => {
+                let step = self.chain_step(chain);
                 let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
                 // Near a corner of small angles some vertices are beyond the corner and on one
                 // surface only; the guide must not go there and back.
                 let strayed = |r: &Vec3| {
-                    let far = |s: &SurfaceShape| {
-                        s.distance(*r).is_some_and(|d| d.abs() > STRAYED * self.step)
-                    };
+                    let far =
+                        |s: &SurfaceShape| s.distance(*r).is_some_and(|d| d.abs() > STRAYED * step);
                     both.into_iter().any(far)
                 };
                 let places: Vec<Vec3> = inner.collect();
                 let first = places.iter().position(|r| !strayed(r)).unwrap_or(0);
                 let last = places.iter().rposition(|r| !strayed(r)).map_or(places.len(), |k| k + 1);
                 let mut guide = vec![p];
-                let least = 0.3 * self.step;
+                let least = 0.3 * step;
                 for &r in &places[first..last] {
                     if r.distance(guide[guide.len() - 1]) >= least && r.distance(q) >= least {
                         guide.push(r);
                     }
                 }
                 guide.push(q);
-                Some((crossing(both, &guide, self.accuracy, REACH * self.step)?, None))
+                Some((crossing(both, &guide, self.accuracy, REACH * step)?, None))
             }
         }
     }
@@ -617,7 +658,7 @@ impl LabelledBody {
             let [p, q] = ends.map(|v| self.corners[&v]);
             let places = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
             let long = places.map(|r| r.distance(p)).fold(0.0, f64::max);
-            if !chain.closed() && p.distance(q) <= near && long <= 2.0 * self.step {
+            if !chain.closed() && p.distance(q) <= near && long <= 2.0 * self.chain_step(chain) {
                 vanished[k] = true;
                 let [a, b] = ends.map(|v| root(&one, v));
                 if a != b {

@@ -832,6 +832,7 @@ mod tests {
             colours: vec![None; 6],
             layers: vec![Vec::new(); 6],
             step: 0.5,
+            certain: true,
         };
         for (k, q) in quads.into_iter().enumerate() {
             facets.triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);

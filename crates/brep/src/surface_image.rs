@@ -222,6 +222,7 @@ mod tests {
             colours: vec![None; n],
             layers: vec![Vec::new(); n],
             step: 0.3,
+            certain: true,
         }
     }
 

@@ -310,6 +310,7 @@ mod tests {
             colours: vec![None; count],
             layers: vec![Vec::new(); count],
             step: 0.2,
+            certain: true,
         };
         let mut brep = Brep::default();
         brep.add_facets(facets, 1e-6, 4.0).unwrap();

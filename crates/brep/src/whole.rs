@@ -465,6 +465,7 @@ mod tests {
             colours: vec![None; 3],
             layers: vec![Vec::new(); 3],
             step: 0.26,
+            certain: true,
         };
         for (r, z, label) in rings {
             let count = if r == 0.0 { 1 } else { ROUND };

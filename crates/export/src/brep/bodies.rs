@@ -390,7 +390,8 @@ fn labelled(facets: &Facets, shown: &Mesh, name: &str, over: &Box3) -> LabelledF
     }
     let positions = mesh.positions().to_vec();
     let step = facets.step;
-    LabelledFacets { positions, triangles, labels, surfaces, names, colours, layers, step }
+    let certain = false;
+    LabelledFacets { positions, triangles, labels, surfaces, names, colours, layers, step, certain }
 }
 
 /// The surface of a primitive, where CAD formats have one.

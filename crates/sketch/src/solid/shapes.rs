@@ -81,6 +81,7 @@ impl SketchSolid<f64> {
             colours: vec![colour; count],
             layers: vec![layers.to_vec(); count],
             step: 0.0,
+            certain: true,
         };
         for f in 0..count {
             let own = match (self.faces[f].names.first(), self.faces[f].id) {

@@ -1,7 +1,8 @@
 //! HOLE against closed forms, its copies, its numbers and its text.
 
 use crate::treatments::{cuboid_session, derivatives, near, refused, run, volume};
-use moldloft_sketch::{SketchSession, script};
+use moldloft_brep::Brep;
+use moldloft_sketch::{Files, SketchSession, script};
 use moldloft_testing::{Random, rounds};
 use std::f64::consts::PI;
 
@@ -106,4 +107,64 @@ fn what_is_no_hole_is_refused() {
         assert!(text.contains(why), "{command}: {text}");
     }
     assert_eq!(s.names(), ["A"]);
+}
+
+/// A host whose STEP files hold the volume of the boundary alone.
+struct VolumeOnly;
+
+impl Files for VolumeOnly {
+    fn read(&self, _: &str) -> Result<String, String> {
+        Err("no files".into())
+    }
+    fn step(&self, brep: &Brep, _: &str, _: f64) -> Result<Vec<u8>, String> {
+        let volume = brep.volume().ok_or("no volume")?;
+        Ok(format!("{} {}", volume.volume, brep.faces.len()).into_bytes())
+    }
+}
+
+/// A blind hole in a disc whose edge is in far longer pieces: the written boundary has its floor.
+#[test]
+fn small_features_of_large_parts_are_written() {
+    let mut random = Random::new(71);
+    for _ in 0..rounds(10, 400) {
+        let (outer, thick) = (random.between(50.0, 500.0), random.between(5.0, 50.0));
+        let d = outer * 10f64.powf(random.between(-3.0, -0.8));
+        let depth = (d * 10f64.powf(random.between(-2.5, 0.0))).min(0.8 * thick);
+        let [x, y] = [0, 1].map(|_| random.between(-0.3, 0.3) * (outer - d));
+        let wide = 1.5 * d;
+        let sunk = PI / 3.0 * 0.25 * d * (0.75 * 0.75 + 0.75 * 0.5 + 0.25) * d * d;
+        let forms = [
+            (format!("DEPTH {depth}"), disc(d) * depth, 5),
+            (
+                format!("COUNTERBORE {wide} {depth}"),
+                disc(d) * thick + (disc(wide) - disc(d)) * depth,
+                6,
+            ),
+            (format!("COUNTERSINK {wide} 90"), disc(d) * (thick - 0.25 * d) + sunk, 5),
+        ];
+        for (form, removed, faces) in forms {
+            if form.starts_with("COUNTERSINK") && 0.25 * d >= thick {
+                continue;
+            }
+            let mut s = SketchSession::with_files(Box::new(VolumeOnly));
+            run(
+                &mut s,
+                &format!(
+                    "SKETCH A 2D XY; SET UNITS MM; CIRCLE DIAMETER {outer} AT 0 0; GENERATE FACES; \
+                     EXTRUDE {thick}; HOLE A {d} AT {x} {y} {form} INTO B"
+                ),
+            );
+            let whole = disc(outer) * thick - removed;
+            near(volume(&mut s, "B"), whole);
+            let replies = s.run_line("EXPORT STEP B b.step");
+            let file = replies.iter().find_map(|r| r.file.clone());
+            let file = file.unwrap_or_else(|| {
+                panic!("{outer} {thick} {d} {depth} {x} {y} {form}: {replies:?}")
+            });
+            let text = String::from_utf8(file.bytes).unwrap();
+            let (found, count) = text.split_once(' ').unwrap();
+            near(found.parse().unwrap(), whole);
+            assert_eq!(count.parse::<usize>(), Ok(faces), "{form}");
+        }
+    }
 }
