@@ -437,7 +437,7 @@ fn periodic_edges<T>(
     if let Some(wall) = walls.iter().find(|wall| sides.contains(&wall.edge)) {
         let name = EDGES.iter().find(|(_, edge)| *edge == wall.edge).map_or("", |(name, _)| name);
         return Err(CallError::new(
-            "wrong-value",
+            "unused-argument",
             format!("the edge {name} is a wall and periodic"),
         )
         .expected("walls on the other two edges")

@@ -173,6 +173,15 @@ impl Measure {
         }
     }
 
+    /// The order of the derivatives of a measure that is zero for polynomials below that degree alone.
+    pub(crate) fn derivative_order(self) -> Option<usize> {
+        match self {
+            Measure::Bending => Some(2),
+            Measure::Variation => Some(3),
+            _ => None,
+        }
+    }
+
     /// The measure of the points themselves, at parameters with a total range of 1 (closed curve:
     /// from the first point round to itself): divided differences, each weighted with the square
     /// root of its interval, so that the sum of squares approximates the integral of the squared

@@ -13,7 +13,6 @@ use crate::curve::bends::BendCounter;
 use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
-use crate::curve::nearest_fairest::order_of;
 use crate::curve::thinning::CurvesBesideData;
 use crate::optimum::goal::{Adaptation, Goal, GoalOptimum, RegularizationPath, rounding};
 use crate::optimum::ties::Ties;
@@ -698,7 +697,7 @@ impl Data {
             let value = crate::measure::value(&rows, norm, &job.points);
             return Ok(GoalOptimum::unmoved(&job.points, value, still));
         }
-        let order = order_of(options.measure);
+        let order = options.measure.derivative_order();
         let order = order.filter(|_| !conditioned && parts.halves.is_empty());
         let frozen = parts.frozen.clone();
         let nearest = order.map(|order| {

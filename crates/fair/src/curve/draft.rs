@@ -5,7 +5,6 @@ use crate::Certificate;
 use crate::FairError;
 use crate::curve::data::{Data, DataFit, DataOptions};
 use crate::curve::job::Job;
-use crate::curve::nearest_fairest::order_of;
 use crate::optimum::goal::{Goal, GoalOptimum, rounding, worth};
 use crate::optimum::{BudgetOptimum, Optimum};
 
@@ -28,7 +27,7 @@ impl Data {
             if let Some(mut found) = parts.within(&pull, share * mean)? {
                 let energy =
                     |points: &[_]| crate::measure::value(&parts.measure, parts.norm, points);
-                if let Some(order) = order_of(options.measure) {
+                if let Some(order) = options.measure.derivative_order() {
                     let near = found.optimum.clone();
                     let near = self.nearest_fairest(order, &parts.frozen, near)?;
                     let both = near.points.iter().zip(&job.points);

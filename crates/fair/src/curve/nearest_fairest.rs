@@ -9,7 +9,7 @@ use crate::curve::data::Data;
 use crate::optimum::held::HeldDirections;
 use crate::optimum::problem::{NormBounds, Problem, V, solve};
 use crate::optimum::{MotionAxes, Optimum};
-use crate::{FairError, Measure, Motion, RowNorm, SparseRows};
+use crate::{FairError, Motion, RowNorm, SparseRows};
 use moldloft_num::Vec3;
 
 /// Fraction of a tolerance from which it counts as reached.
@@ -66,15 +66,6 @@ impl Polynomial {
             |own: &Vec<usize>| self.blossom(&own.iter().map(|&k| knots[k]).collect::<Vec<_>>());
         let sum = all.iter().map(of).fold(Vec3::zero(), |s, p| s + p);
         sum * (1.0 / all.len() as f64)
-    }
-}
-
-/// The order of the derivatives of a measure that is zero for polynomials below that degree alone.
-pub(super) fn order_of(measure: Measure) -> Option<usize> {
-    match measure {
-        Measure::Bending => Some(2),
-        Measure::Variation => Some(3),
-        _ => None,
     }
 }
 
