@@ -18,6 +18,9 @@ use std::f64::consts::TAU;
 /// Relative distance within which a point is on a surface.
 const NEAR: f64 = 1e-9;
 
+/// Typical length along a border, relative to its sides: curves may be in finer pieces than surfaces.
+const SIDES_OF_A_STEP: f64 = 3.0;
+
 /// Maximum displacement of a corner, in cells, at small angles between faces.
 const REACH: f64 = 4.0;
 
@@ -192,7 +195,8 @@ impl LabelledBody {
             return self.step;
         }
         let place = |v: u32| self.net.positions[v as usize];
-        sides.map(|(a, b)| place(a).distance(place(b))).fold(0.0, f64::max).min(self.step)
+        let longest = sides.map(|(a, b)| place(a).distance(place(b))).fold(0.0, f64::max);
+        (SIDES_OF_A_STEP * longest).min(self.step)
     }
 
     fn chain_step(&self, chain: &BorderChain) -> f64 {
@@ -304,7 +308,9 @@ impl LabelledBody {
         }
         self.find_chains();
         for chain in std::mem::take(&mut self.chains) {
-            let reach = self.chain_step(&chain);
+            let beside =
+                borders.iter().filter(|(_, own)| own.iter().any(|l| chain.surfaces.contains(l)));
+            let reach = self.step_along(beside.map(|(side, _)| *side));
             let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
             let sine = |v: &u32| {
                 let p = self.net.positions[*v as usize];
@@ -542,11 +548,9 @@ impl LabelledBody {
                 self.corners.insert(v, fixed);
                 continue;
             }
-            let step = self.step_along(chains.iter().flat_map(|&k| {
-                let own = &self.chains[k].vertices;
-                let sides = own.windows(2).map(|w| (w[0], w[1]));
-                sides.filter(|&(a, b)| a == v || b == v).collect::<Vec<_>>()
-            }));
+            // A cut may have divided the sides beside it.
+            let own = chains.iter().map(|&k| self.chain_step(&self.chains[k]));
+            let step = own.fold(0.0, f64::max);
             let mut labels: Vec<u32> =
                 chains.iter().flat_map(|&k| self.chains[k].surfaces).collect();
             labels.sort_unstable();
