@@ -156,10 +156,9 @@ impl LabelledBody {
             })
             .collect();
         labels.iter_mut().for_each(|l| *l = first[*l as usize]);
-        let Some(net) = FacetNet::new(positions, triangles, labels) else {
-            let kind = FacetFaultKind::NotClosed;
-            return Err(FacetFault { kind, surfaces: Vec::new(), place });
-        };
+        let open =
+            |place| FacetFault { kind: FacetFaultKind::NotClosed, surfaces: Vec::new(), place };
+        let net = FacetNet::new(positions, triangles, labels).map_err(open)?;
         Ok(Self {
             net,
             surfaces,
@@ -571,6 +570,14 @@ impl LabelledBody {
                     let normal = self.surfaces[chain.surfaces[0] as usize].normal(start);
                     shapes.extend(curve.planes(normal));
                 }
+            }
+            // Where surfaces touch, a point on all of them is not found by their normals.
+            let on = |l: &u32| {
+                self.surfaces[*l as usize].distance(start).is_some_and(|d| d.abs() <= near)
+            };
+            if self.certain && labels.iter().all(on) {
+                self.corners.insert(v, start);
+                continue;
             }
             let ring = [chains.len() == 1 && self.chains[chains[0]].closed()];
             let found = if ring[0] {

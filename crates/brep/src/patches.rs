@@ -130,10 +130,9 @@ impl<'a> PatchedBody<'a> {
         }
         let triangles = std::mem::take(&mut facets.triangles);
         let labels = std::mem::take(&mut facets.labels);
-        let Some(mut net) = FacetNet::new(positions, triangles, labels) else {
-            let kind = FacetFaultKind::NotClosed;
-            return Err(FacetFault { kind, surfaces: Vec::new(), place });
-        };
+        let open =
+            |place| FacetFault { kind: FacetFaultKind::NotClosed, surfaces: Vec::new(), place };
+        let mut net = FacetNet::new(positions, triangles, labels).map_err(open)?;
         let whole = if wholly {
             cut_round(&mut net, &mut facets, &mut shown)
         } else {

@@ -38,18 +38,27 @@ pub fn ordered(a: u32, b: u32) -> (u32, u32) {
 }
 
 impl FacetNet {
-    /// The net of labelled triangles; `None` if a side has more than two triangles, or only one.
-    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>, labels: Vec<u32>) -> Option<Self> {
+    /// The net of labelled triangles.
+    ///
+    /// # Errors
+    /// The middle of a side that has more than two triangles, or only one.
+    pub fn new(
+        positions: Vec<Vec3>,
+        triangles: Vec<[u32; 3]>,
+        labels: Vec<u32>,
+    ) -> Result<Self, Vec3> {
+        let middle = |a: u32, b: u32| (positions[a as usize] + positions[b as usize]) / 2.0;
         let mut across =
             FxHashMap::with_capacity_and_hasher(3 * triangles.len(), Default::default());
         for (k, t) in triangles.iter().enumerate() {
             for i in 0..3 {
-                if across.insert((t[i], t[(i + 1) % 3]), k as u32).is_some() {
-                    return None;
+                let (a, b) = (t[i], t[(i + 1) % 3]);
+                if across.insert((a, b), k as u32).is_some() {
+                    return Err(middle(a, b));
                 }
             }
         }
-        let neighbours = neighbours(&triangles, &across)?;
+        let neighbours = neighbours(&triangles, &across).map_err(|(a, b)| middle(a, b))?;
         let mut net = Self {
             neighbours,
             positions,
@@ -61,14 +70,15 @@ impl FacetNet {
             fixed: BTreeMap::new(),
         };
         net.groups = net.connected();
-        Some(net)
+        Ok(net)
     }
 
     /// The same with the vertices within reach of a point merged into one.
     pub fn pinned(&self, place: Vec3, reach: f64) -> Option<Self> {
         let inside: Vec<bool> = self.positions.iter().map(|p| p.distance(place) <= reach).collect();
         let Some(one) = inside.iter().position(|i| *i) else {
-            return Self::new(self.positions.clone(), self.triangles.clone(), self.labels.clone());
+            let whole = (self.positions.clone(), self.triangles.clone(), self.labels.clone());
+            return Self::new(whole.0, whole.1, whole.2).ok();
         };
         let moved = |v: u32| if inside[v as usize] { one as u32 } else { v };
         let (mut triangles, mut labels) = (Vec::new(), Vec::new());
@@ -81,7 +91,7 @@ impl FacetNet {
         }
         let mut positions = self.positions.clone();
         positions[one] = place;
-        let mut net = Self::new(positions, triangles, labels)?;
+        let mut net = Self::new(positions, triangles, labels).ok()?;
         net.fixed = self.fixed.clone();
         net.fixed.insert(one as u32, place);
         Some(net)
@@ -649,13 +659,14 @@ impl FacetNet {
 fn neighbours(
     triangles: &[[u32; 3]],
     across: &FxHashMap<(u32, u32), u32>,
-) -> Option<Vec<[u32; 3]>> {
+) -> Result<Vec<[u32; 3]>, (u32, u32)> {
     let beyond = |t: &[u32; 3]| {
         let mut own = [0; 3];
         for (i, other) in own.iter_mut().enumerate() {
-            *other = *across.get(&(t[(i + 1) % 3], t[i]))?;
+            let side = (t[(i + 1) % 3], t[i]);
+            *other = *across.get(&side).ok_or(side)?;
         }
-        Some(own)
+        Ok(own)
     };
     triangles.iter().map(beyond).collect()
 }

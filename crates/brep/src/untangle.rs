@@ -171,7 +171,7 @@ impl PatchedBody<'_> {
         let count = tangle.triangles.len();
         let triangles = (0..count).filter(kept).map(|k| tangle.triangles[k]).collect();
         let labels = (0..count).filter(kept).map(|k| tangle.labels[k]).collect();
-        if let Some(net) = FacetNet::new(self.net.positions.clone(), triangles, labels) {
+        if let Ok(net) = FacetNet::new(self.net.positions.clone(), triangles, labels) {
             self.net = net;
         }
         Some(tangle.moved)

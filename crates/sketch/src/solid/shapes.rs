@@ -25,7 +25,7 @@ impl std::fmt::Display for ShapeFault {
             }
             ShapeFault::Facets(fault) => {
                 let what = match fault.kind {
-                    FacetFaultKind::NotClosed => "the body does not close",
+                    FacetFaultKind::NotClosed => "the faces round an edge are not in pairs",
                     FacetFaultKind::Seam => {
                         "a face closes around its axis, and no seam avoids its vertices"
                     }
@@ -37,7 +37,9 @@ impl std::fmt::Display for ShapeFault {
                     FacetFaultKind::Patch => "no patch comes near enough to a face",
                     FacetFaultKind::Many => "a face takes too many patches",
                 };
-                (format!("{what} ({})", fault.surfaces.join(", ")), &fault.place)
+                let names = fault.surfaces.join(", ");
+                let named = if names.is_empty() { String::new() } else { format!(" ({names})") };
+                (format!("{what}{named}"), &fault.place)
             }
         };
         write!(f, "{text}, near {:.6} {:.6} {:.6}", at.x, at.y, at.z)
