@@ -13,6 +13,7 @@ pytest.importorskip("OCP")
 
 import moldloft
 from moldloft import Sketch
+from sketch_machined import MACHINED
 from sketch_ordinary import FAMILIES, Sizes, box, cut, joined, measures, read_volume, rod
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
@@ -57,6 +58,24 @@ def test_one_volume_in_five_ways(family: str, tmp_path) -> None:
         path = tmp_path / "part.step"
         path.write_bytes(sketch.run(f"EXPORT STEP {part.name} part.step")[-1].file[1])
         assert read_volume(path) == pytest.approx(sketch.volume, rel=BOUND), k
+
+
+#: Families of parts that touch themselves along a line, or whose faces touch.
+TOUCHING = ("wall posts", "edge holes", "edge bosses", "counterbores", "tee", "ribbed boss")
+
+#: Edges between round faces are splines within 1e-7 of the size of the part.
+STEP_BOUND = 1e-6
+
+
+@pytest.mark.parametrize("family", {**FAMILIES, **MACHINED} if SOAK else TOUCHING)
+def test_the_step_file_has_the_volume(family: str, tmp_path) -> None:
+    for k in range(100 if SOAK else 2):
+        part = {**FAMILIES, **MACHINED}[family](Sizes(f"{family} step {k}"))
+        sketch = Sketch()
+        sketch.run(f"{part.text}USING {part.name}")
+        path = tmp_path / "part.step"
+        path.write_bytes(sketch.run(f"EXPORT STEP {part.name} part.step")[-1].file[1])
+        assert read_volume(path) == pytest.approx(sketch.volume, rel=STEP_BOUND), (k, part.text)
 
 
 def test_parts_of_one_cylinder_are_one_face() -> None:

@@ -6,6 +6,7 @@
 //! not in the result.
 
 use crate::analytic::arc;
+use crate::contacts::parted;
 use crate::crossing::crossing;
 use crate::seams::{FacetNet, ordered};
 use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
@@ -158,6 +159,9 @@ impl LabelledBody {
         labels.iter_mut().for_each(|l| *l = first[*l as usize]);
         let open =
             |place| FacetFault { kind: FacetFaultKind::NotClosed, surfaces: Vec::new(), place };
+        // Where a body touches itself, its parts have edges of their own.
+        let apart = facets.certain.then(|| parted(&positions, &triangles)).flatten();
+        let (positions, triangles) = apart.unwrap_or((positions, triangles));
         let net = FacetNet::new(positions, triangles, labels).map_err(open)?;
         Ok(Self {
             net,

@@ -12,6 +12,7 @@
 
 mod analytic;
 mod check;
+mod contacts;
 mod crossing;
 mod foot;
 mod image;
